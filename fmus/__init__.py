@@ -1,4 +1,4 @@
-"""Vehicle FMUs, shipped and foreign, whatever runs them, and the controller as an FMU."""
+"""Vehicle FMUs, shipped and foreign, the code that runs them, and the controller as an FMU."""
 
 from fmus.description.model import FmuDescription
 from fmus.description.reading import describe

@@ -13,7 +13,7 @@ from fmus.sources.fmu_files import CONTROLLER_RECIPE, VEHICLE_RECIPE, build
 
 
 def main() -> None:
-    """Build from the command line."""
+    """Build the FMUs from the command line."""
     parser = argparse.ArgumentParser(prog="python -m fmus.build", description="Rebuild the FMUs.")
     parser.add_argument(
         "--out", type=Path, default=Path(__file__).parent, help="folder; default: in place"

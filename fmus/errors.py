@@ -1,8 +1,8 @@
-"""What can go wrong with an FMU, one class per thing a user can do something about."""
+"""The errors of an FMU, one class per thing that a user can do something about."""
 
 
 class FmuError(Exception):
-    """Root of all errors of this package; the message is one line and names the FMU."""
+    """Root of all errors of this package. The message is one line and names the FMU."""
 
 
 class FmuFileError(FmuError):

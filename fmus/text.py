@@ -8,7 +8,7 @@ _SPACES = frozenset({"Zl", "Zp", "Zs"})
 
 
 def printable(text: object, limit: int = LIMIT) -> str:
-    """One line of visible characters, at most ``limit`` long.
+    """Return one line of visible characters, at most ``limit`` long.
 
     Control characters, direction marks and half surrogates become ``?``: an FMU must be able
     neither to steer the terminal nor to break a line.
@@ -19,12 +19,12 @@ def printable(text: object, limit: int = LIMIT) -> str:
 
 
 def clean(text: str, limit: int) -> str:
-    """As :func:`printable`; quick where nothing is to be done."""
+    """Do the same as :func:`printable`, but quickly for text that is already clean."""
     return text if len(text) <= limit and text.isprintable() else printable(text, limit)
 
 
 def listed(names: Sequence[str], shown: int = 6) -> str:
-    """The first names and how many more there are; empty without any."""
+    """Return the first names and the number of the others; an empty text without names."""
     more = f" and {len(names) - shown} more" if len(names) > shown else ""
     return f"{', '.join(names[:shown])}{more}"
 

@@ -28,7 +28,7 @@ keep_kernels()
 
 
 def __getattr__(name: str) -> Any:
-    """Import the API when it is first used: numba, pandas and SUMO take seconds to load."""
+    """Import the API at its first use: numba, pandas and SUMO take seconds to load."""
     if name in {"run", "RunResult"}:
         from giveway import api
 

@@ -1,4 +1,4 @@
-"""What has to be right before anything else is imported."""
+"""The checks and settings that must come before all other imports."""
 
 import errno
 import importlib.util
@@ -9,14 +9,14 @@ from typing import Any
 from giveway.errors import InstallationError
 
 ROOMS = ("controller", "pedestrian_model", "fmus", "sumo_scenarios")
-_NUMBAS = ("UserProvided", "InTree", "UserWide", "IPython", "Zip")  # its locators, in order
-_NO_MEMORY = ("failed to map segment", "Cannot allocate memory")  # the dynamic linker's
+_NUMBAS = ("UserProvided", "InTree", "UserWide", "IPython", "Zip")  # numba's locators, in order
+_NO_MEMORY = ("failed to map segment", "Cannot allocate memory")  # messages of the dynamic linker
 
 
 def check_rooms() -> None:
     """Make sure that the four packages giveway imports are its own.
 
-    ``controller`` is a common name: a robotics simulator ships one too.
+    ``controller`` is a common name: a robotics simulator ships one, too.
 
     Raises:
         InstallationError: a room is missing, or another package of that name comes first.
@@ -33,9 +33,9 @@ def check_rooms() -> None:
 
 
 def out_of_memory(error: BaseException | None) -> bool:
-    """Whether an error, or what it was raised from, says that the system gives no more memory.
+    """Return whether an error, or its cause, means that the system has no more memory.
 
-    A library that does not fit is an ImportError or an OSError; only its words tell.
+    A library that does not fit in memory is an ImportError or an OSError; only its words tell.
     """
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
@@ -47,14 +47,14 @@ def out_of_memory(error: BaseException | None) -> bool:
 
 
 def user_cache() -> Path:
-    """The folder in the user's cache that is ours; it may not exist, or not be writable."""
+    """Return giveway's folder in the user's cache, which may not exist or not be writable."""
     from platformdirs import user_cache_path
 
     return user_cache_path("giveway", appauthor=False)
 
 
 def keep_kernels() -> None:
-    """Have numba keep our kernels where ``_kernels`` says, whoever imports numba first.
+    """Make numba keep our kernels in the folder of ``_kernels``, even if it is imported first.
 
     Numba's setting for it is documented (``NUMBA_CACHE_LOCATOR_CLASSES``); it is made in this
     process and not in the environment, since child processes need not know giveway.
@@ -66,7 +66,7 @@ def keep_kernels() -> None:
 
 
 class _BeforeNumba:
-    """Makes the setting when numba is being imported, whoever imports it.
+    """Makes the setting when numba is being imported, by any module.
 
     An entry of ``sys.meta_path``, where Python asks for every module; it never finds one itself.
     """

@@ -1,4 +1,4 @@
-"""What can go wrong, one class per thing a user can do something about.
+"""The errors of giveway, one class per thing that a user can do something about.
 
 Every message is one line: the file, key or id, the value, what was expected, what to do next.
 ``exit_code`` is the command line's: 2 for a request that cannot be run, 1 for a run that failed.
@@ -8,7 +8,7 @@ from typing import Any
 
 
 class GivewayError(Exception):
-    """The root of every error that giveway raises on purpose.
+    """Root of all errors that giveway raises on purpose.
 
     Attributes:
         result: the :class:`giveway.RunResult` recorded until the failure; None before the start.
@@ -19,7 +19,7 @@ class GivewayError(Exception):
 
 
 class InstallationError(GivewayError):
-    """The installation is not what giveway was built for; reinstall as the message says."""
+    """The installation is not the one giveway was built for; reinstall as the message says."""
 
 
 class ConfigError(GivewayError):
@@ -35,7 +35,7 @@ class ScenarioError(GivewayError):
 
 
 class SumoError(GivewayError):
-    """SUMO refused something; the message carries SUMO's own reason."""
+    """SUMO refused something. The message carries SUMO's own reason."""
 
 
 class VehicleError(GivewayError):

@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 _MARKER = "compiled-for-"
-_KEPT = 30 * 86400.0  # [s] since the last run
+_KEPT = 30 * 86400.0  # [s] time since the last run after which old kernels are removed
 _MESSAGE = "Compiling the numerical kernels (once after installation, about a minute) ..."
 _MESSAGE_THREADS = "Compiling the kernels of several threads (once, some ten seconds) ..."
-_SELDOM: Final = (50_000, 20, 100)  # objects made until Python looks for garbage
-_LONGEST: Final = 600.0  # [s] that the other process is waited for
+_SELDOM: Final = (50_000, 20, 100)  # numbers of new objects until Python collects garbage
+_LONGEST: Final = 600.0  # [s] longest wait for the other process
 _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*arguments)"
 
 _PEOPLE: Final = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
@@ -42,7 +42,7 @@ _STREET: Final[dict[str, Any]] = {
     "time_limit": 1.2,
     "scenario": "street",
     "controller": "pid-paper",
-    "sumo": {"step_length": 1.0},  # in which its cars follow their lanes by our own kernels
+    "sumo": {"step_length": 1.0},  # between SUMO's steps our kernels move its cars
 }
 # In this order two processes hardly compile the same: the crowd, and the race, which predicts it,
 # in one; the vehicle, its plans, what is measured and the other controllers in the other.
@@ -71,8 +71,8 @@ def compile_kernels_once(console: Console | None = None, *, threads: int = 1) ->
     A few tiny runs call them all; numba keeps the machine code in the user's cache folder.
 
     Args:
-        console: for the message; None prints nothing.
-        threads: that step the crowd; several have kernels of their own.
+        console: Console for the message; None prints nothing.
+        threads: Number of threads that step the crowd; several have kernels of their own.
     """
     marker = f"{_MARKER}{get_host_cpu_name()}"
     _once(marker, _MESSAGE, _compile_all, console)
@@ -83,11 +83,11 @@ def compile_kernels_once(console: Console | None = None, *, threads: int = 1) ->
 def _once(
     name: str, message: str, compile_them: Callable[[], None], console: Console | None
 ) -> None:
-    """Compile unless the marker of that name is there, and leave it."""
+    """Compile unless the marker ``name`` exists, and leave the marker."""
     marker = kernel_cache() / name
     if marker.exists():
         with contextlib.suppress(OSError):
-            marker.touch()  # still in use
+            marker.touch()  # the kernels are still in use
         return
     with contextlib.nullcontext() if console is None else console.status(message):
         if console is not None and not console.is_terminal:
@@ -99,14 +99,14 @@ def _once(
         marker.touch()
         forget_old_kernels(marker.parent)
     except OSError:
-        return  # without a writable cache they are compiled in every process: slow, not wrong
+        return  # without a writable cache kernels are compiled in every process: slow, but correct
 
 
 def forget_old_kernels(folder: Path) -> None:
     """Remove the kernels of versions that have not been run for a month.
 
     Args:
-        folder: of the present kernels; those of other versions are in the folders beside it.
+        folder: Folder of the present kernels; those of other versions are in the folders beside it.
     """
     for other in folder.parent.glob(FOLDERS):
         used = [file.stat().st_mtime for file in (other, *other.glob(f"{_MARKER}*"))]
@@ -116,7 +116,7 @@ def forget_old_kernels(folder: Path) -> None:
 
 @contextlib.contextmanager
 def _rarely_collected() -> Iterator[None]:
-    """Look for garbage seldom: what a compiler makes by the million stays."""
+    """Collect garbage rarely in this context: the many objects of a compiler stay."""
     before = gc.get_threshold()
     gc.set_threshold(*_SELDOM)
     try:
@@ -126,10 +126,10 @@ def _rarely_collected() -> Iterator[None]:
 
 
 def _compile_all() -> None:
-    """Compile in this process and in one beside it; then call everything.
+    """Compile in this process and in one beside it, then call all kernels.
 
-    The other one walks people, and drives by the planning controller through them: the longest of
-    the runs. What both have compiled lies in the cache; what neither has, the last runs compile.
+    The other process walks people and drives through them with the planning controller: the
+    longest of the runs. Both put compiled code into the cache; the last runs compile the rest.
     """
     with _helper() as helper:
         if helper is not None:
@@ -143,11 +143,11 @@ def _compile_all() -> None:
 
 @contextlib.contextmanager
 def _helper() -> Iterator[subprocess.Popen[bytes] | None]:
-    """A process that compiles beside this one; None where no processor is left for it."""
+    """Start a process that compiles beside this one; None if no processor is left for it."""
     try:
         helper = _started() if processors() > 1 else None
     except OSError:
-        helper = None  # this process does it all
+        helper = None  # this process does all the work
     try:
         yield helper
     finally:
@@ -165,7 +165,7 @@ def _started() -> subprocess.Popen[bytes]:
 
 
 def help_compiling(parent: int) -> None:
-    """What the process beside ``parent`` does."""
+    """Compile in the process beside ``parent``."""
     die_with(parent)
     with _rarely_collected():
         for settings in _WALKS:
@@ -189,7 +189,7 @@ def _tiny_run() -> None:
 
 
 def _call_the_rest() -> None:
-    """What no tiny run calls."""
+    """Call the kernels that no tiny run calls."""
     _solve_without_solution()
     _branch_off()
     _come_and_go()

@@ -1,4 +1,4 @@
-"""After a crash of native code: the rows that the run had recorded, as a result like any other."""
+"""Recovery after a crash of native code: the recorded rows become a result like any other."""
 
 import shutil
 import tomllib
@@ -28,11 +28,11 @@ from sumo_scenarios import Scenario
 
 
 def recover(journal: Path, verdict: Verdict) -> CrashError:
-    """Write the rows of a run whose process died, and say how it died.
+    """Write the rows of a run whose process died, and report the cause of its death.
 
     Args:
-        journal: the folder that the dead process wrote to.
-        verdict: on its end.
+        journal: Folder that the dead process wrote to.
+        verdict: Verdict on its end.
 
     Returns:
         The error to report; its ``result`` holds the rows, if there are any.
@@ -73,11 +73,11 @@ class LeftJournal:
     """The journal of a run that was killed together with its supervisor.
 
     Attributes:
-        path: its folder.
-        scenario: of the run.
-        results: where its results were to go; None: nowhere.
-        steps: how many were recorded.
-        clock: the latest [s] of SUMO's time.
+        path: Folder of the journal.
+        scenario: Scenario of the run.
+        results: Folder for its results; None without one.
+        steps: Number of recorded steps.
+        clock: Latest instant [s] on SUMO's clock.
     """
 
     path: Path
@@ -88,7 +88,7 @@ class LeftJournal:
 
 
 def left_journals() -> list[LeftJournal]:
-    """The journals with rows that killed runs have left where journals are, oldest first."""
+    """Return the journals with rows that killed runs have left, oldest first."""
     found = []
     for path in journals():
         with suppress(GivewayError, OSError):
@@ -104,9 +104,9 @@ def recover_left(
     """Write the rows in a journal that a killed run has left, and remove the journal.
 
     Args:
-        journal: its folder.
-        out: where to write them; None: where the run would have written them.
-        force: replace the results there.
+        journal: Folder of the journal.
+        out: Folder to write them to; None: that of the run.
+        force: Replace the results there.
 
     Returns:
         The result, and where it is.
@@ -176,7 +176,7 @@ def _result_of(
     endings = {
         ego.id: Ending.COMPLETED
         for ego in rows.egos()
-        if ego.track.position[-1] >= ego.goal  # it had reached its goal before the crash
+        if ego.track.position[-1] >= ego.goal  # the ego had reached its goal before the crash
     }
     return RunResult(
         config=config,

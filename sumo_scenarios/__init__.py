@@ -1,4 +1,4 @@
-"""The scenario folders that giveway drives through, and how they are found.
+"""The scenario folders that giveway drives through, and finding them.
 
 A scenario is a folder with a .sumocfg, the files it names, and ``<stem>.giveway.toml``: where the
 ego enters and where the crowd starts. README.md says how to add one.

@@ -26,8 +26,8 @@ def build(name: str, out: Path | None = None) -> Path:
     """Build the network of one scenario.
 
     Args:
-        name: a bundled scenario or a folder, as `find` takes them.
-        out: where the file goes; by default into the scenario's own folder.
+        name: Name of a bundled scenario, or a folder, as for `find`.
+        out: Folder for the file; by default the scenario's own.
 
     Returns:
         The path of the ``.net.xml`` written.
@@ -69,7 +69,7 @@ def _run_netconvert(config: Path, output: Path) -> None:
         raise BuildError(
             f"netconvert refused {config}: {reason or f'exit code {result.returncode}'}"
         )
-    sys.stderr.write(result.stderr)  # its warnings are the author's to judge
+    sys.stderr.write(result.stderr)  # warnings that the author has to judge
 
 
 def _sumo_home() -> Path:

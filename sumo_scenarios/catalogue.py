@@ -1,4 +1,4 @@
-"""How scenarios are found: by the name of a bundled one, by folder, or by .sumocfg file."""
+"""Finding scenarios: by the name of a bundled one, by folder, or by .sumocfg file."""
 
 import difflib
 import os
@@ -11,13 +11,13 @@ from sumo_scenarios.errors import ScenarioError
 
 _ROOT = Path(__file__).parent
 _CONFIG_SUFFIX = ".sumocfg"
-_OLD_CONFIG_SUFFIX = ".cfg"  # name.sumo.cfg, as SUMO's users had it before
+_OLD_CONFIG_SUFFIX = ".cfg"  # suffix of name.sumo.cfg, an older custom of SUMO's users
 _SETTINGS_SUFFIX = ".giveway.toml"
 
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """A SUMO scenario and the giveway settings that stand beside it; all paths are absolute."""
+    """A SUMO scenario and the giveway settings beside it; all paths are absolute."""
 
     name: str  # the bundled name, or the stem of the .sumocfg
     folder: Path
@@ -105,7 +105,7 @@ def _description(settings_file: Path) -> str:
 
 
 def _unknown(text: str, bundled: tuple[str, ...]) -> str:
-    """Say what was not found, what may have been meant, and what there is."""
+    """Return a message on an unknown scenario: a similar name, and the known ones."""
     path = Path(text)
     if len(path.parts) > 1 or path.suffix == _CONFIG_SUFFIX:
         kind = f"{_CONFIG_SUFFIX} file" if path.suffix == _CONFIG_SUFFIX else "file or folder"
@@ -118,7 +118,7 @@ def _unknown(text: str, bundled: tuple[str, ...]) -> str:
 
 
 def _neighbours(path: Path) -> dict[str, str]:
-    """What could be a scenario in the folder of `path`: lower-case name to path."""
+    """Return possible scenarios in the folder of `path`: lower-case name to path."""
     try:
         entries = sorted(path.parent.iterdir())
         return {

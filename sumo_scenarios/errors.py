@@ -1,8 +1,8 @@
-"""What can go wrong here, one class per thing a user can do something about."""
+"""The errors of this package, one class per thing that a user can do something about."""
 
 
 class ScenarioError(Exception):
-    """A scenario cannot be found or read; the message says what was looked for and what to do."""
+    """A scenario cannot be found or read. The message tells what was expected and what to do."""
 
 
 class BuildError(ScenarioError):

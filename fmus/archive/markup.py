@@ -1,8 +1,8 @@
 """Reading an FMU's XML without the features of XML that a hostile file could use.
 
-A model description needs elements and attributes, no document type: whatever declares entities or
-refers to other files is refused at the first sight of ``<!DOCTYPE``, in any encoding, by the same
-parser (expat) that reads the rest.
+A model description needs elements and attributes, but no document type. A file that declares
+entities or refers to other files is refused as soon as ``<!DOCTYPE`` is met, in any encoding,
+by the same parser (expat) that reads the rest.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from xml.parsers import expat
 from fmus.errors import FmuArchiveError, FmuFileError
 from fmus.text import printable
 
-MAX_DEPTH: Final = 64  # of elements; FMI's own go to 6, annotations are free
+MAX_DEPTH: Final = 64  # largest depth of elements; FMI's own go to 6, annotations are free
 MAX_ELEMENTS: Final = 600_000  # 50,000 variables make 150,000
-MAX_TOKEN: Final = 4 << 20  # [bytes] of one tag; a list of dependencies can be long
-CHUNK: Final = 1 << 20  # [bytes]
-MAX_ATTRIBUTES: Final = 100  # of an element; FMI's have at most 20
+MAX_TOKEN: Final = 4 << 20  # [bytes] largest tag; a list of dependencies can be long
+CHUNK: Final = 1 << 20  # [bytes] size of one read
+MAX_ATTRIBUTES: Final = 100  # largest number per element; FMI's elements have at most 20
 
 
 @dataclass(slots=True)
@@ -50,12 +50,12 @@ class Element:
 
 
 def check_xml(data: bytes, where: str, root: str) -> None:
-    """Refuse an XML file that cannot be a model description; nothing of it is kept.
+    """Refuse an XML file that cannot be a model description, and keep nothing of it.
 
     Args:
-        data: the XML file.
-        where: named in errors.
-        root: the first element's name.
+        data: Contents of the XML file.
+        where: Name of the file in errors.
+        root: Name of the first element.
 
     Raises:
         FmuArchiveError: it has a document type or is too large.
@@ -65,7 +65,7 @@ def check_xml(data: bytes, where: str, root: str) -> None:
 
 
 def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
-    """The first element, with those descendants whose names are among ``kept``.
+    """Return the first element, with those descendants whose names are among ``kept``.
 
     Raises:
         FmuArchiveError: it has a document type or is too large.
@@ -99,10 +99,10 @@ class _LimitedParser:
     """One pass over a document that enforces the limits.
 
     Args:
-        where: of the document, for messages.
-        root: the first element's name.
-        start: called with the name, the attributes and the line of each element; None: not called.
-        end: called with its name.
+        where: Name of the document in messages.
+        root: Name of the first element.
+        start: Function that receives each element's name, attributes and line; None: not needed.
+        end: Function that receives each element's name at its end.
     """
 
     def __init__(

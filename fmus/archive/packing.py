@@ -11,7 +11,7 @@ def write_archive(path: Path, members: Mapping[str, bytes]) -> None:
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
         for name, data in members.items():
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-            info.create_system = 3  # Unix, wherever we are
+            info.create_system = 3  # Unix, on every platform
             info.external_attr = 0o100644 << 16
             archive.writestr(info, data)
 
@@ -26,7 +26,7 @@ def universal_library(*slices: bytes) -> bytes:
     """Join Mach-O libraries of different processors into one (what ``lipo -create`` does).
 
     The format is ``struct fat_header`` and ``struct fat_arch`` of Apple's <mach-o/fat.h>, big
-    endian; each slice repeats its processor's type and starts on a page of 16 KiB.
+    endian. Each slice repeats its processor's type and starts on a page of 16 KiB.
     """
     page = 1 << 14
     header = struct.pack(">II", 0xCAFEBABE, len(slices))

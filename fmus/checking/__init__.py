@@ -1,4 +1,4 @@
-"""Whether an FMU behaves like a vehicle: dry runs, the step-halving check, identification."""
+"""Tests of whether an FMU behaves like a vehicle: dry runs, step halving, identification."""
 
 from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict

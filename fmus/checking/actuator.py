@@ -1,4 +1,4 @@
-"""From the force commanded to the force at the wheels: dead time, then a first-order lag.
+"""The actuator's model: the commanded force is delayed, then passes a first-order lag.
 
     tau F'(t) + F(t) = u(t - d)
 
@@ -11,19 +11,19 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-NEGLIGIBLE = 1e-6  # share of a step: a shorter lag is ignored
+NEGLIGIBLE = 1e-6  # share of a step below which a lag is ignored
 
 
 def mean_force(
     force: NDArray[np.float64], step: float, lag: float, delay: float
 ) -> NDArray[np.float64]:
-    """(n,) [N] mean over each step of the force that acts, from what is commanded.
+    """Return the mean (n,) [N] over each step of the acting force, for a commanded force.
 
     Args:
-        force: (n,) commanded, held over each step [N]; nothing acts before.
-        step: [s].
-        lag: tau [s].
-        delay: d [s].
+        force: Commanded force (n,) [N], held over each step; 0 before the first step.
+        step: Duration of a step [s].
+        lag: Time constant tau of the lag [s].
+        delay: Dead time d [s].
     """
     if lag <= NEGLIGIBLE * step:
         lagged, impulse = None, np.concatenate(([0.0], np.cumsum(force) * step))
@@ -41,7 +41,7 @@ def mean_force(
     whole = int(delay / step)
     if whole >= force.size:
         return np.zeros_like(force)
-    part = delay - whole * step  # [s] of the step before that still acts
+    part = delay - whole * step  # [s] of the previous command that still acts
     shifted = np.zeros_like(impulse)
     shifted[whole + 1 :] = _impulse_at(force, lagged, impulse, lag, step - part)[
         : impulse.size - whole - 1
@@ -56,7 +56,7 @@ def _impulse_at(
     lag: float,
     into: float,
 ) -> NDArray[np.float64]:
-    """(n,) [N s] Y at ``into`` [s] after each step's begin."""
+    """Return the integral Y (n,) [N s] at ``into`` [s] after the beginning of each step."""
     there: NDArray[np.float64] = impulse[:-1] + force * into
     if lagged is not None:
         there += (lagged[:-1] - force) * lag * -np.expm1(-into / lag)

@@ -14,13 +14,13 @@ from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
 from fmus.isolation import processes_reused
 from fmus.profile.vehicle_profile import VehicleProfile
 
-DEFAULT_MASS = 1000.0  # [kg] M of the controllers' model, where nobody says otherwise
-GENTLE = 3.0  # [m/s2] of the manoeuvres, by the controller's model
-FASTEST_START = 4.0  # [m/s] of the rolling start where the run's own is 0
-DRIVE, COAST, BRAKE = 3.0, 3.0, 5.0  # [s]
+DEFAULT_MASS = 1000.0  # [kg] M of the controllers' model if no mass is given
+GENTLE = 3.0  # [m/s2] acceleration of the manoeuvres, by the controller's model
+FASTEST_START = 4.0  # [m/s] speed of the rolling start if the run starts at 0
+DRIVE, COAST, BRAKE = 3.0, 3.0, 5.0  # [s] durations of the phases
 
 _DRIVES = ("idle", "response", "again", "rolling", "full")
-_NAMES = {  # of the finding of a drive that failed
+_NAMES = {  # name of the finding about a drive that failed
     "idle": "stands still",
     "response": "drives",
     "again": "reproducible",
@@ -34,10 +34,10 @@ class CheckReport:
     """The result of a check.
 
     Attributes:
-        findings: in the order of the tests.
-        traces: of the drives that ran, by name.
-        expected: what was checked against.
-        convergence: of the step-halving test; None: it was not run.
+        findings: Findings in the order of the tests.
+        traces: Traces of the drives that ran, by name.
+        expected: Properties that were expected.
+        convergence: Convergence of the step-halving test; None: it was not run.
     """
 
     expected: Expected
@@ -47,7 +47,7 @@ class CheckReport:
 
     @property
     def passed(self) -> bool:
-        """Whether no test failed."""
+        """Return whether no test failed."""
         return all(finding.verdict != "fail" for finding in self.findings)
 
 
@@ -67,22 +67,23 @@ def check(
     start_speed: float = FASTEST_START,
     progress: Callable[[str], None] | None = None,
 ) -> CheckReport:
-    """Dry-run a vehicle; errors of the FMU become findings.
+    """Dry-run a vehicle. Errors of the FMU become findings.
 
     Args:
-        opener: makes the vehicle.
-        step_size: of the run [s].
-        fmu_step: of the FMU itself [s]; None: ``step_size``.
-        unguarded: makes the vehicle without guards, to see what is wrong if they stop it.
-        profile: of the vehicle, for what to change in it.
-        mass: M of the controller's model, and of the vehicle [kg]; None: nobody knows, and the
-            controller's is that of the profile's [model], else 1000 kg.
-        vehicle_class: of SUMO, which tells roughly what the vehicle weighs.
-        friction: alpha of it [N.s/m].
-        horizon: of the MPC [steps].
-        force_limit: u_max [N].
-        start_speed: of the rolling start [m/s].
-        progress: told the name of each drive before it begins.
+        opener: Function that opens the vehicle.
+        step_size: Step size of the run [s].
+        fmu_step: Step of the FMU itself [s]; None: ``step_size``.
+        unguarded: Function that opens the vehicle without guards, for when they
+            stop it.
+        profile: Profile of the vehicle, for what to change in it.
+        mass: Mass [kg] of the vehicle and M of the controller's model; None: unknown. Then the
+            controller's M is that of the profile's [model], or 1000 kg without one.
+        vehicle_class: Vehicle class of SUMO, which tells roughly what the vehicle weighs.
+        friction: Friction alpha of the controller's model [N.s/m].
+        horizon: Horizon of the MPC [steps].
+        force_limit: Largest force u_max [N].
+        start_speed: Start speed of the rolling start [m/s].
+        progress: Function that receives the name of each drive before it begins.
     """
     known = known_masses(profile, mass, vehicle_class)
     mass = DEFAULT_MASS if mass is None else mass
@@ -99,7 +100,7 @@ def check(
         _halve(report, opener, fmu_step or step_size)
     traces = report.traces
     if "response" in traces:
-        report.findings.append(observe.pace(traces["response"]))
+        report.findings.append(observe.time_per_step(traces["response"]))
     if traces:
         report.findings.append(observe.warnings(traces))
     return report
@@ -108,7 +109,7 @@ def check(
 def _drive_all(
     report: CheckReport, opener: Opener, unguarded: Opener | None, tell: Callable[[str], None]
 ) -> bool:
-    """Do the drives in turn; False: after what happened the step-halving test is of no use."""
+    """Do the drives in turn, and return whether the step-halving test still makes sense."""
     for name in _DRIVES:
         tell(name)
         attempt = _attempt(name, report.expected, opener)
@@ -124,7 +125,7 @@ def _drive_all(
         if name == "response" and unguarded is not None and isinstance(error, FmuOutputError):
             _look_closer(report, unguarded)
         if name != "rolling" or isinstance(error, FmuCrashError):
-            # Too coarse steps may show as a failing output or step: halving them tells.
+            # Steps that are too coarse may show as a failing output or step: halving them tells.
             may_diverge = isinstance(error, FmuOutputError | FmuStepError)
             return may_diverge and not isinstance(error, FmuCrashError)
     return True
@@ -136,7 +137,7 @@ def _attempt(name: str, expected: Expected, opener: Opener) -> Attempt:
 
 
 def _look_closer(report: CheckReport, unguarded: Opener) -> None:
-    """Repeat the response that a guard stopped without guards, to see what is wrong.
+    """Repeat without guards the response that a guard has stopped, to see what is wrong.
 
     Units in which a force is a thousand times too strong need a thousandth of it.
     """

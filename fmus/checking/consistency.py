@@ -1,4 +1,4 @@
-"""Whether the outputs agree with each other; a constant factor between them is a wrong unit."""
+"""Agreement of the outputs with each other; a constant factor between two is a wrong unit."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from fmus.checking.manoeuvres import Trace
 from fmus.profile.advice import gain_line
 from fmus.profile.vehicle_profile import VehicleProfile
 
-RATIO_TOLERANCE = 0.02  # of a factor between two quantities that should be the same
+RATIO_TOLERANCE = 0.02  # largest relative difference of two factors that should be the same
 
 SPEED_UNITS = (("km/h", 3.6), ("mph", 1 / 0.44704), ("kn", 3600 / 1852), ("ft/s", 1 / 0.3048))
 _LENGTH_UNITS = (("km", 1e-3), ("mm", 1e3), ("cm", 1e2), ("ft", 1 / 0.3048), ("mi", 1 / 1609.344))
@@ -91,7 +91,7 @@ def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
 def _acceleration_ratio(response: Trace) -> tuple[float, float]:
     """The factor from the speed's slope to the acceleration, and the misfit.
 
-    Some FMUs give the mean over the step, others the value at its end: whichever fits better.
+    Some FMUs give the mean over the step, others the value at its end. The better fit counts.
     """
     v, h = response.speed, response.step_size
     changes = np.flatnonzero(np.diff(response.force)) + 1

@@ -1,4 +1,4 @@
-"""What a run will assume of the checked vehicle."""
+"""The assumptions of a run about the checked vehicle."""
 
 from dataclasses import dataclass
 
@@ -9,17 +9,17 @@ from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 @dataclass(frozen=True)
 class Expected:
-    """What the run will assume of the vehicle.
+    """The assumptions of a run about the vehicle.
 
     Attributes:
-        mass: M of the controller's model [kg].
-        friction: alpha of it [N.s/m].
-        horizon: of the MPC [steps].
-        start_speed: of the run [m/s].
-        force: of the manoeuvres [N].
-        largest_force: u_max [N].
-        profile: of the vehicle; None: the FMU is ours.
-        known: what the vehicle weighs, as far as anybody has said.
+        mass: Mass M of the controller's model [kg].
+        friction: Friction alpha of that model [N.s/m].
+        horizon: Horizon of the MPC [steps].
+        start_speed: Start speed of the run [m/s].
+        force: Force of the manoeuvres [N].
+        largest_force: Largest force u_max [N].
+        profile: Profile of the vehicle; None: the FMU is ours.
+        known: Masses of the vehicle that the user or the profile states.
     """
 
     mass: float

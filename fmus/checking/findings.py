@@ -11,11 +11,11 @@ class Finding:
     """The outcome of one test.
 
     Attributes:
-        name: of the test, a few words.
-        verdict: "skip" where the test does not apply, or could not be tried any more; "ask" where
+        name: Name of the test, a few words.
+        verdict: Result; "skip" where the test does not apply or has become impossible, "ask" where
             only the user can tell.
-        text: what was found, with numbers and units; one line.
-        remedy: what to do, ideally the line to add to the profile; empty if nothing.
+        text: Result with numbers and units, one line.
+        remedy: Advice, ideally the line to add to the profile; empty if there is none.
     """
 
     name: str

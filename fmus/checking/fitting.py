@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from fmus.checking.actuator import mean_force
 from fmus.checking.manoeuvres import Trace
 
-STANDSTILL = 0.05  # [m/s] slower steps are not fitted: brakes may hold the vehicle
-SETTLING = 1.0  # [s] at the start are not fitted: earlier forces are unknown
-LONGEST_LAG = 2.0  # [s] of the search
-LONGEST_DELAY = 1.0  # [s] of the search
-FINENESS = 1e-3  # of a step, to which lag and dead time are found
+STANDSTILL = 0.05  # [m/s] speed below which steps are not fitted: brakes may hold the vehicle
+SETTLING = 1.0  # [s] first part of a drive that is not fitted: earlier forces are unknown
+LONGEST_LAG = 2.0  # [s] upper bound of the search
+LONGEST_DELAY = 1.0  # [s] upper bound of the search
+FINENESS = 1e-3  # resolution of lag and dead time, as a share of a step
 NOTICEABLE = 0.02  # share by which a lag or dead time must improve the residual
-EXACT = 1e-9  # [m/s2] a residual that is mere rounding
+EXACT = 1e-9  # [m/s2] residual that is mere rounding
 NORMAL_95 = 1.96  # half width of the interval of 95 %, in standard errors
 
 
@@ -30,10 +30,10 @@ class Drive:
     """A trace made ready for the fit.
 
     Attributes:
-        force: (n,) commanded [N].
-        speed: (n + 1,) [m/s].
-        step: [s].
-        used: (n,) which steps count.
+        force: Commanded force (n,) [N].
+        speed: Speed (n + 1,) [m/s].
+        step: Duration of a step [s].
+        used: Mask (n,) of the steps that count.
     """
 
     force: NDArray[np.float64]
@@ -43,16 +43,16 @@ class Drive:
 
     @property
     def acceleration(self) -> NDArray[np.float64]:
-        """(n,) mean over each step [m/s2]."""
+        """Mean acceleration (n,) over each step [m/s2]."""
         return np.diff(self.speed) / self.step
 
 
 def prepare(trace: Trace, limits: tuple[float, float] = (np.inf, np.inf)) -> Drive:
-    """Mark the steps that the fit may use: not the first ones, no standstill, no saturation.
+    """Mark the steps that the fit may use: moving, unsaturated, and after the first second.
 
     Args:
-        trace: of a drive.
-        limits: largest drive and brake force that the vehicle carries out [N].
+        trace: Trace of a drive.
+        limits: Largest drive and brake force that the vehicle carries out [N].
     """
     moving = np.minimum(trace.speed[:-1], trace.speed[1:]) > STANDSTILL
     settled = np.arange(trace.force.size) * trace.step_size >= SETTLING - 1e-9
@@ -68,9 +68,9 @@ class Fit:
     """M v' + alpha v = F, and the lag and dead time of the force.
 
     Attributes:
-        intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
-        residual: root mean square of what is left of the acceleration [m/s2].
-        r_squared: share of the acceleration's variation that is explained.
+        intervals: Half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
+        residual: Root mean square of the unexplained acceleration [m/s2].
+        r_squared: Share of the acceleration's variation that is explained.
     """
 
     mass: float
@@ -82,19 +82,19 @@ class Fit:
     r_squared: float
 
     def acceleration(self, drive: Drive) -> NDArray[np.float64]:
-        """(n,) of the model under the measured speed [m/s2]."""
+        """Return the model's acceleration (n,) [m/s2] at the measured speed."""
         acting = mean_force(drive.force, drive.step, self.lag, self.delay)
         return (acting - self.friction * drive.speed[:-1]) / self.mass
 
 
 def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
-    """The model that leaves the least of the accelerations; None where nothing can be fitted.
+    """Fit the model to the drives with least squares, or return None with fewer than ten steps.
 
     A lag or dead time is reported only if it improves the fit noticeably.
 
     Args:
-        drives: what was measured.
-        actuator: search for lag and dead time.
+        drives: Measured drives.
+        actuator: True: search for lag and dead time, too.
     """
     if sum(int(drive.used.sum()) for drive in drives) < 10:
         return None
@@ -116,7 +116,10 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
 def least_squares(
     X: NDArray[np.float64], y: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The coefficients of X that come closest to y, times the scale of X's columns; the scale."""
+    """Return the coefficients of X that come closest to y, times the scale of X's columns.
+
+    The scale is returned, too.
+    """
     scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
     scaled, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
     return scaled, scale
@@ -128,7 +131,7 @@ def resistance_rows(
     """The equations M v' + alpha v + c_0 + c_2 v |v| = F, one for each step that counts.
 
     Returns:
-        (m, 4) what 1 / M, alpha / M, c_0 / M and c_2 / M are multiplied with, and (m,) v' [m/s2].
+        Coefficients (m, 4) of 1 / M, alpha / M, c_0 / M and c_2 / M, and v' (m,) [m/s2].
     """
     acting = [mean_force(d.force, d.step, lag, delay)[d.used] for d in drives]
     v = np.concatenate([d.speed[:-1][d.used] for d in drives])
@@ -137,7 +140,7 @@ def resistance_rows(
 
 
 def solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
-    """Linear least squares in theta = (1 / M, alpha / M)."""
+    """Solve the linear least-squares problem in theta = (1 / M, alpha / M)."""
     rows, targets, groups = [], [], []
     for number, drive in enumerate(drives):
         acting = mean_force(drive.force, drive.step, lag, delay)[drive.used]
@@ -175,9 +178,10 @@ def _intervals(
     mass: float,
     friction: float,
 ) -> tuple[float, float]:
-    """95 % half widths of M and alpha; errors may be correlated within a drive, not between drives.
+    """Return the 95 % half widths of M and alpha.
 
-    The covariance is that of clusters (Liang & Zeger 1986), carried to M and alpha to first order.
+    Errors may be correlated within a drive, but not between drives. The covariance is that of
+    clusters (Liang & Zeger 1986), carried to M and alpha to first order.
     """
     scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
     Z = X / scale
@@ -196,7 +200,7 @@ def _intervals(
 
 
 def _search(cost: Callable[[float, float], float], step: float) -> tuple[float, float]:
-    """Lag and dead time of least cost: a coarse grid, then ever finer ones about its best."""
+    """Find lag and dead time of least cost on a coarse grid, then on ever finer ones."""
     lags = [0.0, *np.geomspace(step / 4, LONGEST_LAG, 9)]
     delays = [0.0, *np.geomspace(step / 2, LONGEST_DELAY, 9)]
     best = min(((a, b) for a in lags for b in delays), key=lambda pair: cost(*pair))
@@ -215,7 +219,7 @@ def _search(cost: Callable[[float, float], float], step: float) -> tuple[float, 
 
 
 def _line_search(cost: Callable[[float, float], float], axis: int) -> tuple[float, float]:
-    """The same search with only the lag (axis 0) or only the dead time (axis 1)."""
+    """Do the same search with only the lag (axis 0) or only the dead time (axis 1)."""
 
     def pair(value: float) -> tuple[float, float]:
         return (value, 0.0) if axis == 0 else (0.0, value)

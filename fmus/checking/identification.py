@@ -1,4 +1,4 @@
-"""M and alpha of a vehicle from step tests, so that the MPC's model is the vehicle's.
+"""Identification: step tests yield M and alpha, so that the MPC's model fits the vehicle.
 
 The vehicle is taken as the controller sees it: force in, position and speed out. For a vehicle
 driven by an acceleration, a speed or pedals, this includes the inverse map.
@@ -25,12 +25,12 @@ from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
-LEVELS = (0.1, 0.25, 0.5, 1.0)  # of the largest force of the tests
-SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] at the start of the tests
-HARDEST = 8.0  # [m/s2] no test drives or brakes harder
-LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s]
-NO_FIT = 0.3  # of R squared, below which there is no model
-VALIDATION = (  # of the largest force, each held for HELD; no level of the tests
+LEVELS = (0.1, 0.25, 0.5, 1.0)  # shares of the largest force of the tests
+SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] speeds at the start of the tests
+HARDEST = 8.0  # [m/s2] largest deceleration or acceleration of a test
+LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s] durations of the phases
+NO_FIT = 0.3  # R squared below which there is no model
+VALIDATION = (  # shares of the largest force, each held for HELD; no level of the tests
     0.3, 0.6, -0.2, 0.15, -0.4, 0.45, 0.8, -0.6, 0.0, 0.2, -0.15, 0.7, -0.3, 0.35, -0.8, 0.55,
     0.05, -0.1, 0.65, -0.5, 0.4, -0.05, 0.0, -0.25,
 )  # fmt: skip
@@ -42,16 +42,16 @@ class Identification:
     """A vehicle's model, its accuracy, and the drives behind it.
 
     Attributes:
-        model: for the profile.
+        model: Model for the profile.
         intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
-        drive_limit: largest drive force that the vehicle carries out [N]; None: not reached.
-        brake_limit: largest brake force that arrives [N]; None: not reached.
-        largest_force: of the tests [N].
-        fit: M and alpha with lag and dead time.
-        tests: the drives that were fitted.
-        validation: the drive that was not fitted.
-        remarks: what the user should know, one line each.
-        sides: driving and braking apart.
+        drive_limit: Largest drive force that the vehicle carries out [N]; None: not reached.
+        brake_limit: Largest brake force that arrives [N]; None: not reached.
+        largest_force: Largest force of the tests [N].
+        fit: Fitted M and alpha with lag and dead time.
+        tests: Drives that were fitted.
+        validation: Drive that was not fitted.
+        remarks: Remarks for the user, one line each.
+        sides: Results for driving and braking apart.
     """
 
     model: FittedModel
@@ -89,14 +89,14 @@ def identify(
     """Find M, alpha, lag and dead time of a vehicle by step tests.
 
     Args:
-        opener: makes the vehicle.
-        path: of the FMU, for messages.
-        step_size: of the MPC, dt [s].
-        horizon: of the MPC, N [steps].
-        force_limit: u_max of the MPC [N]; no test uses more.
-        profile: of the vehicle, for what to change in it.
-        speeds: from which the tests start [m/s].
-        progress: told how many of the drives are done, and of how many.
+        opener: Function that opens the vehicle.
+        path: Path of the FMU, for messages.
+        step_size: Step size of the MPC, dt [s].
+        horizon: Horizon of the MPC, N [steps].
+        force_limit: Largest force u_max of the MPC [N]; no test uses more.
+        profile: Profile of the vehicle, for what to change in it.
+        speeds: Speeds from which the tests start [m/s].
+        progress: Function that receives the numbers of drives done and of all drives.
 
     Raises:
         FmuOutputError: the vehicle does not respond to forces like a vehicle.
@@ -154,7 +154,7 @@ _NOT_A_VEHICLE = "it does not respond to forces like a vehicle"
 def _drive_tests(
     starter: _Starter, largest: float, speeds: Sequence[float], one_more: Callable[[], None]
 ) -> list[list[Trace]]:
-    """By level of force, from weak to strong, one trace for each speed."""
+    """Drive the tests: a list of traces per level of force, from weak to strong, one per speed."""
     tests = []
     for level in LEVELS:
         group = []
@@ -177,7 +177,7 @@ def _largest_force(
     force_limit: float,
     step_size: float,
 ) -> float:
-    """The force [N] of the hardest tests: what the limit and a road vehicle's tyres allow."""
+    """Return the force [N] of the hardest tests, within the limit and a road vehicle's grip."""
     share = 0.05
     while True:
         force = share * force_limit
@@ -206,10 +206,10 @@ def _largest_force(
 
 @dataclass
 class _Starter:
-    """Starts tests at a speed: by the FMU's parameter for it, or by driving up to it."""
+    """Starts tests at a speed, by the FMU's parameter for it or by accelerating up to it."""
 
     opener: Opener
-    force: float  # [N] to drive up with
+    force: float  # [N] force of the acceleration
     highest: float  # [m/s]
 
     def __post_init__(self) -> None:
@@ -226,7 +226,7 @@ class _Starter:
 
 
 def _test(force: float, speed: float, top: float) -> list[Phase]:
-    """Drive and brake with one force, about one speed."""
+    """Return the phases of a test that drives and brakes with one force, around one speed."""
     return [
         Phase(0.0, LEAD_IN),
         Phase(force, STEP, below=top),
@@ -237,7 +237,7 @@ def _test(force: float, speed: float, top: float) -> list[Phase]:
 
 
 def _validation(force: float, fastest: float) -> list[Phase]:
-    """Changing forces that keep the vehicle moving, and a stop at the end."""
+    """Return phases of changing force that keep the vehicle moving, and a stop at the end."""
     changes = [
         Phase(share * force, HELD, above=0.5 if share < 0.0 else -np.inf,
               below=fastest if share > 0.0 else np.inf)
@@ -249,7 +249,7 @@ def _validation(force: float, fastest: float) -> list[Phase]:
 def _rated(
     found: Fit, validation: Trace, limits: tuple[float, float], step_size: float, horizon: int
 ) -> FittedModel:
-    """The model with its errors in the drive that was held out."""
+    """Return the model with its errors in the drive that was held out."""
     held_out = prepare(validation, limits)
     ahead = position_errors(validation, found.mass, found.friction, horizon)
     one_step = speed_errors(validation, found.mass, found.friction)

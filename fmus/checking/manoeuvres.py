@@ -1,4 +1,4 @@
-"""Scripted drives: a fresh vehicle, forces in, and the trace of what it did out."""
+"""Scripted drives: a fresh vehicle receives forces, and its motion is recorded as a trace."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def opener_of(
     start_values: Mapping[str, Value] | None = None,
     isolated: bool | None = None,
 ) -> Opener:
-    """Opens fresh vehicles of one FMU and profile; their FMU's own step can be chosen.
+    """Return an opener of fresh vehicles with one FMU and profile; it takes the FMU's own step.
 
     Args:
-        path: the .fmu file.
-        step_size: for which a force is held [s].
-        profile: of the vehicle.
-        start_values: further start values by variable name.
-        isolated: in a process of its own; None: unless it is a shipped FMU.
+        path: Path of the .fmu file.
+        step_size: Step size for which a force is held [s].
+        profile: Profile of the vehicle.
+        start_values: Further start values by variable name.
+        isolated: True: run it in a process of its own; None: unless it is a shipped FMU.
     """
 
     def open_with(fmu_step: float | None) -> Vehicle:
@@ -68,7 +68,7 @@ class Phase:
     """A constant force, held for a time or until the speed reaches a bound."""
 
     force: float  # [N]
-    duration: float  # [s] at most
+    duration: float  # [s] longest duration
     above: float = -np.inf  # [m/s] ends when the speed falls below
     below: float = np.inf  # [m/s] ends when the speed rises above
 
@@ -78,13 +78,13 @@ class Trace:
     """The record of a drive: n steps, n + 1 instants.
 
     Attributes:
-        step_size: of the vehicle [s].
-        force: (n,) held over each step [N].
-        position: (n + 1,) [m].
-        speed: (n + 1,) [m/s].
-        acceleration: (n + 1,) as the vehicle reports it [m/s2].
-        cost: (n,) wall clock of each step [s].
-        warnings: of the vehicle.
+        step_size: Step size of the vehicle [s].
+        force: Force (n,) held over each step [N].
+        position: Position (n + 1,) [m].
+        speed: Speed (n + 1,) [m/s].
+        acceleration: Acceleration (n + 1,) [m/s2], as the vehicle reports it.
+        cost: Wall-clock time (n,) of each step [s].
+        warnings: Warnings of the vehicle.
     """
 
     step_size: float
@@ -97,11 +97,11 @@ class Trace:
 
     @property
     def time(self) -> NDArray[np.float64]:
-        """(n + 1,) [s]."""
+        """Instants (n + 1,) [s]."""
         return np.asarray(np.arange(self.speed.size) * self.step_size, np.float64)
 
     def same_motion(self, other: Trace) -> bool:
-        """Whether every bit of position, speed and acceleration is the other's."""
+        """Return whether position, speed and acceleration equal the other's bit by bit."""
         return all(
             np.array_equal(getattr(self, name), getattr(other, name))
             for name in ("position", "speed", "acceleration")
@@ -118,10 +118,10 @@ def drive(
     """Drive a fresh vehicle through phases of constant force.
 
     Args:
-        opener: makes the vehicle.
-        phases: one after the other.
-        speed: at the start [m/s].
-        fmu_step: of the FMU itself [s]; None: as its profile says.
+        opener: Function that opens the vehicle.
+        phases: Phases, one after the other.
+        speed: Speed at the start [m/s].
+        fmu_step: Step of the FMU itself [s]; None: as its profile says.
 
     Raises:
         FmuError: the vehicle cannot be opened or started, or fails on the way.
@@ -138,7 +138,7 @@ class Attempt:
     """A drive up to its end or failure."""
 
     trace: Trace | None  # None: the vehicle did not start
-    error: FmuError | None  # that ended the drive
+    error: FmuError | None  # error that ended the drive
 
 
 def try_to_drive(
@@ -148,7 +148,7 @@ def try_to_drive(
     speed: float = 0.0,
     fmu_step: float | None = None,
 ) -> Attempt:
-    """The same as :func:`drive`, but a failure is returned, with the trace up to it."""
+    """Do the same as :func:`drive`, but return a failure together with the trace up to it."""
     return try_to_drive_from((speed,), opener, phases, fmu_step=fmu_step)[0]
 
 
@@ -159,9 +159,9 @@ def try_to_drive_from(
     *,
     fmu_step: float | None = None,
 ) -> list[Attempt]:
-    """The same as :func:`try_to_drive` from several speeds in turn, until one drive fails.
+    """Do the same as :func:`try_to_drive` from several speeds in turn, until one drive fails.
 
-    All are of one vehicle that starts anew each time: its FMU is unpacked once.
+    One vehicle starts anew for each speed, so that its FMU is unpacked only once.
     """
     attempts: list[Attempt] = []
     vehicle: Vehicle | None = None
@@ -199,7 +199,7 @@ def _hold(vehicle: Vehicle, phase: Phase, log: _DriveLog) -> None:
 
 
 class _DriveLog:
-    """Collects the rows of a drive."""
+    """Collects the samples of a drive."""
 
     def __init__(self, vehicle: Vehicle) -> None:
         self._vehicle = vehicle

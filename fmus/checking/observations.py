@@ -1,4 +1,4 @@
-"""The tests of a check: each function examines traces and returns one finding."""
+"""The tests of a check. Each function examines traces and returns one finding."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,19 +14,19 @@ from fmus.checking.saturation import ResistanceModel, saturation
 from fmus.checking.scale import GROSS, gross_error
 from fmus.profile.advice import gain_line
 
-MOVES = 0.02  # [m/s] a larger change of speed is a motion
-CREEPS = 0.1  # [m/s] allowed in the wrong direction
+MOVES = 0.02  # [m/s] change of speed above which the vehicle moves
+CREEPS = 0.1  # [m/s] tolerated speed in the wrong direction
 START_TOLERANCE = 0.05  # [m/s]
-MASS_TOLERANCE = 0.05  # of the controller's M
-POSITION_TOLERANCE = 0.1  # [m] at the horizon of the controller
-NO_VEHICLE = 0.3  # of R squared: below, M and alpha say nothing
-WEAK = 2.0  # [m/s2] a force limit that brakes no harder is hardly one of this vehicle
+MASS_TOLERANCE = 0.05  # relative, of the controller's M
+POSITION_TOLERANCE = 0.1  # [m] tolerance at the controller's horizon
+NO_VEHICLE = 0.3  # R squared below which M and alpha say nothing
+WEAK = 2.0  # [m/s2] deceleration below which a force limit hardly fits the vehicle
 FIRM = 6.0  # [m/s2] hard braking of a loaded truck on a dry road
-LATE = 2.0  # steps of lag and dead time that are worth a warning
+LATE = 2.0  # steps of lag and dead time from which on a warning is given
 
 
 def start_speed(rolling: Trace, expected: Expected) -> Finding:
-    """Is the vehicle as fast at the start as it was asked to be?"""
+    """Test whether the vehicle starts with the speed that was asked for."""
     name, wanted, got = "start speed", expected.start_speed, float(rolling.speed[0])
     if abs(got - wanted) <= START_TOLERANCE:
         return Finding(name, "pass", f"{got:.3f} m/s, as asked")
@@ -43,7 +43,7 @@ def start_speed(rolling: Trace, expected: Expected) -> Finding:
 
 
 def reproducible(one: Trace, other: Trace) -> Finding:
-    """Do two fresh instances do the same, bit for bit?"""
+    """Test whether two fresh instances do the same, bit by bit."""
     name = "reproducible"
     if one.same_motion(other):
         return Finding(name, "pass", "two runs, the same bits")
@@ -55,7 +55,7 @@ def reproducible(one: Trace, other: Trace) -> Finding:
 
 
 def idles(idle: Trace) -> Finding:
-    """Does it stay where it is when nothing pushes?"""
+    """Test whether the vehicle stays at its place without a force."""
     name, fastest = "stands still", float(idle.speed[np.argmax(np.abs(idle.speed))])
     if abs(fastest) <= MOVES:
         return Finding(name, "pass", "no force, no motion")
@@ -71,7 +71,7 @@ def idles(idle: Trace) -> Finding:
 
 
 def drives(response: Trace, expected: Expected) -> Finding:
-    """Does a force forwards drive it forwards?"""
+    """Test whether a forward force drives the vehicle forwards."""
     name = "drives"
     driven = response.force > 0.0
     end = int(np.flatnonzero(driven)[-1]) + 1
@@ -94,7 +94,7 @@ def drives(response: Trace, expected: Expected) -> Finding:
 
 
 def brakes(rolling: Trace, expected: Expected) -> Finding:
-    """Does a force backwards slow it down, and hold it in the end?"""
+    """Test whether a backward force slows the vehicle down and finally holds it."""
     name = "brakes"
     first = int(np.flatnonzero(rolling.force < 0.0)[0])
     before, slowest = float(rolling.speed[first]), float(rolling.speed[first:].min())
@@ -123,7 +123,7 @@ def brakes(rolling: Trace, expected: Expected) -> Finding:
 
 
 def coasts(response: Trace, expected: Expected) -> Finding:
-    """Does it roll out, slower and slower, without any force?"""
+    """Test whether the vehicle rolls ever more slowly without a force."""
     name = "coasts"
     edges = np.flatnonzero(np.diff(response.force)) + 1
     begin, end = int(edges[0]), int(edges[1])
@@ -142,12 +142,12 @@ def coasts(response: Trace, expected: Expected) -> Finding:
 
 
 def quick_fit(traces: Sequence[Trace]) -> Fit | None:
-    """M, alpha and the actuator from the drives of a check."""
+    """Fit M, alpha and the actuator from the drives of a check."""
     return fit([prepare(trace) for trace in traces])
 
 
 def matches_model(model: Fit | None, response: Trace, expected: Expected) -> Finding:
-    """Do the controller's M and alpha describe this vehicle?"""
+    """Test whether the controller's M and alpha describe this vehicle."""
     name = "controller's model"
     if model is None or model.r_squared < NO_VEHICLE:
         how = "" if model is None else f" (R² = {model.r_squared:.2f})"
@@ -198,15 +198,15 @@ def _lead_remedy(lead: float) -> str:
 
 
 def _speed_unit(expected: Expected) -> str:
-    """The unit that the profile gives to the speed; empty if the FMU's own counts."""
+    """Return the unit that the profile gives to the speed; empty if the FMU's own counts."""
     return (expected.profile.outputs.speed.unit or "") if expected.profile else ""
 
 
 def _missing_lead(mass: float, step: float, expected: Expected) -> float | None:
-    """The time constant [s] of a speed controller whose profile names none.
+    """Return the time constant [s] that a speed controller's profile lacks, or None.
 
-    With a lead T of one step, v' = (v_set - v) / tau = T / tau (u - alpha v) / M: it seems tau / T
-    times as heavy as the inverse map's M.
+    With a lead T of one step, v' = (v_set - v) / tau = T / tau (u - alpha v) / M. Therefore the
+    vehicle seems tau / T times as heavy as M of the inverse map.
     """
     setpoint = expected.profile.inputs.speed_setpoint if expected.profile else None
     if setpoint is None or setpoint.lead is not None or expected.profile is None:
@@ -218,7 +218,7 @@ def _missing_lead(mass: float, step: float, expected: Expected) -> float | None:
 def actuator_limits(
     model: Fit | None, response: Trace, full: Trace, rolling: Trace, expected: Expected
 ) -> Finding:
-    """Do the largest forces of the controller arrive, and are they enough?"""
+    """Test whether the controller's largest forces arrive and suffice."""
     name, largest = "force limits", expected.largest_force
     if model is None:
         return Finding(name, "skip", "not to be said without a model")
@@ -228,7 +228,7 @@ def actuator_limits(
     lowest, hardest = min(drive, brake), largest / resisted.mass
     if not np.isfinite(lowest):
         lagging = _missing_lead(resisted.mass, response.step_size, expected) is not None
-        if hardest >= WEAK or lagging:  # then a lead is what is missing
+        if hardest >= WEAK or lagging:  # a lead is missing then
             return Finding(name, "pass", f"{largest:.0f} N drive as they should")
         enough = float(f"{FIRM * resisted.mass:.1g}")
         return Finding(
@@ -244,7 +244,7 @@ def actuator_limits(
 
 
 def actuator_lag(model: Fit | None, step: float, expected: Expected) -> Finding:
-    """Do forces act late?"""
+    """Test whether forces act late."""
     name = "actuator lag"
     if model is None:
         return Finding(name, "skip", "not to be said without a model")
@@ -260,8 +260,8 @@ def actuator_lag(model: Fit | None, step: float, expected: Expected) -> Finding:
     )  # fmt: skip
 
 
-def pace(response: Trace) -> Finding:
-    """How long does a step take?"""
+def time_per_step(response: Trace) -> Finding:
+    """Measure how long a step takes."""
     name, cost = "time per step", 1e6 * response.cost
     text = f"{np.median(cost):.0f} us (median), {np.quantile(cost, 0.95):.0f} us (95 %)"
     if np.median(response.cost) <= response.step_size:
@@ -270,7 +270,7 @@ def pace(response: Trace) -> Finding:
 
 
 def warnings(traces: Mapping[str, Trace]) -> Finding:
-    """Did the guards warn of anything?"""
+    """Report the warnings of the guards."""
     seen = list(dict.fromkeys(text for trace in traces.values() for text in trace.warnings))
     if not seen:
         return Finding("warnings", "pass", "none")
@@ -279,5 +279,5 @@ def warnings(traces: Mapping[str, Trace]) -> Finding:
 
 
 def _small(value: float) -> str:
-    """Two digits; mere rounding is written as 0."""
+    """Return the value with two digits; mere rounding becomes 0."""
     return f"{value:.2g}" if value > 1e-9 else "0"

@@ -1,4 +1,4 @@
-"""The errors of the MPC's prediction, which knows M and alpha only, in a drive."""
+"""The errors of the MPC's prediction in a drive; the MPC knows M and alpha only."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from fmus.checking.manoeuvres import Trace
 
 
 def speed_errors(trace: Trace, mass: float, friction: float) -> NDArray[np.float64]:
-    """(m,) [m/s] one step ahead, while the vehicle moves."""
+    """Return the errors (m,) [m/s] of the speed one step ahead, while the vehicle moves."""
     h, v, v_next = trace.step_size, trace.speed[:-1], trace.speed[1:]
     predicted = v + h / mass * (trace.force - friction * v)
     moving = np.minimum(v, v_next) > STANDSTILL
@@ -18,10 +18,11 @@ def speed_errors(trace: Trace, mass: float, friction: float) -> NDArray[np.float
 def position_errors(
     trace: Trace, mass: float, friction: float, horizon: int
 ) -> NDArray[np.float64]:
-    """(m,) [m] ``horizon`` steps ahead, from every instant; predicted speeds stop at 0.
+    """Return the errors (m,) [m] of the position ``horizon`` steps ahead, from every instant.
 
-    Forward Euler, as the MPC predicts (Yang & Özgüner 2019, eqs. (2) and (3)). Everything
-    after a vehicle rolls backwards is left out, because the MPC never wants that.
+    The prediction is forward Euler, like the MPC's (Yang & Özgüner 2019, eqs. (2) and (3)), with
+    speeds held at 0. The drive is cut where the vehicle rolls backwards, because the MPC never
+    wants that.
     """
     backwards = np.flatnonzero(trace.speed < -STANDSTILL)
     end = int(backwards[0]) if backwards.size else trace.force.size
@@ -38,7 +39,7 @@ def position_errors(
 def simulate(
     force: NDArray[np.float64], step: float, mass: float, friction: float, speed: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(n + 1,) position [m] and speed [m/s] of the MPC's model from ``speed`` on, held at 0."""
+    """Return position [m] and speed [m/s] (n + 1,) of the MPC's model from ``speed`` on."""
     position, velocity = np.zeros(force.size + 1), np.empty(force.size + 1)
     velocity[0] = speed
     for k, u in enumerate(force):

@@ -1,11 +1,11 @@
-"""The identified model in a profile's file, whose comments and order stay as they are."""
+"""The identified model in a profile's file. Comments and order of the file are kept."""
 
 import tomlkit
 
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
-DIGITS = 10  # significant ones: more than any fit knows
-ROUNDING = 1e-12  # what no fit can tell from 0
+DIGITS = 10  # significant digits: more than any fit knows
+ROUNDING = 1e-12  # largest magnitude that counts as 0
 _COMMENTS = {
     "mass": "M [kg]",
     "friction": "alpha [N.s/m]",
@@ -20,11 +20,11 @@ _COMMENTS = {
 
 
 def with_model(text: str, model: FittedModel) -> str:
-    """The text of a profile with [model] added or replaced; all else as it was.
+    """Return the text of a profile with [model] added or replaced, otherwise unchanged.
 
     Args:
-        text: valid TOML.
-        model: as identified.
+        text: Profile as valid TOML.
+        model: Identified model.
     """
     document = tomlkit.parse(text)
     table = tomlkit.table()
@@ -44,11 +44,11 @@ def with_model(text: str, model: FittedModel) -> str:
 
 
 def profile_text(profile: VehicleProfile, comment: str) -> str:
-    """A profile as TOML, without what is at its default.
+    """Return a profile as TOML, without the keys that have their default value.
 
     Args:
-        profile: to write.
-        comment: its first line.
+        profile: Profile to write.
+        comment: First line of the text.
     """
     document = tomlkit.document()
     document.add(tomlkit.comment(comment))

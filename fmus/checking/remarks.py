@@ -1,4 +1,4 @@
-"""What the user should know of an identified model, one line each."""
+"""Remarks for the user about an identified model, one line each."""
 
 from collections.abc import Sequence
 
@@ -9,11 +9,11 @@ from fmus.checking.fitting import Drive, Fit, least_squares, prepare, resistance
 from fmus.checking.manoeuvres import Trace
 from fmus.profile.vehicle_profile import FittedModel
 
-POOR_FIT = 0.9  # of R squared, below which a remark says so
+POOR_FIT = 0.9  # R squared below which a remark says so
 
 
 def saturation_remarks(limits: tuple[float, float]) -> list[str]:
-    """Remarks on the largest drive and brake force that arrive [N], if they were reached."""
+    """Remark on the largest drive and brake force that arrive [N], if they were reached."""
     return [
         f"no more than {limit:.0f} N of {name} force arrive: run with --mpc-force-limit "
         f"{limit:.0f} or less{' (which bounds the brakes, too)' if name == 'drive' else ''}"
@@ -25,13 +25,13 @@ def saturation_remarks(limits: tuple[float, float]) -> list[str]:
 def fit_remarks(
     found: Fit, model: FittedModel, traces: Sequence[Trace], limits: tuple[float, float]
 ) -> list[str]:
-    """Remarks on how well M v' + alpha v = u describes the vehicle, and what else it does.
+    """Remark on how well M v' + alpha v = u describes the vehicle, and on other resistance.
 
     Args:
-        found: M, alpha and the actuator.
-        model: how good they are.
-        traces: that were fitted.
-        limits: beyond which they were not [N].
+        found: Fitted M, alpha and actuator.
+        model: The same model with its errors.
+        traces: Traces that were fitted.
+        limits: Largest forces of the steps that were fitted [N].
     """
     remarks = []
     if model.r_squared < POOR_FIT:
@@ -49,7 +49,7 @@ def fit_remarks(
 
 
 def _resistance(found: Fit, drives: Sequence[Drive]) -> list[str]:
-    """A remark on other resistance: a constant force, and one that grows with speed squared."""
+    """Remark on further resistance: a constant force, and one that grows with speed squared."""
     speed = np.concatenate([drive.speed[:-1][drive.used] for drive in drives])
     left = np.concatenate([(d.acceleration - found.acceleration(d))[d.used] for d in drives])
     X, measured = resistance_rows(drives, found.lag, found.delay)
@@ -67,11 +67,11 @@ def _resistance(found: Fit, drives: Sequence[Drive]) -> list[str]:
 
 
 def _terms(resistance: NDArray[np.float64], fastest: float) -> str:
-    """A sum in words, without the terms that hardly matter at any speed.
+    """Return a sum in words, without the terms that hardly matter at any speed.
 
     Args:
-        resistance: viscous [N.s/m], constant [N] and quadratic [N.s2/m2].
-        fastest: [m/s].
+        resistance: Coefficients: viscous [N.s/m], constant [N] and quadratic [N.s2/m2].
+        fastest: Highest speed [m/s].
     """
     viscous, constant, quadratic = resistance.tolist()
     terms = (

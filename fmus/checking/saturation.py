@@ -1,4 +1,4 @@
-"""The largest forces that a vehicle carries out."""
+"""The largest forces that a vehicle can produce."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,15 +20,15 @@ from fmus.checking.fitting import (
 )
 from fmus.checking.manoeuvres import Trace
 
-SATURATED = 0.85  # if less of a force than this share arrives, the actuator is at its limit
-_ENOUGH = 20  # steps for four coefficients
-BEYOND = 1.5  # times a limit: if so much arrives at another time, it is none
-SHORTEST = 0.3  # [s] of a phase from which a force is read
+SATURATED = 0.85  # share of the force below which the actuator is at its limit
+_ENOUGH = 20  # steps needed for four coefficients
+BEYOND = 1.5  # factor: a limit does not hold if this much more arrives at another time
+SHORTEST = 0.3  # [s] shortest phase from which a force is read
 
 
 @dataclass(frozen=True)
 class ResistanceModel:
-    """M v' + alpha v + c_0 + c_2 v |v| = F of a vehicle that rolls forwards.
+    """M v' + alpha v + c_0 + c_2 v |v| = F: the resistance of a vehicle that rolls forwards.
 
     With M and alpha alone, a truck's rolling resistance would look like a saturated drive.
     """
@@ -42,7 +42,7 @@ class ResistanceModel:
 
     @classmethod
     def of(cls, model: Fit, drives: Sequence[Drive]) -> Self:
-        """The least squares of all four, with the actuator of ``model``."""
+        """Fit all four coefficients by least squares, with the actuator of ``model``."""
         plain = cls(model.mass, model.friction, 0.0, 0.0, model.lag, model.delay)
         rows, measured = resistance_rows(drives, model.lag, model.delay)
         if measured.size < _ENOUGH:
@@ -57,18 +57,18 @@ class ResistanceModel:
     def force(
         self, speed: NDArray[np.float64], acceleration: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """The force that must act for this motion [N]."""
+        """Return the force [N] that must act for this motion."""
         drag = self.friction * speed + self.constant + self.quadratic * speed * np.abs(speed)
         return self.mass * acceleration + drag
 
 
 def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
-    """Largest drive and brake force that arrive [N]; infinite where that was not reached.
+    """Return the largest drive and brake force that arrive [N]; infinite if not reached.
 
-    Level by level: M and alpha from the weaker tests predict the next ones.
+    M and alpha of the weaker tests predict the next level of force.
 
     Args:
-        tests: by level of force, from weak to strong.
+        tests: Tests by level of force, from weak to strong.
     """
     limits = [np.inf, np.inf]
     for weaker, group in zip(range(1, len(tests)), tests[1:], strict=True):
@@ -89,7 +89,7 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
 def _limit(
     trace: Trace, sign: float, model: ResistanceModel, weaker: Trace, strongest: Trace
 ) -> float:
-    """The limit [N] that a test shows, unless far more arrives in the strongest test."""
+    """Return the limit [N] that a test shows, unless far more arrives in the strongest test."""
     limit = saturation([trace], sign, model, [weaker])
     most = max((arrives for _, arrives in arriving(strongest, sign, model)), default=0.0)
     return limit if most <= BEYOND * limit else np.inf
@@ -98,14 +98,14 @@ def _limit(
 def saturation(
     traces: Sequence[Trace], sign: float, model: ResistanceModel, weaker: Sequence[Trace] = ()
 ) -> float:
-    """The smallest force [N] of one sign that falls short of the model, or infinity.
+    """Return the smallest force [N] of one sign that falls short of the model, or infinity.
 
     Args:
-        traces: of the forces in question.
-        sign: of those that count.
-        model: of the vehicle.
-        weaker: the same tests with less force. Where a larger force lets more arrive, as in a
-            higher gear, there is no limit.
+        traces: Traces of the forces in question.
+        sign: Sign of the forces that count.
+        model: Model of the vehicle.
+        weaker: Traces of the same tests with less force. There is no limit where a larger force
+            lets more arrive, as in a higher gear.
     """
     lesser = [arriving(trace, sign, model) for trace in weaker] or [[] for _ in traces]
     found = [
@@ -118,14 +118,17 @@ def saturation(
 
 
 def _grows(should: float, arrives: float, before: Sequence[tuple[float, float]]) -> bool:
-    """Whether the force that arrives has grown as much as the force asked for."""
+    """Return whether the arriving force has grown as much as the force asked for."""
     if not before or not 0.0 < before[-1][0] < should or before[-1][1] <= 0.0:
         return False
     return arrives / before[-1][1] >= SATURATED * should / before[-1][0]
 
 
 def arriving(trace: Trace, sign: float, model: ResistanceModel) -> list[tuple[float, float]]:
-    """Force that should act and that does [N], of the later half of each phase of one sign."""
+    """Return pairs of the expected and the arriving force [N] for each phase of one sign.
+
+    The later half of a phase counts.
+    """
     h = trace.step_size
     edges = np.flatnonzero(np.diff(trace.force)) + 1
     should = mean_force(trace.force, h, model.lag, model.delay)

@@ -1,4 +1,4 @@
-"""Whether a vehicle is as heavy as it is known to be: a factor is a wrong unit."""
+"""A comparison of a vehicle's mass with what is known of it; a large factor is a wrong unit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,8 +6,8 @@ from typing import Final
 
 from fmus.profile.vehicle_profile import VehicleProfile
 
-GROSS: Final = 3.0  # a factor in the mass that no load and no fit explains
-NEAR: Final = 1.3  # a factor so near one that has a name is taken for it: loads differ
+GROSS: Final = 3.0  # factor in the mass that no load and no fit explains
+NEAR: Final = 1.3  # largest deviation, as a factor, from a ratio of units; loads differ
 FAR: Final = 1.5  # the same for 100 and 1000, which have no neighbours
 CLASS_MASSES: Final[Mapping[str, tuple[float, float]]] = {
     # [kg] empty to fully loaded, by SUMO's vehicle class (EU 2018/858: M1 and N1 up to 3.5 t;
@@ -24,7 +24,7 @@ CLASS_MASSES: Final[Mapping[str, tuple[float, float]]] = {
     **dict.fromkeys(("moped", "scooter"), (100.0, 350.0)),
     "bicycle": (50.0, 250.0),
 }
-_NAMES: Final = (  # factor of the mass, and what the axis seems to be in
+_NAMES: Final = (  # factor of the mass, and the unit that the axis seems to have
     (1000.0, "1000: a thousand times too weak", "N", ("force", "drive_force", "brake_force")),
     (1e-3, "1000 times too strong", "kN", ("force", "drive_force", "brake_force")),
     (100.0, "100 times too weak: per cent", "%", ("throttle", "brake")),
@@ -40,12 +40,12 @@ _NAMES: Final = (  # factor of the mass, and what the axis seems to be in
 
 @dataclass(frozen=True)
 class KnownMass:
-    """What the vehicle weighs, by somebody who knows.
+    """A mass of the vehicle as somebody states it.
 
     Attributes:
-        low: [kg] at least.
-        high: [kg] at most.
-        origin: who says so.
+        low: Lower bound [kg].
+        high: Upper bound [kg].
+        origin: Source of the statement.
     """
 
     low: float
@@ -57,20 +57,20 @@ class KnownMass:
         return f"{span} kg ({self.origin})"
 
     def excess(self, mass: float) -> float:
-        """The factor by which a mass [kg] is beyond what is known; 1 within it."""
+        """Return the factor by which a mass [kg] is outside these bounds; 1 within them."""
         return mass / min(max(mass, self.low), self.high)
 
 
 def known_masses(
     profile: VehicleProfile | None, mass: float | None, vehicle_class: str | None
 ) -> tuple[KnownMass, ...]:
-    """What the measured mass can be compared with.
+    """Collect the masses with which the measured one can be compared.
 
     Args:
-        profile: with what was identified. A vehicle that is driven by an acceleration or a speed
-            seems as heavy as its [inverse_map], whatever it weighs.
-        mass: given by the user [kg].
-        vehicle_class: of SUMO, given by the user.
+        profile: Profile with the identified model. A vehicle that is driven by an acceleration or a
+            speed seems as heavy as its [inverse_map], whatever it weighs.
+        mass: Mass given by the user [kg].
+        vehicle_class: SUMO's vehicle class, given by the user.
     """
     known = []
     if profile is not None and (profile.inputs.acceleration or profile.inputs.speed_setpoint):
@@ -89,13 +89,13 @@ def known_masses(
 def gross_error(
     measured: float, known: KnownMass, role: str, speed_unit: str
 ) -> tuple[str, str] | None:
-    """What is wrong with a mass that is far from what is known, and the line that mends it.
+    """Describe a mass that is far from the known one, and give the line that mends it.
 
     Args:
-        measured: M of the fit [kg].
-        known: what it is compared with.
-        role: of the input that drives.
-        speed_unit: in which the speed is read.
+        measured: Fitted M [kg].
+        known: Mass that it is compared with.
+        role: Role of the input that drives.
+        speed_unit: Unit in which the speed is read.
 
     Returns:
         None: it is within a factor of :data:`GROSS`.
@@ -128,6 +128,6 @@ def _elsewhere(role: str) -> str:
 
 
 def _fits(factor: float, measured: float, known: KnownMass) -> bool:
-    """Whether a known mass times ``factor`` is the measured one."""
+    """Return whether a known mass times ``factor`` is the measured one."""
     near = NEAR if 0.05 < factor < 20.0 else FAR
     return known.low / near <= measured / factor <= known.high * near

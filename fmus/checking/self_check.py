@@ -1,4 +1,4 @@
-"""Does an FMU's result depend on the size of its steps? One step against two halves, before a run.
+"""The step-halving check: one step is compared with two halves before a run.
 
 A solver that is too coarse for its model diverges without any error: one OpenModelica export
 reaches 1e14 m/s at steps of 50 ms and returns OK. First-order methods such as forward Euler pass:
@@ -22,20 +22,20 @@ from fmus.errors import (
 )
 from fmus.isolation import processes_reused
 
-DIVISORS = (1, 2, 5, 10, 20, 50, 100)  # of the step, tried from coarse to fine
-RELATIVE = 0.05  # of the largest speed or distance of the finer run
+DIVISORS = (1, 2, 5, 10, 20, 50, 100)  # divisors of the step, from coarse to fine
+RELATIVE = 0.05  # largest difference, relative to the largest speed or distance of the finer run
 SPEED_FLOOR = 0.05  # [m/s]
 POSITION_FLOOR = 0.05  # [m]
-LARGEST_ACCELERATION = 15.0  # [m/s2] of a road vehicle, for the change in one step
-_CLEARLY = 0.1  # [m/s2]
-DRIVE, COAST, BRAKE = 1.0, 0.5, 1.5  # [s] of the manoeuvre's parts
+LARGEST_ACCELERATION = 15.0  # [m/s2] bound of the change in one step
+_CLEARLY = 0.1  # [m/s2] difference from which a response counts as reversed
+DRIVE, COAST, BRAKE = 1.0, 0.5, 1.5  # [s] durations of the manoeuvre's parts
 
 _UNABLE = (FmuInterfaceError, FmuProfileError, FmuStartError)  # the FMU cannot do this step
 
 
 @dataclass(frozen=True)
 class Disagreement:
-    """Where a run with coarse steps differs most from one with finer steps."""
+    """The largest difference between a run with coarse steps and one with finer steps."""
 
     quantity: str  # "speed" or "position"
     unit: str
@@ -50,10 +50,11 @@ class Convergence:
 
     Attributes:
         step: the FMU's, as the run would take it [s].
-        finer: what it was compared with [s]; None: the FMU can do no finer steps.
+        finer: Step [s] that it was compared with; None if the FMU can do no finer steps.
         problem: why ``step`` is too coarse, one clause; empty if it is not.
         advised: the largest step that converges [s]; None: none was found, or none is needed.
-        traces: of the manoeuvre from the start speed: with ``step`` and ``finer``, where they ran.
+        traces: Traces of the manoeuvre from the start speed: with ``step`` and ``finer``, where
+            they ran.
     """
 
     step: float
@@ -76,9 +77,9 @@ def require_converged(
     Args:
         opener: makes the vehicle for a step of its FMU; how long a force is held stays the same.
         fmu_step: the FMU's in the run [s].
-        path: of the FMU, for messages.
-        force: that drives and brakes [N].
-        start_speed: of the run [m/s]; the manoeuvre is driven from it and from rest.
+        path: Path of the FMU, for messages.
+        force: Force [N] that drives and brakes.
+        start_speed: Start speed of the run [m/s]; the manoeuvre is driven from it and from rest.
 
     Raises:
         FmuOutputError: the steps are too coarse; the message names one that is not.
@@ -91,7 +92,7 @@ def require_converged(
 
 
 def remedy(result: Convergence) -> str:
-    """What to do about steps that are too coarse."""
+    """Return the advice about steps that are too coarse."""
     if result.advised is None:
         finest = milliseconds(result.step / DIVISORS[-1])
         return (
@@ -105,7 +106,7 @@ def remedy(result: Convergence) -> str:
 def convergence(
     opener: Opener, fmu_step: float, *, force: float = 4000.0, start_speed: float = 0.0
 ) -> Convergence:
-    """The self-check's finding; see :func:`require_converged`.
+    """Return the self-check's finding; see :func:`require_converged`.
 
     Raises:
         FmuError: the FMU fails, and smaller steps do not change that.
@@ -140,7 +141,7 @@ def convergence(
 class _Drives:
     """The manoeuvres driven with steps of one size."""
 
-    traces: tuple[Trace, ...]  # as far as they went
+    traces: tuple[Trace, ...]  # traces up to the end or the failure
     error: FmuError | None
 
     @property
@@ -150,7 +151,7 @@ class _Drives:
 
     @property
     def steps_done(self) -> int:
-        """How many steps were done before the end or the failure."""
+        """Number of steps before the end or the failure."""
         return sum(trace.force.size for trace in self.traces)
 
 
@@ -179,7 +180,7 @@ class _StepSizes:
         return next((d for d in DIVISORS[1:] if self.run(d).error is None), None)
 
     def problem(self, coarse: int, fine: int) -> str:
-        """Why the coarse step is too coarse; empty if it is not."""
+        """Return why the coarse step is too coarse; empty if it is not."""
         for one, two in zip(self.run(coarse).traces, self.run(fine).traces, strict=True):
             found = compare(one, two)
             if found:
@@ -199,7 +200,7 @@ class _StepSizes:
         return None
 
     def depends_on_step(self) -> bool:
-        """Whether the time or the kind of the failure depends on the step."""
+        """Return whether the time or the kind of the failure depends on the step."""
         able = [drives for drives in self._drives.values() if not isinstance(drives.error, _UNABLE)]
         done = [drives.steps_done for drives in able]
         blamed = {plain(r.error).split()[0] for r in able if isinstance(r.error, FmuOutputError)}
@@ -225,7 +226,7 @@ def manoeuvre(force: float) -> list[Phase]:
 
 
 def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
-    """The worst difference between two drives under the same forces; None: they agree.
+    """Return the worst difference of two drives under the same forces, or None if they agree.
 
     First order passes: a finer run may differ by what one step changes, and by 5 %.
     """
@@ -251,17 +252,17 @@ def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
 
 
 def goes_the_wrong_way(trace: Trace) -> bool:
-    """Whether a forward force slows a vehicle down, and more than no force or a backward one.
+    """Return whether a forward force slows the vehicle, more than no or a backward force does.
 
     With the right sign, driving helps even where a slope or a slow actuator makes the vehicle lose
     speed.
 
     Args:
-        trace: of the :func:`manoeuvre`.
+        trace: Trace of the :func:`manoeuvre`.
     """
     change = np.diff(trace.speed) / trace.step_size
     driven, braked = change[trace.force > 0.0], change[trace.force < 0.0]
-    rolling = change[trace.force == 0.0][-1]  # by then a slow actuator has released its force
+    rolling = change[trace.force == 0.0][-1]  # a slow actuator has released its force by then
     return bool(driven.mean() < min(0.0, rolling, braked.mean()) - _CLEARLY)
 
 

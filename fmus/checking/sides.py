@@ -22,12 +22,12 @@ UNEQUAL = 1.15  # a factor between the two masses that is worth a remark
 
 @dataclass(frozen=True)
 class Side:
-    """What the tests show of one side.
+    """The result of the tests for one side, driving or braking.
 
     Attributes:
-        mass: as which it seems to move [kg].
-        lag: of its actuator, first order [s].
-        delay: its dead time [s].
+        mass: Mass as which it seems to move [kg].
+        lag: Lag of its actuator, first order [s].
+        delay: Dead time of its actuator [s].
     """
 
     mass: float
@@ -47,7 +47,7 @@ def fit_apart(drives: Sequence[Drive], delay: float) -> Sides:
     """Mass, lag and dead time of each side, from the steps after its own last force.
 
     Args:
-        drives: in which both forces occur, one after the other.
+        drives: Drives in which both forces occur, one after the other.
         delay: dead time of both together [s]; a side has it, or none.
     """
     return Sides(_fit_side(drives, 1.0, delay), _fit_side(drives, -1.0, delay))
@@ -85,12 +85,12 @@ def _of_side(drive: Drive, sign: float) -> Drive:
 
 
 def side_remarks(sides: Sides, step: float, profile: VehicleProfile | None) -> list[str]:
-    """What the user should know of the two sides, one line each.
+    """Return remarks on the two sides for the user, one line each.
 
     Args:
-        sides: as fitted.
-        step: of the controller [s]: lags that differ by less are the same.
-        profile: of the vehicle, for the line that mends it.
+        sides: Fits of both sides.
+        step: Step of the controller [s]: lags that differ by less are the same.
+        profile: Profile of the vehicle, for the line that mends it.
     """
     drive, brake = sides.drive, sides.brake
     if drive is None or brake is None:

@@ -1,1 +1,1 @@
-"""What an FMU says of itself: its variables, units, interfaces and binaries."""
+"""The contents of an FMU's description: its variables, units, interfaces and binaries."""

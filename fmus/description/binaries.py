@@ -1,4 +1,4 @@
-"""Which binary of an FMU runs here, judged by its folder and by its first bytes."""
+"""The choice of the binary that runs on this platform, by folder and first bytes."""
 
 import platform
 import struct
@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 from typing import Final
 
-from fmus.archive.gate import Archive, open_archive, read_start
+from fmus.archive.archive_check import Archive, open_archive, read_start
 from fmus.description.model import Interface, Model
 from fmus.errors import FmuPlatformError
 from fmus.text import printable
@@ -16,7 +16,7 @@ SUFFIXES: Final = {"linux": ".so", "windows": ".dll", "darwin": ".dylib"}
 OLD_SYSTEMS: Final = {"linux": "linux", "windows": "win", "darwin": "darwin"}
 PROCESSORS: Final = {"amd64": "x86_64", "x64": "x86_64", "arm64": "aarch64"}
 X86: Final = frozenset({"i386", "i486", "i586", "i686", "x86", "x86pc"})
-START: Final = 4096  # [bytes] of a library that are looked at
+START: Final = 4096  # [bytes] beginning of a library that is examined
 
 ELF_LIBRARY: Final = 3  # ET_DYN
 ELF_MACHINES: Final = {3: "x86", 40: "arm", 62: "x86_64", 183: "aarch64", 243: "riscv64"}
@@ -38,11 +38,11 @@ class Platform:
 
     @property
     def suffix(self) -> str:
-        """Of a shared library."""
+        """File suffix of a shared library."""
         return SUFFIXES.get(self.system, ".so")
 
     def folders(self, fmi_version: str) -> tuple[str, ...]:
-        """Where an FMU may keep its library for this platform, the standard's own name first.
+        """Return the folders of an FMU's library for this platform, the standard's own name first.
 
         FMI 1 and 2 know the system and a number of bits; tools use FMI 3's names there too, for
         processors that the older standards do not name.
@@ -92,7 +92,7 @@ def platforms_of(archive: Archive) -> tuple[str, ...]:
 
 
 def _no_binary(model: Model, interface: Interface, archive: Archive) -> str:
-    """Why there is none, and what to do."""
+    """Return the reason why there is no binary, and the advice for the user."""
     here = this_platform()
     folders = here.folders(model.fmi_version)
     what = f"no binaries/{folders[0]}/{interface.identifier}{here.suffix} for this platform"
@@ -108,11 +108,11 @@ def _no_binary(model: Model, interface: Interface, archive: Archive) -> str:
 
 
 def misfit(start: bytes, wanted: Platform) -> str:
-    """Why a library cannot be loaded on a platform, as a phrase; empty if it seems to fit.
+    """Return why a library cannot be loaded on a platform, as a phrase; empty if it seems to fit.
 
     Args:
         start: its first bytes, up to :data:`START`.
-        wanted: where it is to run.
+        wanted: Platform on which it is to run.
     """
     try:
         system, processors, library = _header(start)
@@ -136,7 +136,7 @@ def _header(start: bytes) -> tuple[str, tuple[str, ...], bool]:
     if start[:2] == b"MZ":
         (header,) = struct.unpack_from("<I", start, 0x3C)
         if header + 24 > len(start) and len(start) == START:
-            return "windows", tuple(PE_MACHINES.values()), True  # beyond what was read
+            return "windows", tuple(PE_MACHINES.values()), True  # header not among the bytes
         signature, machine = struct.unpack_from("<4sH", start, header)
         (flags,) = struct.unpack_from("<H", start, header + 22)
         if signature != b"PE\0\0":

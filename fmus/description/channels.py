@@ -1,4 +1,4 @@
-"""From the names in a profile to the variables of an FMU, and the start values for them."""
+"""The variables of an FMU that a profile names, and the start values for them."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -16,8 +16,8 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
     """The variable, or the element of an array, that is called ``name``.
 
     Args:
-        model: of the FMU.
-        place: where the name stands, for errors.
+        model: Model of the FMU.
+        place: Place of the name in the profile, for errors.
         name: ``x``, or ``x[2]`` for an array's second element.
 
     Raises:
@@ -88,12 +88,12 @@ def _start_channel(model: Model, name: str, value: Value) -> Channel:
 
 
 def _misfit_list(variable: Variable, values: Value) -> str:
-    """What is wrong with the values of a whole array; empty if nothing is."""
+    """Return the fault in the values of a whole array, or an empty text."""
     assert isinstance(values, list)
     if len(values) != variable.size:
         return f"expected {variable.size} value(s)"
     for number, value in enumerate(values, start=1):
-        # A profile's lists are numbers; some of an array of whole numbers are floats then.
+        # A profile's lists hold numbers, so whole numbers may come as floats.
         whole = variable.is_integer and isinstance(value, float) and value.is_integer()
         problem = _misfit(variable, int(value) if whole else value)
         if problem:
@@ -102,7 +102,7 @@ def _misfit_list(variable: Variable, values: Value) -> str:
 
 
 def _misfit(variable: Variable, value: object) -> str:
-    """What is wrong with a start value; empty if nothing is."""
+    """Return the fault in a start value, or an empty text."""
     if variable.is_boolean:
         return "" if isinstance(value, bool) else "expected true or false"
     if variable.kind == "String":

@@ -1,4 +1,4 @@
-"""What an FMU says about itself: its interfaces, its variables, their units."""
+"""The description of an FMU: its interfaces, its variables, their units."""
 
 import enum
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 class Kind(enum.StrEnum):
-    """How an FMU is stepped."""
+    """The kinds in which an FMU is stepped."""
 
     CO_SIMULATION = "co-simulation"  # it brings its own solver
     MODEL_EXCHANGE = "model-exchange"  # it gives derivatives; the solver is ours
@@ -30,13 +30,13 @@ Dimension = tuple[int, int, int, int, int, int, int, int]
 
 @dataclass(frozen=True)
 class FmuDescription:
-    """What identifies an FMU in the record of a run."""
+    """The data that identify an FMU in the record of a run."""
 
     name: str  # the model's name
     fmi_version: str  # e.g. "2.0"
     guid: str  # FMI 2's GUID, FMI 3's instantiation token
     generation_tool: str  # empty where the FMU does not say
-    sha256: str  # of the .fmu file
+    sha256: str  # SHA-256 of the .fmu file
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,8 @@ class Unit:
     """A unit as an FMU defines it: SI = factor * raw + offset.
 
     Attributes:
-        name: as the FMU writes it.
-        dimension: None: the FMU does not tell.
+        name: Name as the FMU writes it.
+        dimension: Exponents of the base units; None: the FMU does not tell.
     """
 
     name: str
@@ -63,38 +63,38 @@ class Variable:
     kind: str  # FMI's type: "Real", "Float64", "Boolean", ...
     causality: str  # "input", "output", "parameter", "local", ...
     variability: str = "continuous"
-    start: str = ""  # as it is written; empty without one
-    shape: tuple[int, ...] = ()  # of an FMI 3 array, from its dimensions' start values
+    start: str = ""  # start value as it is written; empty without one
+    shape: tuple[int, ...] = ()  # shape of an FMI 3 array, from its dimensions' start values
     unit: str = ""  # name of its unit; empty without one
     description: str = ""
-    minimum: float | None = None  # in its unit
+    minimum: float | None = None  # smallest value, in the variable's unit
     maximum: float | None = None
-    settable: bool = False  # before the start
+    settable: bool = False  # True if it can be set before the start
     negated: bool = False  # FMI 1's negatedAlias: what stands under the reference, times -1
 
     @property
     def scalar(self) -> bool:
-        """Not an array."""
+        """True if the variable is not an array."""
         return not self.shape
 
     @property
     def is_real(self) -> bool:
-        """A floating-point variable."""
+        """True for a floating-point variable."""
         return self.kind in REAL_TYPES
 
     @property
     def is_integer(self) -> bool:
-        """A whole number or an enumeration."""
+        """True for a whole number or an enumeration."""
         return self.kind in INTEGER_TYPES
 
     @property
     def is_boolean(self) -> bool:
-        """True or false."""
+        """True for a boolean variable."""
         return self.kind == "Boolean"
 
     @property
     def size(self) -> int:
-        """How many values it has."""
+        """Number of values of the variable."""
         size = 1
         for extent in self.shape:
             size *= extent
@@ -106,11 +106,11 @@ class Channel:
     """One number that goes into, or comes out of, an FMU at every step."""
 
     variable: Variable
-    element: int = 0  # of an array, row by row from 0
+    element: int = 0  # index in an array, row by row from 0
 
     @property
     def name(self) -> str:
-        """As a user would write it: ``x``, or ``x[2]`` for an array's second element."""
+        """Name as a user would write it: ``x``, or ``x[2]`` for an array's second element."""
         return (
             f"{self.variable.name}[{self.element + 1}]"
             if self.variable.shape
@@ -153,7 +153,7 @@ class Model:
     platforms: tuple[str, ...]  # folders of the archive that hold binaries
     states: int  # continuous ones
     event_indicators: int
-    default_step: float | None  # [s] of its default experiment
+    default_step: float | None  # [s] step of its default experiment
     default_tolerance: float | None
 
     def unit_of(self, variable: Variable) -> Unit | None:

@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.gate import DESCRIPTION, ROOT, Archive, open_archive
+from fmus.archive.archive_check import DESCRIPTION, ROOT, Archive, open_archive
 from fmus.archive.markup import Element, parse
 from fmus.description.binaries import platforms_of
 from fmus.description.model import FmuDescription, Interface, Kind, Model, Unit, Variable
@@ -43,7 +43,7 @@ BASE: Final = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 def read_model(path: Path) -> Model:
-    """Everything that an FMU says about itself; nothing of it is loaded or unpacked.
+    """Read everything that an FMU says about itself, without loading or unpacking it.
 
     Raises:
         FmuFileError: the file is missing or refused, or its model description is broken.
@@ -87,7 +87,7 @@ def model_of(archive: Archive) -> Model:
 
 
 def describe(path: str | os.PathLike[str]) -> FmuDescription:
-    """Name, version and fingerprint of an FMU.
+    """Return name, version and fingerprint of an FMU.
 
     Raises:
         FmuFileError: the file is missing or refused, or has no model description.
@@ -248,6 +248,6 @@ def _unit(name: str, base: Element, where: str) -> Unit:
 
 
 def _positive(where: str, element: Element | None, name: str) -> float | None:
-    """An attribute that is of use only as a positive number; None otherwise."""
+    """Return an attribute that is of use only as a positive number, otherwise None."""
     value = number(where, element, name) if element else None
     return value if value is not None and 0.0 < value < math.inf else None

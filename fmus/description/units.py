@@ -1,4 +1,4 @@
-"""Units by their names: what an FMU means by ``km/h`` where it does not define it.
+"""Units by their names: the meaning of ``km/h`` in an FMU that does not define it.
 
 SI = factor * raw + offset. A name is a product of known symbols in the notations that tools write:
 ``m/s2``, ``m.s-2``, ``m/s^2``, ``m*s**-2``, ``m/s²``, ``N.s/m``, ``kg/(m.s2)``. Capitals matter:
@@ -22,9 +22,9 @@ ANGLE: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 1)
 SPEED: Final[Dimension] = (0, 1, -1, 0, 0, 0, 0, 0)
 ACCELERATION: Final[Dimension] = (0, 1, -2, 0, 0, 0, 0, 0)
 FORCE: Final[Dimension] = (1, 1, -2, 0, 0, 0, 0, 0)
-TORQUE: Final[Dimension] = (1, 2, -2, 0, 0, 0, 0, 0)  # and energy
+TORQUE: Final[Dimension] = (1, 2, -2, 0, 0, 0, 0, 0)  # torque and energy
 POWER: Final[Dimension] = (1, 2, -3, 0, 0, 0, 0, 0)
-FRICTION: Final[Dimension] = (1, 0, -1, 0, 0, 0, 0, 0)  # of speed
+FRICTION: Final[Dimension] = (1, 0, -1, 0, 0, 0, 0, 0)  # force per speed
 TURNING: Final[Dimension] = (0, 0, -1, 0, 0, 0, 0, 1)
 TEMPERATURE: Final[Dimension] = (0, 0, 0, 0, 1, 0, 0, 0)
 CURRENT: Final[Dimension] = (0, 0, 0, 1, 0, 0, 0, 0)
@@ -51,7 +51,7 @@ WORDS: Final[dict[Dimension, str]] = {
     PRESSURE: "a pressure",
     FREQUENCY: "a frequency",
 }
-COMMON: Final[dict[Dimension, str]] = {  # what a user may have meant
+COMMON: Final[dict[Dimension, str]] = {  # units that a user may have meant
     NONE: "1, %",
     LENGTH: "m, km, ft",
     SPEED: "m/s, km/h, mph",
@@ -160,7 +160,7 @@ TIMES: Final = re.compile(r"\s*(?:\*|\.|\N{MIDDLE DOT}|\N{DOT OPERATOR}|\s)\s*")
 
 
 def to_si(unit: Unit) -> Unit:
-    """The unit with its dimension and its way to SI, by name where the FMU does not define it.
+    """Return the unit with its dimension and conversion to SI, by name if the FMU has none.
 
     An empty definition (``<BaseUnit/>``) of a name that has a dimension, such as ``m/s``, counts as
     no definition.
@@ -186,7 +186,7 @@ def named(name: str) -> Unit:
 
 
 def quantity(dimension: Dimension | None) -> str:
-    """What a dimension measures, such as "a force"; its exponents where it has no name."""
+    """Return the quantity of a dimension, such as "a force", or its exponents without a name."""
     if dimension is None:
         return "unknown"
     symbols = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
@@ -232,7 +232,7 @@ class _Parser:
         self.place = 0
 
     def unit(self) -> _Symbol | None:
-        """The whole text as a unit; None if it is none."""
+        """Return the whole text as a unit, or None if it is not one."""
         product = self._product()
         return product if self.place == len(self.text) else None
 

@@ -1,4 +1,4 @@
-"""The variables of a model description: what FMI 1, 2 and 3 each write, in one form."""
+"""The variables of a model description, in one form for FMI 1, 2 and 3."""
 
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
@@ -60,7 +60,7 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
     """All variables by name, in the order of the file.
 
     Args:
-        root: of the model description.
+        root: Root of the model description.
         version: "1.0", "2.0" or "3.0".
         where: named in errors.
 
@@ -238,7 +238,7 @@ def _reference(where: str, element: Element) -> int:
 
 
 def _types(root: Element, version: str) -> dict[str, Element]:
-    """The type definitions; in FMI 1 and 2 the element inside holds unit and limits."""
+    """Return the type definitions; in FMI 1 and 2 an inner element holds unit and limits."""
     types = {}
     for element in _children(root, "TypeDefinitions"):
         inner = element if version == "3.0" or not element.children else element.children[0]

@@ -1,1 +1,1 @@
-"""Driving a vehicle FMU in this process: its start, its steps, its motion, and what no car does."""
+"""Driving a vehicle FMU in this process: start, steps, motion, and checks of plausibility."""

@@ -1,48 +1,48 @@
-"""Whether an FMU's position and its speed tell of the same motion."""
+"""The agreement between an FMU's position and its integrated speed."""
 
 from collections import deque
 
-WINDOW = 0.5  # [s] over which they are compared
-APART = 0.5  # [m] by which the position may leave the integrated speed within the window
-SLIP = 0.2  # share of the way by which it may, where that is more
+WINDOW = 0.5  # [s] time over which the two are compared
+APART = 0.5  # [m] largest difference of position and integrated speed within the window
+SLIP = 0.2  # largest difference as a share of the distance, where that is more
 
 
 class Agreement:
-    """Compares the way by the position with that by the speed, lately and since the start.
+    """Compares the distance by position with that by speed, lately and since the start.
 
     A position that counts in steps, as an odometer does, stands and jumps; it may be behind or
     ahead by one of its steps, which is learnt from its jumps. Until the first one it may stand as
     long as a jump is allowed to be.
 
     Args:
-        jump: [m] by which the position may leave the integrated speed in one step, and altogether;
-            beyond the usual 1 m it widens what is allowed within the window, too.
+        jump: Largest difference [m] of position and integrated speed in one step and altogether;
+            beyond the usual 1 m it widens the tolerance within the window, too.
     """
 
     def __init__(self, jump: float) -> None:
         self._jump = jump
         self._apart = max(APART, APART * jump)
         self._distance = 0.0  # [m] driven since the start, by the speed
-        self._drift = 0.0  # [m] by which the position has moved farther
-        self._slack = 0.0  # [m] by which the integral of the speed may be wrong
+        self._drift = 0.0  # [m] by which the position is ahead of the integrated speed
+        self._slack = 0.0  # [m] largest error of the integrated speed
         self._standing = 0.0  # [m] driven since the position last changed
-        self._quantum = 0.0  # [m] largest step of a position that had stood
+        self._quantum = 0.0  # [m] largest jump of a position that had stood still
         self._past: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)])
 
     def lost(
         self, moved: float, way: float, slack: float, duration: float
     ) -> tuple[float, float, float] | None:
-        """Take over one step; what has come apart in it, if anything has.
+        """Take over one step, and return how position and speed have come apart, or None.
 
         Args:
-            moved: change of the position [m].
-            way: integral of the speed, by the trapezoid rule [m].
-            slack: by how much that may be wrong [m].
-            duration: of the step [s].
+            moved: Change of the position [m].
+            way: Integral of the speed, by the trapezoid rule [m].
+            slack: Largest error of that position [m].
+            duration: Duration of the step [s].
 
         Returns:
-            the way by the position [m], that by the speed [m], and in how long [s]; 0 s: since the
-            start. None: they agree.
+            The distance by position [m], the distance by speed [m] and the time [s] in which they
+            came apart (0 s: since the start); None if they agree.
         """
         self._count(moved, way)
         self._drift += moved - way
@@ -64,7 +64,7 @@ class Agreement:
         return None
 
     def _count(self, moved: float, way: float) -> None:
-        """Learn the steps in which the position counts."""
+        """Learn the increments in which the position counts."""
         if moved == 0.0:
             self._standing += abs(way)
         else:

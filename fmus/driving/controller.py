@@ -1,4 +1,4 @@
-"""A controller that is an FMU: told what it sees, asked for its answer, once in each step."""
+"""A controller that is an FMU: at each step it receives its inputs and returns its answer."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from fmus.profile.controller_preparation import PreparedController
 class ControllerFmu:
     """Runs a controller FMU in this process.
 
-    Its answer at t_k is what it puts out at the end of the step from t_k, told what it sees at
-    t_k: whether it decides as soon as it is told or as it steps, there is no lag.
+    The answer at t_k is the output at the end of the step from t_k, with the inputs at t_k. There
+    is no lag, whether the FMU computes its outputs with its inputs or with its step.
 
     Args:
         prepared: the controller.
-        folder: of its unpacked FMU, which stays.
+        folder: Folder of its unpacked FMU, which stays.
 
     Attributes:
-        answer: of the last step, in the FMU's own unit.
-        time: at the end of that step [s].
+        answer: Answer of the last step, in the FMU's own unit.
+        time: Time at the end of that step [s].
 
     Raises:
         FmuPlatformError: it has no binary that can be loaded.
@@ -57,26 +57,26 @@ class ControllerFmu:
         self._instance.start(wiring.start_values, channels, [wiring.answer.channel])
 
     def step(self, told: Sequence[float]) -> None:
-        """Ask at t_k; an FMU whose step is longer is asked once in each of its own.
+        """Do one control step; an FMU whose step is longer is asked once in each of its own steps.
 
         Args:
-            told: what it sees, in its own units.
+            told: Values of its inputs, in its own units.
 
         Raises:
             FmuStepError: it does not do the step.
         """
-        pace, instance = self.prepared.pace, self._instance
-        if self._steps % pace.stretch == 0:
+        step_plan, instance = self.prepared.step_plan, self._instance
+        if self._steps % step_plan.stretch == 0:
             for index, value in enumerate(told):
                 instance.inputs[index] = value
-            first = self._steps // pace.stretch * pace.substeps
-            for number in range(first, first + pace.substeps):
-                status = instance.tick(number * pace.step, pace.step)
+            first = self._steps // step_plan.stretch * step_plan.substeps
+            for number in range(first, first + step_plan.substeps):
+                status = instance.tick(number * step_plan.step, step_plan.step)
                 if status > WARNING:
                     said = instance.messages.take() or "without a message"
                     raise FmuStepError(
-                        f"{self.prepared.path}: no step from {number * pace.step:.10g} s to "
-                        f"{(number + 1) * pace.step:.10g} s: the FMU returned "
+                        f"{self.prepared.path}: no step from {number * step_plan.step:.10g} s to "
+                        f"{(number + 1) * step_plan.step:.10g} s: the FMU returned "
                         f"'{STATUS_NAMES[status]}', {said}"
                     )
             self.answer = instance.outputs[0]

@@ -1,18 +1,18 @@
-"""Finding motions that no car has: they show that an FMU is at fault, whatever it returns."""
+"""Detection of motions that no car has: they show that an FMU is at fault."""
 
 from math import isfinite
 
 from fmus.profile.vehicle_profile import Limits
 
-DRIVEN = 200.0  # [N] a car that does not react to so much is stuck
+DRIVEN = 200.0  # [N] force to which every car reacts
 
 
 class Guard:
-    """Finds faults in new states, and puts them into words.
+    """Finds faults in new states, and describes them.
 
     Args:
-        limits: of the profile.
-        names: what the FMU calls its speed, position and acceleration.
+        limits: Limits of the profile.
+        names: The FMU's names of its speed, position and acceleration.
     """
 
     def __init__(self, limits: Limits, names: dict[str, str]) -> None:
@@ -24,13 +24,13 @@ class Guard:
     def fault(
         self, position: float, speed: float, acceleration: float, jump: float, at: float
     ) -> str:
-        """What is wrong with a new state; empty if nothing is.
+        """Return the fault of a new state as a message, or an empty text.
 
         Args:
-            position: [m].
-            speed: [m/s].
-            acceleration: [m/s2].
-            jump: by how much the position differs from the integrated speed [m].
+            position: Position [m].
+            speed: Speed [m/s].
+            acceleration: Acceleration [m/s2].
+            jump: Difference between the position and the integrated speed [m].
             at: time [s].
         """
         for role, value in (
@@ -56,12 +56,12 @@ class Guard:
         )
 
     def disagreement(self, moved: float, way: float, duration: float, at: float) -> str:
-        """What is wrong with a position that is not the integrated speed.
+        """Return the message that the position is not the integrated speed.
 
         Args:
             moved: distance by the position [m].
             way: distance by the integrated speed [m].
-            duration: in which they were driven [s]; 0: since the start.
+            duration: Time over which they were driven [s]; 0: since the start.
             at: time [s].
         """
         position, speed = self._names["position"], self._names["speed"]
@@ -72,13 +72,13 @@ class Guard:
         )
 
     def watch(self, changed: bool, force: float, speed: float, step: float, at: float) -> str:
-        """A warning about a state that stands still though it is driven; empty if there is none.
+        """Return a warning if the state stands still although it is driven, or an empty text.
 
         Args:
-            changed: whether the motion has changed in this step.
-            force: held over it [N].
-            speed: [m/s].
-            step: [s].
+            changed: True if the motion has changed in this step.
+            force: Force held over the step [N].
+            speed: Speed [m/s].
+            step: Step [s].
             at: time [s].
         """
         if changed or (speed == 0.0 and force < DRIVEN) or abs(force) < DRIVEN:
@@ -94,7 +94,7 @@ class Guard:
         )
 
     def once(self, kind: str, warning: str) -> str:
-        """The warning the first time; empty afterwards."""
+        """Return the warning the first time, and an empty text afterwards."""
         if kind in self._warned:
             return ""
         self._warned.add(kind)

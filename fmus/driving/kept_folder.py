@@ -1,23 +1,23 @@
-"""Where a shipped FMU is unpacked in a process that makes many runs: once for all of them.
+"""The folder of a shipped FMU in a process with many runs: it is unpacked once for all.
 
-To remove its four folders takes some file systems longer than a quarter of a run's steps. Our plant
-writes nothing into them, and its instances share nothing.
+Some file systems take longer to remove its four folders than a quarter of a run's steps takes.
+Our plant writes nothing into them, and its instances share nothing.
 """
 
 import tempfile
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.gate import open_archive
+from fmus.archive.archive_check import open_archive
 from fmus.profile.preparation import Prepared, unpack
 
 PREFIX: Final = "vehicle-fmu-"
-_folders: Final[dict[str, Path]] = {}  # by the FMU's content
+_folders: Final[dict[str, Path]] = {}  # folders by the SHA-256 of the FMU
 _keeping: Final[set[bool]] = set()
 
 
 def keep_unpacked() -> None:
-    """From now on, unpack each shipped FMU once and leave it in the folder for temporary files.
+    """Unpack each shipped FMU only once from now on, into the folder for temporary files.
 
     For a process whose folder for temporary files is its own, and is removed with it.
     """
@@ -25,7 +25,7 @@ def keep_unpacked() -> None:
 
 
 def kept(prepared: Prepared) -> Path | None:
-    """The folder of a shipped FMU; None where it is to be unpacked for one vehicle.
+    """Return the folder of a shipped FMU, or None if it must be unpacked for one vehicle.
 
     Raises:
         FmuArchiveError: a member is damaged.

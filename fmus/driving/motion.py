@@ -1,4 +1,4 @@
-"""An FMU's outputs as a motion in SI units, checked against what no car does."""
+"""An FMU's outputs as a motion in SI units, checked for plausibility."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from fmus.errors import FmuOutputError
 from fmus.profile.preparation import Prepared
 from fmus.profile.wiring import Wiring
 
-_STILL = 1e-9  # [m/s] or [m] a smaller change in a step is rounding, and no motion
-_REVERSING = -0.05  # [m/s] beyond what a stop within a step may overshoot
+_STILL = 1e-9  # [m/s] or [m] change in a step that is mere rounding
+_REVERSING = -0.05  # [m/s] speed beyond the overshoot of a stop within a step
 
 
 class Motion:
@@ -21,10 +21,10 @@ class Motion:
         prepared: the vehicle.
 
     Attributes:
-        position: [m].
-        speed: [m/s].
-        acceleration: [m/s2].
-        warnings: what the user should know.
+        position: Position [m].
+        speed: Speed [m/s].
+        acceleration: Acceleration [m/s2].
+        warnings: Warnings for the user.
     """
 
     def __init__(self, prepared: Prepared) -> None:
@@ -43,7 +43,7 @@ class Motion:
         self._guard = Guard(limits, self.names)
         self._trusted = prepared.ours
         self._last_effective = 0.0  # [N] force under which the speed last changed
-        self._origin = 0.0  # [m] where the FMU's own position is 0
+        self._origin = 0.0  # [m] position at which the FMU's own is 0
         self._agreement = Agreement(limits.position_jump)
 
     @property
@@ -79,10 +79,10 @@ class Motion:
         """Take over the state after a step.
 
         Args:
-            outputs: of the FMU.
+            outputs: Outputs of the FMU.
             force: held over the step [N].
-            duration: of the step [s].
-            time: at its end [s].
+            duration: Duration of the step [s].
+            time: Time at its end [s].
 
         Raises:
             FmuOutputError: no car can have this state.
@@ -133,7 +133,7 @@ class Motion:
             self._note(self._guard.once("reverse", backwards))
 
     def _judge(self, jump: float, slack: float, time: float) -> None:
-        """Refuse a state that no car can have; ``slack`` [m] of its ``jump`` [m] is allowed."""
+        """Refuse a state that no car can have, apart from ``slack`` [m] of its ``jump`` [m]."""
         good = (
             -self._limit <= self.speed <= self._limit
             and abs(jump) <= self._jump + slack
@@ -161,7 +161,7 @@ class Motion:
 
 
 def names_of(wiring: Wiring) -> dict[str, str]:
-    """What the FMU calls the quantities of the motion."""
+    """Return the FMU's names of the quantities of the motion."""
     names = {}
     for role in ("speed", "position", "acceleration"):
         index = wiring.output(role)

@@ -5,19 +5,19 @@ from fmus.interfaces.vehicle import Drivable
 from fmus.profile.advice import gain_line
 from fmus.text import printable
 
-_NEAR = 0.01  # [m/s] largest error of the speed in the end
-_SETTLED = 0.5  # [s] for which the speed must stay as near
+_NEAR = 0.01  # [m/s] largest error of the final speed
+_SETTLED = 0.5  # [s] time over which the speed must keep that error
 _CLOSE = 0.3  # [m/s] error below which the integrator works
-_LIMIT = 120.0  # [s] of simulated time
+_LIMIT = 120.0  # [s] longest simulated time
 _RESPONSE = 0.5  # [s] time constant of the approach
 _INTEGRATION = 4.0  # [s] time constant of the integrator, for resistance beyond the model's
-_BACKWARDS = 1.0  # [m/s] more is no creeping
-_STILL = 0.02  # [m/s] a smaller change is no motion
+_BACKWARDS = 1.0  # [m/s] backward speed that is more than creeping
+_STILL = 0.02  # [m/s] change of speed up to which the vehicle stands still
 _STRONGEST = 3.0  # [m/s2] largest acceleration asked for
 
 
 def run_up(vehicle: Drivable, speed: float) -> float:
-    """Drive ``vehicle`` until it keeps ``speed`` [m/s]; returns how long it took [s].
+    """Drive ``vehicle`` until it keeps ``speed`` [m/s], and return the time that it took [s].
 
     Raises:
         FmuStartError: it does not get there.
@@ -57,7 +57,7 @@ def run_up(vehicle: Drivable, speed: float) -> float:
 
 
 def _idle(vehicle: Drivable) -> str:
-    """The inputs that the profile does not drive, as the end of a message."""
+    """Return the inputs that the profile does not drive, as the end of a message."""
     prepared = vehicle.prepared
     driven = {wire.channel.variable.name for wire in prepared.wiring.inputs}
     idle = [

@@ -7,11 +7,11 @@ from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
 from fmus.interfaces.vehicle import Drivable
 from fmus.profile.preparation import Prepared
 
-_FIT = 0.02  # [m/s] or [m], and share, by which the first state may differ from the one asked for
+_FIT = 0.02  # [m/s] or [m], and relative: largest error of the first state
 
 
 def start_values(prepared: Prepared, position: float, speed: float) -> dict[Channel, Value]:
-    """The FMU's start values; its inputs start as for no force."""
+    """Return the FMU's start values; its inputs start with their values for no force."""
     wiring = prepared.wiring
     at_rest = memoryview(bytearray(8 * len(wiring.inputs))).cast("d")
     prepared.command.apply(0.0, speed, at_rest)
@@ -34,7 +34,7 @@ def reach(vehicle: Drivable, speed: float) -> float | None:
     """Check that the vehicle starts at a speed [m/s], or drive up to it.
 
     Returns:
-        how long the drive took [s]; None: the FMU starts at the speed.
+        Duration of the drive [s]; None if the FMU starts at the speed.
 
     Raises:
         FmuStartError: the vehicle cannot get to the speed.

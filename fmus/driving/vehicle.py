@@ -1,4 +1,4 @@
-"""A vehicle whose longitudinal motion is an FMU: a force in; position, speed, acceleration out."""
+"""A vehicle whose longitudinal motion is an FMU, with a force as its input."""
 
 import os
 import tempfile
@@ -16,8 +16,8 @@ from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepErr
 from fmus.fmi import load
 from fmus.fmi.status import STATUS_NAMES, WARNING
 from fmus.interfaces.vehicle import Drivable
-from fmus.profile.pace import between, step_to_run_with
 from fmus.profile.preparation import Prepared, prepare, unpack
+from fmus.profile.step_plan import between, step_to_run_with
 from fmus.profile.vehicle_profile import VehicleProfile
 
 
@@ -28,8 +28,8 @@ class VehicleFmu(Drivable):
 
     Args:
         path: the .fmu file.
-        step_size: of the controller [s].
-        profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
+        step_size: Step size of the controller [s].
+        profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
         start_values: further start values by variable name, set at every :meth:`start`.
 
@@ -71,7 +71,7 @@ class VehicleFmu(Drivable):
         self.prepared = prepared
         self.record = prepared.wiring.record
         self.step_size = prepared.step_size
-        self._pace = prepared.pace
+        self._step_plan = prepared.step_plan
         self._command = prepared.command
         self._grade = prepared.wiring.grade
         self.knows_grades = self._grade is not None
@@ -99,8 +99,8 @@ class VehicleFmu(Drivable):
         """Begin (again) at time 0 with a new instance of the FMU.
 
         Args:
-            position: [m].
-            speed: [m/s]; an FMU without a parameter for it is driven up to it before time 0.
+            position: Position [m].
+            speed: Speed [m/s]; an FMU without a parameter for it is driven up to it before time 0.
 
         Raises:
             FmuStartError: the FMU refuses its start values, or does not start at this speed.
@@ -159,13 +159,13 @@ class VehicleFmu(Drivable):
 
     @property
     def between_steps(self) -> bool:
-        """Not within a step of the FMU that is longer than the controller's."""
-        return (self._earlier + self._steps) % self._pace.stretch == 0
+        """True unless the FMU is within a step that is longer than the controller's."""
+        return (self._earlier + self._steps) % self._step_plan.stretch == 0
 
     # --- steps ---------------------------------------------------------------------------------
 
     def step(self, force: float, grade: float = 0.0) -> None:
-        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
+        """Hold ``force`` [N] for one step on a ``grade`` [rad], and set the attributes.
 
         Raises:
             FmuStepError: the force is not a finite number, or the FMU does not do the step.
@@ -174,7 +174,7 @@ class VehicleFmu(Drivable):
         """
         if self._refusal or not isfinite(force):
             self._require_step(force)
-        motion, done, stretch = self._motion, self._earlier + self._steps, self._pace.stretch
+        motion, done, stretch = self._motion, self._earlier + self._steps, self._step_plan.stretch
         if stretch == 1 or done % stretch == 0:
             self._drive(force, grade, done)
         self._steps += 1
@@ -184,23 +184,23 @@ class VehicleFmu(Drivable):
             self.position, self.speed = motion.position, motion.speed
         else:
             share = (done % stretch + 1) / stretch
-            self.position, self.speed = between(*self._ends, self._pace.step, share)
+            self.position, self.speed = between(*self._ends, self._step_plan.step, share)
 
     def _drive(self, force: float, grade: float, done: int) -> None:
         """Do the FMU's steps of one control step, or the FMU's one step if that is longer."""
-        pace, motion, tick = self._pace, self._motion, self._tick
+        step_plan, motion, tick = self._step_plan, self._motion, self._tick
         self._command.apply(force, motion.speed, self._inputs)
         if self._grade is not None:
             self._inputs[self._grade] = self.prepared.wiring.grade_to_raw(grade)
         if self.prepared.bounds:
             motion.keep_bounds(self._inputs)
-        h, substeps = pace.step, pace.substeps
-        first = done // pace.stretch * substeps
+        h, substeps = step_plan.step, step_plan.substeps
+        first = done // step_plan.stretch * substeps
         for number in range(first, first + substeps):
             status = tick(number * h, h)
             if status > WARNING:
                 self._step_failed(force, status)
-        end = (self._steps + pace.stretch) * self.step_size
+        end = (self._steps + step_plan.stretch) * self.step_size
         try:
             motion.follow(self._outputs, force, substeps * h, end)
         except FmuOutputError:
@@ -208,7 +208,7 @@ class VehicleFmu(Drivable):
             self._show(motion)
             self._fail()
             raise
-        if pace.stretch > 1:
+        if step_plan.stretch > 1:
             self._ends = (self._ends[1], (motion.position, motion.speed))
 
     def _show(self, motion: Motion) -> None:
@@ -217,7 +217,7 @@ class VehicleFmu(Drivable):
     # --- end -----------------------------------------------------------------------------------
 
     def close(self) -> None:
-        """Free everything, including the temporary folder; nothing happens the second time."""
+        """Free everything, including the temporary folder; a second call does nothing."""
         if not self._closed:
             self._closed = True
             self._refuse("has been closed; make a new one")
@@ -225,9 +225,9 @@ class VehicleFmu(Drivable):
             self._resources.close()
 
     def _own_step(self) -> str:
-        """Advice for an FMU that does steps of one length only: the end of a message, or empty."""
+        """Return advice for an FMU with steps of one length only, as the end of a message."""
         wanted, interface = self.prepared.model.default_step, self.prepared.wiring.interface
-        if interface.variable_step or wanted is None or isclose(wanted, self._pace.step):
+        if interface.variable_step or wanted is None or isclose(wanted, self._step_plan.step):
             return ""
         return (
             "; it does steps of one length only, and its default experiment's is "
@@ -237,7 +237,7 @@ class VehicleFmu(Drivable):
     def _step_failed(self, force: float, status: int) -> NoReturn:
         self._fail()
         said = self._instance.messages.take() or "without a message"
-        end = (self._steps + self._pace.stretch) * self.step_size
+        end = (self._steps + self._step_plan.stretch) * self.step_size
         raise FmuStepError(
             f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "
             f"FMU returned '{STATUS_NAMES[status]}', {said}{self._own_step()}"

@@ -44,15 +44,15 @@ def load(
     """Load an FMU's library, ready to be started.
 
     Args:
-        model: as read.
-        interface: the one of its interfaces that is to run.
-        folder: with the extracted FMU; the caller removes it after :meth:`Instance.close`.
+        model: Model description of the FMU.
+        interface: Interface that is to run.
+        folder: Folder with the extracted FMU; the caller removes it after :meth:`Instance.close`.
         binary: this platform's library, by its name in the archive.
-        solver: of Model Exchange; None: CVode where it runs.
-        tolerance: relative: of Model Exchange's solver, or told to a Co-Simulation FMU.
-        rewinds: before each step keep the state, so that a discarded step can be done again in
-            smaller ones; only with Co-Simulation FMUs that can save their state.
-        stop_time: told to the FMU [s]; None: it has none.
+        solver: Solver of Model Exchange; None: CVode where it runs.
+        tolerance: Relative tolerance of Model Exchange's solver, or the one told to Co-Simulation.
+        rewinds: True: keep the state before each step, so that a discarded step can be done again
+            in smaller ones; only with Co-Simulation FMUs that can save their state.
+        stop_time: End of the simulation as told to the FMU [s]; None: not told.
 
     Raises:
         FmuInterfaceError: this version and kind cannot be run.
@@ -62,7 +62,7 @@ def load(
         raise FmuInterfaceError(
             f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
         )
-    (folder / "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
+    (folder / "resources").mkdir(exist_ok=True)  # its path is given to the FMU even if it is empty
     library = Library(folder / binary, model.path)
     try:
         calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())

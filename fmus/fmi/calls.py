@@ -21,8 +21,8 @@ class CallFailedError(Exception):
     """A function of the FMU did not do what it should.
 
     Attributes:
-        status: that it returned.
-        remedy: what the user can do about it.
+        status: Status that the function returned.
+        remedy: Advice for the user.
     """
 
     remedy = "check its start values"
@@ -52,7 +52,7 @@ class CType:
 
 @dataclass(frozen=True)
 class Progress:
-    """What an FMU says after a step that it did not complete."""
+    """The answer of an FMU about a step that it did not complete."""
 
     reached: float | None  # [s]; None: the FMU does not say
     ended: bool  # the FMU wants to end the simulation
@@ -60,31 +60,31 @@ class Progress:
 
 @dataclass
 class EventInfo:
-    """What an FMU says after an update of its discrete states."""
+    """The answer of an FMU after an update of its discrete states."""
 
     again: bool = False
     ended: bool = False
     nominals_changed: bool = False
-    next_time: float | None = None  # [s] of its next time event
+    next_time: float | None = None  # [s] time of its next time event
 
 
 class Calls(ABC):
     """An FMU's functions.
 
     Args:
-        library: loaded.
-        model: the FMU.
-        interface: that is to run.
-        folder: with the extracted FMU.
-        messages: receives the FMU's messages.
+        library: Loaded library.
+        model: Model description.
+        interface: Interface that is to run.
+        folder: Folder with the extracted FMU.
+        messages: Log that receives the FMU's messages.
 
     Raises:
         FmuPlatformError: a function is missing that the FMU must have.
     """
 
     types: ClassVar[Mapping[str, CType]]
-    state_word: ClassVar = "FMUstate"  # as the standard spells it in the names of functions
-    exchange: ClassVar[dict[str, str]] = {  # what Model Exchange calls often, by what it does
+    state_word: ClassVar = "FMUstate"  # the standard's spelling in the names of functions
+    exchange: ClassVar[dict[str, str]] = {  # functions that Model Exchange calls often, by purpose
         "set_time": "SetTime",
         "set_states": "SetContinuousStates",
         "get_states": "GetContinuousStates",
@@ -109,7 +109,7 @@ class Calls(ABC):
         self.component: c_void_p | None = None
         self.stop_time: float | None = None  # [s] told to the FMU; None: it has none
         self.event_mode = False  # FMI 3's Co-Simulation: of the instances that are made
-        self.prefix = f"fmi{model.fmi_version[0]}"  # of all functions' names
+        self.prefix = f"fmi{model.fmi_version[0]}"  # beginning of all functions' names
         self.exchanges = interface.kind == Kind.MODEL_EXCHANGE
         self._functions: dict[str, Function] = {}
         self._free: Function
@@ -164,7 +164,7 @@ class Calls(ABC):
         return f"{self.prefix}{verb}{suffix}"
 
     def arguments(self, references: Sequence[int], values: Any) -> tuple[Any, ...]:
-        """What a set or get function takes, ready to be passed any number of times."""
+        """Return the arguments of a set or get function, for any number of calls."""
         count = len(references)
         return self.component, (c_uint32 * count)(*references), c_size_t(count), values
 
@@ -186,24 +186,24 @@ class Calls(ABC):
     # ---- Model Exchange ----
 
     def enter_event_mode(self) -> None:
-        """From continuous-time mode."""
+        """Enter event mode from continuous-time mode."""
         self.call(self.name("EnterEventMode"))
 
     @abstractmethod
     def update_discrete_states(self) -> EventInfo:
-        """One round of the event iteration."""
+        """Do one round of the event iteration."""
 
     def enter_step_mode(self) -> None:
-        """From event mode, in Co-Simulation (FMI 3)."""
+        """Enter step mode from event mode, in Co-Simulation (FMI 3)."""
         self.call(self.name("EnterStepMode"))
 
     def enter_continuous_time_mode(self) -> None:
-        """From event mode."""
+        """Enter continuous-time mode from event mode."""
         self.call(self.name("EnterContinuousTimeMode"))
 
     @abstractmethod
     def completed_step(self) -> tuple[bool, bool]:
-        """After an integrator's step: whether the FMU wants event mode, whether it wants to end."""
+        """Tell the FMU that a step is done; return whether it wants event mode, and to end."""
 
     def exchange_names(self) -> Mapping[str, str]:
         """The names of the functions that Model Exchange calls often, by what they do."""
@@ -276,7 +276,7 @@ class Stepper:
     final: Any  # .value may be changed between two steps
     flags: Any  # indexable
     event: Any  # .value may be read after a step
-    progress: Callable[[], Progress]  # after a step that was not completed
+    progress: Callable[[], Progress]  # function to call after an incomplete step
 
 
 if sys.platform == "win32":

@@ -16,11 +16,11 @@ from fmus.fmi.running import Instance, Tick
 from fmus.fmi.status import DISCARD, ENDED, ERROR, FATAL, WARNING
 from fmus.fmi.values import Transfer
 
-HALVINGS = 6  # of a step that an FMU discards
-CONTINUATIONS = 100  # of one step from where the FMU has stopped
-NEGLIGIBLE = 1e-9  # share of a step that is taken for nothing
-ROUNDS = 100  # of one event iteration
-REMEMBERED = 100_000  # steps that are done again with event mode
+HALVINGS = 6  # largest number of halvings of a step that an FMU discards
+CONTINUATIONS = 100  # largest number of continuations of one step from where the FMU stopped
+NEGLIGIBLE = 1e-9  # share of a step that counts as nothing
+ROUNDS = 100  # largest number of rounds of one event iteration
+REMEMBERED = 100_000  # largest number of steps that are repeated with event mode
 
 
 class CoSimulation(Instance):
@@ -37,7 +37,7 @@ class CoSimulation(Instance):
         self._rewinds = rewinds and calls.interface.saves_state
         self._start, self._step = c_double(), c_double()
         self._before: c_void_p | None = None  # state before the last step
-        self._before_time = 0.0  # [s] of that state
+        self._before_time = 0.0  # [s] time of that state
         calls.function(calls.name("DoStep"))
         self._past: list[tuple[float, float, bytes]] | None = (
             None  # steps, as long as it may matter
@@ -111,7 +111,7 @@ class CoSimulation(Instance):
             raise CallFailedError(msg, status)
 
     def _handle_events(self) -> int:
-        """The event iteration, and back to step mode.
+        """Do the event iteration, then return to step mode.
 
         Raises:
             CallFailedError: the FMU refuses.
@@ -206,7 +206,7 @@ class CoSimulation(Instance):
         return status
 
     def _continue(self, status: int, time: float, end: float, size: float) -> int:
-        """Go on from where the FMU has stopped in a step that was to reach ``end``."""
+        """Continue from where the FMU has stopped in a step that was to reach ``end``."""
         for _ in range(CONTINUATIONS):
             if status > DISCARD or not (status == DISCARD or self._stepper.flags[0]):
                 return status

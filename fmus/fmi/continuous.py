@@ -1,4 +1,4 @@
-"""The continuous part of a Model Exchange FMU, as a solver sees it: x' = f(t, x), z = g(t, x)."""
+"""The continuous part of a Model Exchange FMU for a solver: x' = f(t, x), z = g(t, x)."""
 
 from collections.abc import Callable
 from ctypes import byref, c_double, c_size_t, c_void_p
@@ -59,7 +59,7 @@ class ContinuousSystem:
         return x
 
     def nominals(self) -> NDArray[np.float64]:
-        """The states' typical sizes; whatever is no positive number counts as 1."""
+        """Return the states' nominal values; a value that is no positive number becomes 1."""
         x = np.ones(self.nx)
         if self.nx:
             status = self._get_nominals(self._component, x.ctypes.data_as(c_void_p), self._size)
@@ -83,7 +83,7 @@ class ContinuousSystem:
         """Write x' to an address.
 
         Args:
-            time: [s].
+            time: Time [s].
             x: address of the states.
             slope: address for the derivatives.
 
@@ -97,7 +97,7 @@ class ContinuousSystem:
         self._require(status, "get_derivatives")
 
     def signs(self, time: float, x: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which event indicators are above 0: an event is a change of these (FMI 2.0.4, 3.1.1)."""
+        """Return the signs of the event indicators; a change is an event (FMI 2.0.4, 3.1.1)."""
         if not self.nz:
             return self._z > 0.0
         self.set(time, x)
@@ -112,7 +112,7 @@ class ContinuousSystem:
         return self._z > 0.0
 
     def undefined(self, slope: NDArray[np.float64], time: float) -> str:
-        """Which derivative is no finite number, in words; empty if all are."""
+        """Name the derivative that is no finite number, or return an empty text."""
         if np.isfinite(slope).all():
             return ""
         odd = _first_not_finite(slope)
@@ -133,8 +133,8 @@ class Solver(Protocol):
     """Integrates a continuous system.
 
     Attributes:
-        x: the states at the end of the last step.
-        remedy: what to set in a profile where too many steps are needed.
+        x: States at the end of the last step.
+        remedy: Advice on the profile for when too many steps are needed.
     """
 
     x: NDArray[np.float64]
@@ -147,7 +147,7 @@ class Solver(Protocol):
         """Make the next step a short one: the next event may follow soon."""
 
     def step(self, stop: float) -> float:
-        """One internal step, not beyond ``stop`` [s]; returns where it ends [s].
+        """Do one internal step, not beyond ``stop`` [s], and return where it ends [s].
 
         Raises:
             IntegrationError: there is no step that is small enough.
@@ -164,13 +164,13 @@ class Solver(Protocol):
 def locate(
     crossed: Callable[[float], bool], before: float, after: float, resolution: float
 ) -> float:
-    """When a crossing happens [s]: bisection, up to ``resolution`` after it.
+    """Return the time [s] of a crossing by bisection, at most ``resolution`` after it.
 
     Args:
-        crossed: whether it has happened at a time between ``before`` and ``after``.
-        before: [s] when it has not.
-        after: [s] when it has.
-        resolution: [s].
+        crossed: Function that tells whether it has happened at a time between the two.
+        before: Time [s] at which it has not happened.
+        after: Time [s] at which it has happened.
+        resolution: Resolution [s].
     """
     while after - before > resolution:
         middle = before + 0.5 * (after - before)
@@ -184,7 +184,7 @@ def locate(
 
 
 def counts(calls: Calls) -> tuple[int, int]:
-    """Continuous states and event indicators: FMI 3's depend on structural parameters."""
+    """Return the numbers of states and event indicators; in FMI 3 they depend on parameters."""
     found = [calls.model.states, calls.model.event_indicators]
     if calls.model.fmi_version == "3.0":
         for index, name in enumerate(

@@ -36,7 +36,7 @@ _RightHandSide = CFUNCTYPE(c_int, c_double, c_void_p, c_void_p, c_void_p)
 
 
 def available() -> bool:
-    """Whether FMPy has SUNDIALS for this platform."""
+    """Return whether FMPy has SUNDIALS for this platform."""
     try:
         _libraries()
     except Exception:  # loading a foreign library can raise anything
@@ -54,8 +54,8 @@ class Cvode:
     """Backward differentiation formulas with a dense Jacobian from differences.
 
     Args:
-        system: to integrate; at least one state.
-        tolerance: relative; times a state's nominal value it is the absolute one.
+        system: System to integrate; at least one state.
+        tolerance: Relative tolerance; the absolute one is this times a state's nominal value.
     """
 
     remedy = "a greater `tolerance`"
@@ -105,7 +105,7 @@ class Cvode:
         self._require("CVodeSetMinStep", c_double(SMALLEST * max(1.0, abs(time))))
 
     def expect_events(self) -> None:
-        """Nothing to do: CVode always starts with small steps."""
+        """Do nothing: CVode always starts with small steps."""
 
     def step(self, stop: float) -> float:  # noqa: D102
         self._undefined = ""

@@ -18,7 +18,7 @@ from fmus.fmi.messages import formatted_receiver
 from fmus.fmi.status import ERROR, WARNING
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmiStatusKind
-_LONGEST_WAIT = c_double(0.0)  # [ms] for a tool to start; 0: without limit
+_LONGEST_WAIT = c_double(0.0)  # [ms] time for a tool to start; 0: without limit
 
 
 class _Callbacks(Structure):  # passed by value
@@ -76,7 +76,7 @@ class Fmi1Calls(Calls):
             if self.exchanges
             else _Callbacks(logger, *allocators(), None)
         )
-        self._first: EventInfo | None = None  # of the initialisation
+        self._first: EventInfo | None = None  # result of the initialisation
         if self.exchanges:
             names = ("InstantiateModel", "Initialize", "Terminate", "FreeModelInstance")
         else:
@@ -90,7 +90,7 @@ class Fmi1Calls(Calls):
 
     def instantiate(self) -> None:  # noqa: D102
         name, guid = (c_char_p(t.encode()) for t in (self.interface.identifier, self.model.guid))
-        logging = c_byte(1)  # for the reason of a failure: some FMUs give it only then
+        logging = c_byte(1)  # some FMUs give the reason of a failure only with logging
         if self.exchanges:
             component = self._instantiate(name, guid, self._callbacks, logging)
         else:

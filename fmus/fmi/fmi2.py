@@ -72,7 +72,7 @@ class Fmi2Calls(Calls):
             c_char_p(resources.as_uri().encode()),
             byref(self._callbacks),
             c_int(0),  # not visible
-            c_int(1),  # with logging, for the reason of a failure: some FMUs give it only then
+            c_int(1),  # some FMUs give the reason of a failure only with logging
         )
         self.keep_instance(component, "fmi2Instantiate")
 

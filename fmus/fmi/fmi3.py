@@ -56,7 +56,7 @@ class Fmi3Calls(Calls):
             c_char_p(self.model.guid.encode()),
             c_char_p(os.fsencode(resources)),
             c_bool(False),  # not visible
-            c_bool(True),  # with logging, for the reason of a failure
+            c_bool(True),  # logging gives the reason of a failure
         )
         environment = (None, ctypes.cast(self._receiver, c_void_p))
         if self.exchanges:

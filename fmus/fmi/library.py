@@ -20,7 +20,7 @@ class Library:
     """A loaded shared library.
 
     Args:
-        path: of the library.
+        path: Path of the library.
         fmu: named in errors.
 
     Raises:

@@ -1,8 +1,8 @@
 """The messages of an FMU: the log that keeps them, and the C functions that receive them.
 
-Those of FMI 1 and 2 are printf formats with arguments, which Python cannot receive as such. They
-are taken from the registers and the stack, as the platform's calling convention has it. Memory is
-read only where it is readable: a message like "100% sure" must not crash the process.
+The messages of FMI 1 and 2 are printf formats with arguments, which Python cannot receive as
+such. They are taken from the registers and the stack, by the platform's calling convention.
+Memory is read only where it is readable: a message like "100% sure" must not crash the process.
 """
 
 import ctypes
@@ -46,7 +46,7 @@ class MessageLog:
 
 
 def _decoded(message: bytes) -> str:
-    """Old tools write Latin-1 where the standard says UTF-8."""
+    """Decode a message; old tools write Latin-1 where the standard demands UTF-8."""
     try:
         return message.decode("utf-8")
     except UnicodeDecodeError:
@@ -57,7 +57,10 @@ def _decoded(message: bytes) -> str:
 
 
 def _convention() -> tuple[int, int, int, int]:
-    """After five fixed arguments: integer registers to skip and to use, double registers, stack."""
+    """Return the places of variadic arguments after five fixed ones.
+
+    The numbers are: integer registers to skip and to use, double registers, stack slots.
+    """
     machine = platform.machine().lower()
     if sys.platform == "win32":
         return (0, 0, 0, 16) if machine in {"amd64", "x86_64"} else (0, 0, 0, 0)
@@ -82,7 +85,7 @@ class Arguments:
     """The arguments of a format, one after the other.
 
     Args:
-        slots: of registers and the stack, as the receivers get them.
+        slots: Slots of registers and the stack, as the receivers get them.
     """
 
     def __init__(self, slots: Sequence[Any]) -> None:
@@ -92,12 +95,12 @@ class Arguments:
         self._stack: Iterator[int] = iter(slots[doubles:])
 
     def integer(self) -> int:
-        """The next; StopIteration after the last that can be reached."""
+        """Return the next integer; StopIteration after the last that can be reached."""
         value = next(self._integers, None)
         return next(self._stack) if value is None else value
 
     def double(self) -> float:
-        """The next; StopIteration after the last that can be reached."""
+        """Return the next double; StopIteration after the last that can be reached."""
         value = next(self._doubles, None)
         if value is not None:
             return value
@@ -151,7 +154,7 @@ _BITS = {"hh": 8, "h": 16, "l": 32 if sys.platform == "win32" else 64} | dict.fr
 
 
 def expand(text: bytes, arguments: Arguments) -> bytes:
-    """A printf format with its arguments; what cannot be expanded stays as it is."""
+    """Expand a printf format with its arguments; a part that cannot be expanded stays."""
     if b"%" not in text:
         return text
 

@@ -17,10 +17,10 @@ from fmus.fmi.status import ENDED, ERROR, PENDING, WARNING
 from fmus.fmi.values import Transfer
 
 TOLERANCE = 1e-6  # relative
-RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s
-ROUNDS = 100  # of one event iteration
-EVENTS = 200  # in one step
-INTERNAL_STEPS = 5_000  # in one step
+RESOLUTION = 1e-12  # resolution of times, relative to the greater of the time and 1 s
+ROUNDS = 100  # largest number of rounds of one event iteration
+EVENTS = 200  # largest number of events in one step
+INTERNAL_STEPS = 5_000  # largest number of internal steps in one step
 PATIENCE = 500  # internal steps of CVode in one step, before another solver is tried
 DENSE = 500  # states up to which CVode's dense Jacobian is affordable
 
@@ -107,15 +107,15 @@ class ModelExchange(Instance):
     # ---- one step ----
 
     def _begin(self, time: float) -> None:
-        """Event mode at the start of a step, before the inputs are set."""
+        """Enter event mode at the start of a step, before the inputs are set."""
         upcoming = self._next_event
         if upcoming is not None and 0.0 < upcoming - time <= _resolution(time):
-            time = upcoming  # the event was left over from the last step
+            time = upcoming  # the event is left over from the last step
         self._system.set_time(time)  # in event mode FMI 3 does not allow it
         self.calls.enter_event_mode()
 
     def _run(self, time: float, end: float) -> None:
-        """From event mode at the start of a step to continuous-time mode at its end."""
+        """Go from event mode at the start of a step to continuous-time mode at its end."""
         system, start = self._system, time
         negligible = _resolution(end)
         self._settle(time)
@@ -138,7 +138,7 @@ class ModelExchange(Instance):
         system.set(end, self.solver.x)
 
     def _settle(self, time: float) -> None:
-        """The event iteration, then continuous time with the solver at its start."""
+        """Do the event iteration, then start continuous time and the solver."""
         self._iterate(time)
         self.calls.enter_continuous_time_mode()
         if self._update_nominals:
@@ -160,12 +160,12 @@ class ModelExchange(Instance):
                 f"its event iteration at {time:.9g} s has not ended after {ROUNDS} rounds"
             )
         upcoming = info.next_time
-        # A time event that is over has just been handled; some FMUs keep naming it.
+        # A time event that is over has just been handled, but some FMUs keep naming it.
         later = upcoming is not None and upcoming > time + _resolution(time)
         self._next_event = upcoming if later else None
 
     def _integrate(self, time: float, stop: float) -> tuple[float, bool]:
-        """Integrate up to ``stop`` or an event; return where that ended, and whether by an event.
+        """Integrate up to ``stop`` or an event; return the time, and whether there was an event.
 
         The FMU is left at that point.
         """
@@ -193,7 +193,7 @@ class ModelExchange(Instance):
         )
 
     def _advance(self, time: float, stop: float, count: int) -> float:
-        """One internal step from ``time``; ``count`` have been done since the last event."""
+        """Do one internal step from ``time``, after ``count`` steps since the last event."""
         if count == PATIENCE:
             self._fall_back(time)
         try:
@@ -218,7 +218,7 @@ class ModelExchange(Instance):
         return True
 
     def _first_crossing(self, time: float, after: float, before: Any) -> float:
-        """When an event indicator changes its sign within the solver's last step [s]."""
+        """Return the time [s] in the last step at which an event indicator changes its sign."""
         system, solver = self._system, self.solver
 
         def crossed(moment: float) -> bool:

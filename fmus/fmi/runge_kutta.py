@@ -14,7 +14,7 @@ from fmus.fmi.continuous import (
 )
 
 FIRST_STEP = 1e-5  # [s] short: another event may follow soon
-SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # of the next step's length: Hairer, Norsett, Wanner, II.4
+SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # factors of a step's length: Hairer, Norsett, Wanner, II.4
 
 
 class RungeKutta:
@@ -23,8 +23,8 @@ class RungeKutta:
     Both results combined are of order 5 (Richardson; Hairer, Norsett & Wanner 1993, II.4).
 
     Args:
-        system: to integrate.
-        tolerance: relative; times a state's nominal value it is the absolute one.
+        system: System to integrate.
+        tolerance: Relative tolerance; the absolute one is this times a state's nominal value.
     """
 
     remedy = '`solver = "cvode"`, it is for stiff systems, or a greater `tolerance`,'
@@ -80,7 +80,7 @@ class RungeKutta:
         return self._propose(self._start, self._x_start, time - self._start)[0]
 
     def close(self) -> None:
-        """Nothing to free."""
+        """Do nothing: there is nothing to free."""
 
     def _arrive(
         self, start: float, x_start: NDArray[np.float64], end: float, x: NDArray[np.float64]

@@ -40,10 +40,10 @@ class Instance(ABC):
         self.inputs = self.outputs = memoryview(bytearray()).cast("d")
         self.tick: Tick = _not_started
         self._before_start: list[Setting] = []
-        self._at_start: list[Setting] = []  # of inputs
+        self._at_start: list[Setting] = []  # start values of the inputs
         self._initialised = False
         self._worst = 0  # highest status since the instance was made
-        self._untouchable = False  # after a fatal error
+        self._untouchable = False  # True after a fatal error
 
     def start(
         self,
@@ -103,14 +103,14 @@ class Instance(ABC):
         self.tick = self.make_tick(into, out)
 
     def prepare(self) -> None:  # noqa: B027
-        """What is to be done between the initialisation and the first step."""
+        """Prepare the instance between its initialisation and the first step."""
 
     @abstractmethod
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:
         """The function that does a step."""
 
     def note_status(self, status: int) -> int:
-        """The status, or ERROR for one that FMI does not know; the worst one is remembered."""
+        """Remember the worst status, and return the status (ERROR if FMI does not know it)."""
         if not 0 <= status <= PENDING:
             self.messages.add(ERROR, f"it returned {named(status)}, which FMI does not know")
             status = ERROR
@@ -122,7 +122,7 @@ class Instance(ABC):
     def stop(self) -> None:
         """End and free the instance, if there is one; the library stays loaded."""
         self.tick = _not_started
-        self._untouchable |= self._worst == FATAL  # after a fatal error no function may be called
+        self._untouchable |= self._worst == FATAL  # no function may be called after a fatal error
         if self.calls.component and self._worst != FATAL:
             with suppress(Exception):  # an FMU that cannot be ended properly does no harm
                 if self._initialised and self._worst < ERROR:

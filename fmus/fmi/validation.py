@@ -1,4 +1,4 @@
-"""What FMPy's validation says of an FMU."""
+"""The findings of FMPy's validation of an FMU."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from fmus.text import printable
 
 
 def findings(path: Path) -> list[str]:
-    """What FMPy's validation finds fault with; each a line. FMUs of well-known tools have some."""
+    """Return the findings of FMPy's validation, one line each; well-known tools cause some."""
     from fmpy.validation import validate_fmu
 
     return [printable(problem) for problem in validate_fmu(str(path))]

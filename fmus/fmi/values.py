@@ -16,7 +16,7 @@ from fmus.text import printable
 
 
 def settings(calls: Calls, values: Mapping[Channel, Value]) -> list[Setting]:
-    """Start values ready for C; elements of one array become one setting.
+    """Return start values for C; the elements of an array become one setting.
 
     Raises:
         FmuStartError: a value does not fit its variable.
@@ -37,7 +37,7 @@ def settings(calls: Calls, values: Mapping[Channel, Value]) -> list[Setting]:
 
 
 def start_list(variable: Variable) -> list[Any]:
-    """The start values in the model description; 0 or an empty text where there are none."""
+    """Return the description's start values, or 0 (or an empty text) without one."""
     text = variable.kind == "String"
     words = [variable.start] if text or variable.scalar else variable.start.split()
     words = [word for word in words if word] or [""]
@@ -71,7 +71,7 @@ def _setting(calls: Calls, variable: Variable, whole: Sequence[Any]) -> Setting:
 
 
 def _ready(variable: Variable, ctype: CType, value: Any) -> Any:
-    """A value for a ctypes array; ValueError with what was expected."""
+    """Convert a value for a ctypes array; a ValueError says what was expected."""
     if ctype.type is c_char_p:
         if not isinstance(value, str) or "\0" in value:
             raise ValueError("a text")
@@ -122,7 +122,7 @@ class Transfer:
 
     Attributes:
         view: one double per channel.
-        function, arguments: what to call at every step; returns a status.
+        function, arguments: Call of every step, which returns a status.
     """
 
     def __init__(self, calls: Calls, verb: str, channels: Sequence[Channel]) -> None:
@@ -207,7 +207,7 @@ class _Group:
 
 
 def _converter(ctype: CType) -> Callable[[float], Any]:
-    """From a double to what the C type holds."""
+    """Return a function from a double to a value of the C type."""
     if ctype.type in {c_double, c_float}:
         return float
     if ctype.type is c_bool or ctype.suffix == "Boolean":

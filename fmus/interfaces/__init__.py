@@ -1,1 +1,1 @@
-"""What the floors above may expect of a vehicle, wherever its FMU runs."""
+"""The interface of a vehicle to the floors above, wherever its FMU runs."""

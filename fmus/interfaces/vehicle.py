@@ -1,4 +1,4 @@
-"""What any vehicle offers, wherever its FMU runs."""
+"""The interface of every vehicle, wherever its FMU runs."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -13,21 +13,21 @@ from fmus.profile.wiring import Recorded
 
 
 class Vehicle(ABC):
-    """What giveway drives, in this process or in one of its own.
+    """A vehicle that giveway drives, in this process or in one of its own.
 
     Args:
-        path: of the FMU.
+        path: Path of the FMU.
 
     Attributes:
-        position: [m] as of the last step.
-        speed: [m/s] as of the last step.
-        acceleration: [m/s2] as of the last step.
-        time: [s] the number of steps times the step size, never a running sum.
-        step_size: of the controller [s].
-        knows_grades: whether it has an input for the road's grade.
-        record: what the profile wants to have recorded.
-        recorded: values of the profile's ``record`` as of the last step, in the FMU's own units.
-        warnings: what the user should know of this FMU, since its last start.
+        position: Position [m] as of the last step.
+        speed: Speed [m/s] as of the last step.
+        acceleration: Acceleration [m/s2] as of the last step.
+        time: Time [s]: the number of steps times the step size, never a running sum.
+        step_size: Step size of the controller [s].
+        knows_grades: True if it has an input for the road's grade.
+        record: Variables that the profile wants to have recorded.
+        recorded: Values of the profile's ``record`` as of the last step, in the FMU's own units.
+        warnings: Warnings for the user since the last start.
     """
 
     step_size: float
@@ -48,14 +48,14 @@ class Vehicle(ABC):
 
     @abstractmethod
     def step(self, force: float, grade: float = 0.0) -> None:
-        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
+        """Hold ``force`` [N] for one step on a ``grade`` [rad], and set the attributes.
 
         A grade is uphill if it is positive; an FMU without an input for it drives as on the level.
         """
 
     @abstractmethod
     def close(self) -> None:
-        """Free everything; nothing happens the second time."""
+        """Free everything; a second call does nothing."""
 
     def __enter__(self) -> Self:
         return self
@@ -103,4 +103,4 @@ class Drivable(Vehicle):
     @property
     @abstractmethod
     def between_steps(self) -> bool:
-        """Not within a step of the FMU that is longer than the controller's."""
+        """True unless the FMU is within a step that is longer than the controller's."""

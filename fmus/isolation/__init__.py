@@ -34,8 +34,8 @@ def open_vehicle(
 
     Args:
         path: the .fmu file.
-        step_size: [s].
-        profile: which variable plays which part; None: see :func:`fmus.prepare`.
+        step_size: Step size [s].
+        profile: Roles of the FMU's variables; None: see :func:`fmus.prepare`.
         start_values: further start values by variable name.
         isolated: run it in a process of its own; None: yes, unless it is a shipped FMU.
 

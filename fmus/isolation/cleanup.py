@@ -9,9 +9,9 @@ from pathlib import Path
 from time import sleep
 from typing import Final
 
-LOG: Final = "watchdog.log"  # in the vehicle's folder: what its watchdog has to say
-_ROUNDS: Final = 50  # of looking for processes: those killed may have started others
-_PAUSE: Final = 0.02  # [s] for killed processes to disappear
+LOG: Final = "watchdog.log"  # file in the vehicle's folder: the messages of its watchdog
+_ROUNDS: Final = 50  # rounds of looking for processes: killed ones may have started others
+_PAUSE: Final = 0.02  # [s] time for killed processes to disappear
 
 
 def scratch_of(folder: Path) -> Path:

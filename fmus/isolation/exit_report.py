@@ -1,4 +1,4 @@
-"""How an FMU's process ended, in numbers and in words."""
+"""A report of how an FMU's process ended, in numbers and in words."""
 
 import json
 import signal
@@ -21,7 +21,7 @@ _TAIL: Final = 4096  # [bytes]
 
 @dataclass(frozen=True)
 class ExitReport:
-    """How a process ended.
+    """The way in which a process ended.
 
     Attributes:
         code: its exit status, or minus the signal that killed it; None: unknown, because the
@@ -87,7 +87,7 @@ class PrintedTail:
 
 
 def out_of_memory_kills() -> int:
-    """How many processes this system has killed for lack of memory; 0 where it does not say."""
+    """Count the processes that this system killed for lack of memory; 0 if unknown."""
     try:
         text = Path("/proc/vmstat").read_text(encoding="ascii")
     except OSError:

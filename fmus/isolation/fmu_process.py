@@ -1,4 +1,4 @@
-"""An FMU's process as its client sees it: started anew for every episode, asked, ended."""
+"""An FMU's process for its client: started anew for every episode, asked, ended."""
 
 from __future__ import annotations
 
@@ -19,42 +19,42 @@ from fmus.profile.preparation import unpack
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    from fmus.isolation.riders import Rider
+    from fmus.isolation.hosted import Hosted
     from fmus.profile.controller_preparation import PreparedController
     from fmus.profile.preparation import Prepared
 
-_END_TIMEOUT = 5.0  # [s] for an FMU to end by itself
+_END_TIMEOUT = 5.0  # [s] time for an FMU to end by itself
 _END_PATIENCE = 1.0  # [s] between the end of the connection and that of the process
 
 
 class FmuProcess:
-    """Whatever the FMU does in its process, this one goes on.
+    """A process for an FMU: whatever the FMU does there, this process goes on.
 
     Args:
-        rider: what the FMU is run as.
-        prepared: the vehicle or controller.
+        hosted: Adapter that runs the FMU in that process.
+        prepared: Prepared vehicle or controller.
 
     Attributes:
-        warnings: of the FMU, since its last start.
-        failed: the episode has failed: the FMU is no more asked to end.
-        last: the numbers of a reply that told an error; empty: none did.
-        last_time: of it [s].
+        warnings: Warnings of the FMU, since its last start.
+        failed: True after a failed episode: then the FMU is no longer asked to end.
+        last: Numbers of the reply that reported an error; empty without one.
+        last_time: Time [s] of its last step.
 
     Raises:
         FmuError: it cannot be unpacked, or no process can be started.
     """
 
-    def __init__(self, rider: type[Rider], prepared: Prepared | PreparedController) -> None:
+    def __init__(self, hosted: type[Hosted], prepared: Prepared | PreparedController) -> None:
         self.path = prepared.path
         self.warnings: list[str] = []
         self.failed = False
         self.last: Sequence[float] = ()
         self.last_time = 0.0
-        self._numbers = rider.numbers(prepared)
+        self._numbers = hosted.numbers(prepared)
         self._client: Client | None = None
         folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-"))
         try:
-            self._host = make_process_host(Order(rider, prepared, folder / "fmu"), folder)
+            self._host = make_process_host(Order(hosted, prepared, folder / "fmu"), folder)
         except BaseException:
             remove(folder)
             raise
@@ -68,7 +68,7 @@ class FmuProcess:
 
     @property
     def closed(self) -> bool:
-        """Whether it has been closed for good."""
+        """Return whether it has been closed for good."""
         return not self._closing.alive
 
     def begin(self) -> None:
@@ -84,10 +84,10 @@ class FmuProcess:
         """Have something done.
 
         Args:
-            what: is to be done.
-            numbers: of the request.
-            timeout: in which it must be done [s].
-            when: says when that was, for messages.
+            what: Kind of the request.
+            numbers: Numbers of the request.
+            timeout: Timeout in which it must be done [s].
+            when: Function that tells the time of the request, for messages.
 
         Returns:
             The numbers of the reply.
@@ -112,7 +112,7 @@ class FmuProcess:
         return state
 
     def _reported_error(self, text: Text, state: Sequence[float]) -> FmuError:
-        """The error that the FMU's process reported; only our own error classes are accepted."""
+        """Return the reported error; only this package's error classes are accepted."""
         kind = getattr(errors, str(text.get("error")), None)
         message = printable(text.get("message"), 2000)
         if not (isinstance(kind, type) and issubclass(kind, FmuError)):
@@ -123,7 +123,7 @@ class FmuProcess:
         return kind(message)
 
     def _crash(self, what: bytes, when: str, problem: Exception, timeout: float) -> FmuCrashError:
-        """End the process; the error says when it ended, why, and what it printed last."""
+        """End the process; the error tells when it ended, why, and its last output."""
         lost = isinstance(problem, EOFError)
         report = self._host.end_process(_END_PATIENCE if lost else 0.0)
         if lost:
@@ -143,7 +143,7 @@ class FmuProcess:
         return kind(f"{self.path}: {reason}; {advice}")
 
     def end(self) -> None:
-        """End the process if there is one; ask it to end first unless it has failed."""
+        """End the process if there is one, after asking it to end unless it has failed."""
         client, self._client = self._client, None
         if client is None:
             return
@@ -164,7 +164,7 @@ class FmuProcess:
             self._host.end_process()
 
     def close(self) -> None:
-        """End the FMU and its process; nothing happens the second time."""
+        """End the FMU and its process; a second call does nothing."""
         if self.closed:
             return
         try:
@@ -175,7 +175,7 @@ class FmuProcess:
 
 
 def while_starting(what: bytes) -> str:
-    """When something happened that is no step, for messages."""
+    """Return the time of a request that is no step, in words for messages."""
     return "while it was loaded" if what == LOAD else "while it was started"
 
 

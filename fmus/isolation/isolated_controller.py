@@ -8,13 +8,13 @@ from math import isinf
 from fmus.errors import FmuStateError
 from fmus.isolation import processor
 from fmus.isolation.fmu_process import FmuProcess, while_starting
-from fmus.isolation.riders import ControllerRider
+from fmus.isolation.hosted import HostedController
 from fmus.isolation.wire import LOAD, START, STEP
 from fmus.profile.controller_preparation import PreparedController
 
 
 class IsolatedController:
-    """Asks a controller FMU, told in SI units, for its answer in SI units.
+    """Asks a controller FMU for its answer; inputs and answer are in SI units.
 
     Nothing is started before the first question. Every :meth:`restart` uses a new process.
 
@@ -22,7 +22,7 @@ class IsolatedController:
         prepared: the controller.
 
     Attributes:
-        warnings: what the user should know of this FMU.
+        warnings: Warnings for the user.
     """
 
     def __init__(self, prepared: PreparedController) -> None:
@@ -35,10 +35,10 @@ class IsolatedController:
         self._steps = 0
 
     def ask(self, seen: Sequence[float]) -> float:
-        """Its answer at this step, which may be no finite number.
+        """Return the FMU's answer at this step, which may be no finite number.
 
         Args:
-            seen: a number for each of its inputs [SI]; infinite where there is nothing.
+            seen: Number for each of its inputs [SI]; infinite for an input without a value.
 
         Raises:
             FmuError: it does not start, or does not do the step.
@@ -52,11 +52,11 @@ class IsolatedController:
         return self._prepared.wiring.answer.to_si(raw)
 
     def restart(self) -> None:
-        """Forget the past: the next question is the first one."""
+        """Forget the past, so that the next question is the first one."""
         self._begun = False
 
     def close(self) -> None:
-        """End the FMU and its process; nothing happens the second time."""
+        """End the FMU and its process; a second call does nothing."""
         self._closed = True
         if self._process is not None:
             self._process.close()
@@ -66,7 +66,7 @@ class IsolatedController:
         if self._closed:
             raise FmuStateError(f"{self.path}: the controller has been closed; make a new one")
         if self._process is None:
-            self._process = FmuProcess(ControllerRider, self._prepared)
+            self._process = FmuProcess(HostedController, self._prepared)
         self._process.begin()
         self._steps = 0
         timeout = self._prepared.profile.fmu.start_timeout
@@ -79,13 +79,13 @@ class IsolatedController:
         return self._process.ask(what, numbers, timeout, lambda: self._when(what))
 
     def _when(self, what: bytes) -> str:
-        """When something happened, for messages."""
+        """Return the time of a request in words, for messages."""
         if what != STEP:
             return while_starting(what)
         return f"at {self._steps * self._prepared.step_size:.10g} s of its time"
 
     def _told(self, seen: Sequence[float]) -> list[float]:
-        """What it sees in its own units, and within the ranges that it declares."""
+        """Return the inputs in the FMU's units, within the ranges that it declares."""
         nothing = self._nothing
         told = [
             wire.to_raw(value if not isinf(value) else nothing)

@@ -9,7 +9,7 @@ from fmus.errors import FmuOutputError, FmuStateError
 from fmus.interfaces.vehicle import Vehicle
 from fmus.isolation import processor
 from fmus.isolation.fmu_process import FmuProcess, while_starting
-from fmus.isolation.riders import VehicleRider
+from fmus.isolation.hosted import HostedVehicle
 from fmus.isolation.wire import LOAD, START, STEP
 from fmus.profile.preparation import prepare
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -18,15 +18,15 @@ from fmus.profile.vehicle_profile import VehicleProfile
 class IsolatedVehicle(Vehicle):
     """Runs a vehicle FMU in a process of its own, as :class:`fmus.VehicleFmu` does in this one.
 
-    An FMU that crashes, hangs or ends its process becomes an :class:`FmuCrashError`; nothing of
-    what it does to its process (working directory, locale, floating-point traps, signals, output)
-    reaches this one. Every start uses a new process. The binary is loaded at the start, so a
-    binary that cannot be loaded is reported there.
+    A crash, hang or end of the process becomes an :class:`FmuCrashError`. Changes of the process
+    (working directory, locale, floating-point traps, signals, output) do not reach this one. Every
+    start uses a new process. The binary is loaded at the start, so a binary that cannot be loaded
+    is reported there.
 
     Args:
         path: the .fmu file.
-        step_size: [s].
-        profile: which variable plays which part, and the time-outs; None as for ``VehicleFmu``.
+        step_size: Step size [s].
+        profile: Roles of the FMU's variables, and time-outs; None as for ``VehicleFmu``.
         start_values: further start values by variable name.
 
     Raises:
@@ -51,18 +51,18 @@ class IsolatedVehicle(Vehicle):
         self.warnings = []
         self._start_timeout = prepared.profile.fmu.start_timeout
         self._step_timeout = prepared.profile.fmu.step_timeout
-        self._stretch = prepared.pace.stretch
+        self._stretch = prepared.step_plan.stretch
         self.record = prepared.wiring.record
         self.knows_grades = prepared.wiring.grade is not None
         self._steps, self._force = 0, 0.0
-        self._process = FmuProcess(VehicleRider, prepared)
+        self._process = FmuProcess(HostedVehicle, prepared)
 
     def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
         """Begin (again) at time 0, in a new process.
 
         Args:
-            position: [m].
-            speed: [m/s].
+            position: Position [m].
+            speed: Speed [m/s].
 
         Raises:
             FmuPlatformError: the FMU's binary cannot be loaded.
@@ -82,7 +82,7 @@ class IsolatedVehicle(Vehicle):
         self._refusal = ""
 
     def step(self, force: float, grade: float = 0.0) -> None:
-        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
+        """Hold ``force`` [N] for one step on a ``grade`` [rad], and set the attributes.
 
         Raises:
             FmuStepError: the force is not a finite number, or the FMU does not do the step.
@@ -97,7 +97,7 @@ class IsolatedVehicle(Vehicle):
         self.time = self._steps * self.step_size
 
     def close(self) -> None:
-        """End the FMU and its process; nothing happens the second time."""
+        """End the FMU and its process; a second call does nothing."""
         if self._process.closed:
             return
         try:
@@ -127,7 +127,7 @@ class IsolatedVehicle(Vehicle):
         self.recorded = recorded
 
     def _when(self, what: bytes) -> str:
-        """When something happened, for messages."""
+        """Return the time of a request in words, for messages."""
         if what != STEP:
             return while_starting(what)
         until = (self._steps + self._stretch) * self.step_size

@@ -21,11 +21,11 @@ class LinuxHost:
     """Has a watchdog process fork the FMU's processes; see :mod:`fmus.isolation.watchdog`.
 
     Args:
-        path: of the FMU.
+        path: Path of the FMU.
         folder: temporary; the watchdog removes it when this process has ended.
 
     Attributes:
-        sound: see :class:`fmus.isolation.process_host.ProcessHost`.
+        sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:

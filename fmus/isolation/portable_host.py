@@ -13,18 +13,18 @@ from typing import Final
 from fmus.isolation.exit_report import ExitReport, PrintedTail
 from fmus.isolation.spawning import IMPORT_TIMEOUT, kill_group, no_process, spawn
 
-_READ_TIMEOUT: Final = 1.0  # [s] for the last output: a process left behind may hold the pipe open
+_READ_TIMEOUT: Final = 1.0  # [s] wait for the last output: a process left behind may hold the pipe
 
 
 class PortableHost:
     """Starts a new interpreter for every episode.
 
     Args:
-        path: of the FMU.
+        path: Path of the FMU.
         folder: temporary.
 
     Attributes:
-        sound: see :class:`fmus.isolation.process_host.ProcessHost`.
+        sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Starting and ending the FMU's processes, as seen from who wants them."""
+"""The interface for starting and ending the FMU's processes."""
 
 import pickle
 import socket
@@ -44,7 +44,7 @@ def make_process_host(order: Order, folder: Path) -> ProcessHost:
     """The process host for this platform.
 
     Args:
-        order: what shall run in its processes.
+        order: FMU and adapter that run in its processes.
         folder: temporary, for the host to write to; by the time that a process starts, the
             unpacked FMU is in the order's folder.
     """

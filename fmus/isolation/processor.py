@@ -42,10 +42,10 @@ class Follower:
         self._usual = set() if self._gave_up else os.sched_getaffinity(0)
 
     def follow(self, processor: int) -> None:
-        """Go where the vehicle is, before a step.
+        """Move to the processor of the vehicle, before a step.
 
         Args:
-            processor: that the vehicle runs on, as :data:`current` says.
+            processor: Processor that the vehicle runs on, as :data:`current` tells it.
         """
         self._steps += 1
         if self._gave_up or (processor == self._at and self._steps % _CHECK_INTERVAL):

@@ -14,8 +14,8 @@ from fmus.errors import FmuCrashError
 from fmus.isolation.cleanup import scratch_of
 from fmus.isolation.exit_report import PrintedTail
 
-IMPORT_TIMEOUT: Final = 120.0  # [s] on the busiest machine
-END_TIMEOUT: Final = 10.0  # [s] for a killed process to end; only a failing system takes longer
+IMPORT_TIMEOUT: Final = 120.0  # [s] time for the imports on the busiest machine
+END_TIMEOUT: Final = 10.0  # [s] time for a killed process to end, on any sound system
 _BOOT: Final = (
     "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
     "from fmus.isolation.{module} import main; main(*arguments)"
@@ -33,11 +33,11 @@ def spawn(
     """Start an interpreter like this one that runs ``main`` of a module of this package.
 
     Args:
-        path: of the FMU, named in errors.
+        path: Path of the FMU, named in errors.
         module: name of the module in this package.
-        arguments: of its ``main``: numbers and texts.
+        arguments: Arguments of its ``main``: numbers and texts.
         folder: the vehicle's temporary folder.
-        output: where the interpreter prints.
+        output: File for the output of the interpreter.
         pass_fds: file descriptors that it inherits.
 
     Raises:
@@ -70,7 +70,7 @@ def spawn(
 
 
 def _absolute(entry: str) -> str:
-    """An entry of sys.path as an absolute path; entries that are no path (import hooks) stay."""
+    """Return an entry of sys.path as an absolute path; other entries (import hooks) stay."""
     return str(Path(entry).absolute()) if Path(entry).exists() else entry
 
 
@@ -85,7 +85,7 @@ def kill_group(process: subprocess.Popen[bytes]) -> None:
 
 
 def no_process(path: Path, printed: bytes) -> FmuCrashError:
-    """The error that no process can be started for the FMU, with the last line it printed."""
+    """Return the error that no process can be started, with the last line of its output."""
     tail = PrintedTail()
     tail.add(printed)
     reason = tail.last_line() or "it ended at once"

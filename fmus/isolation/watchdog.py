@@ -99,7 +99,7 @@ class _Watchdog:
         self._end_worker()
 
     def _answer_request(self) -> bool:
-        """Do what the vehicle asks for; False: it has ended."""
+        """Do what the vehicle asks for, and return whether it still runs."""
         try:
             message, files, _flags, _sender = socket.recv_fds(self._control, MESSAGE, 1)
             if not message:
@@ -157,7 +157,7 @@ class _Watchdog:
         self._poll.register(self._output, select.POLLIN)
 
     def _end_worker(self, patience: float = 0.0) -> ExitReport:
-        """Wait up to ``patience`` [s] for the worker to end, then kill it; report how it ended."""
+        """Wait up to ``patience`` [s] for the worker to end, then kill it; return its report."""
         end = monotonic() + patience
         self._reap()
         while self._worker is not None and monotonic() < end:
@@ -171,7 +171,7 @@ class _Watchdog:
         return self._report or ExitReport(0, killed=False, oom=False, printed="")
 
     def _reap(self) -> None:
-        """Collect all processes that have ended; note how the worker did, if it is among them."""
+        """Collect all processes that have ended; record the worker's end if it is among them."""
         with suppress(ChildProcessError):
             while (found := os.waitpid(-1, os.WNOHANG))[0]:
                 if os.WIFSTOPPED(found[1]):
@@ -213,7 +213,7 @@ def _print_to(file: Path) -> None:
 
 
 def _become_worker(watchdog: int, connection: int, output: int) -> socket.socket:
-    """Cut this process off from the watchdog, except that it is killed when the watchdog ends."""
+    """Detach this process from the watchdog, but have it killed when the watchdog ends."""
     _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != watchdog:
         os._exit(1)

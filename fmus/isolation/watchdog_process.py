@@ -1,4 +1,4 @@
-"""A watchdog as its vehicle's process sees it, and those that wait for the next vehicle (Linux)."""
+"""A watchdog for its vehicle's process, and those that wait for the next vehicle (Linux)."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ _scopes: Final[list[None]] = []
 
 
 class WatchdogProcess:
-    """A watchdog, see :mod:`fmus.isolation.watchdog`; it imports while its vehicle goes on.
+    """A watchdog (:mod:`fmus.isolation.watchdog`), which imports while its vehicle goes on.
 
     Args:
-        path: of the FMU, named in errors.
-        folder: of the vehicle, temporary; the watchdog removes it when this process has ended.
+        path: Path of the FMU, named in errors.
+        folder: Folder of the vehicle, temporary; the watchdog removes it when this process has
+            ended.
 
     Attributes:
-        process: the watchdog.
-        has_answered: at least once.
+        process: Process of the watchdog.
+        has_answered: True after its first answer.
 
     Raises:
         FmuCrashError: it cannot be started.
@@ -39,7 +40,7 @@ class WatchdogProcess:
 
     def __init__(self, path: Path, folder: Path) -> None:
         self.has_answered = False
-        self._number = 0  # of the last request
+        self._number = 0  # number of the last request
         self._owner, self._setting = os.getpid(), _setting()
         self._folders = [folder]  # one whose TMPDIR it was started with, and the present one
         self._control, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -50,13 +51,13 @@ class WatchdogProcess:
             )
 
     def ask(self, what: bytes, argument: bytes, timeout: float, *files: int) -> bytes:
-        """Its answer; answers to earlier, interrupted requests are skipped.
+        """Return the answer to a request; answers to earlier, interrupted requests are skipped.
 
         Args:
-            what: is asked for.
-            argument: of that.
-            timeout: [s].
-            files: to be handed over.
+            what: Kind of the request.
+            argument: Argument of the request.
+            timeout: Time limit [s].
+            files: Files to be handed over.
 
         Raises:
             OSError: there is none.
@@ -75,7 +76,7 @@ class WatchdogProcess:
                 return answer
 
     def end(self) -> None:
-        """End it: closing its socket ends it and all that it watches over."""
+        """End the watchdog: closing its socket ends it and all that it watches over."""
         self._resume()
         self._control.close()
         if not self.has_answered:  # it is still importing and would not notice the closed socket
@@ -88,23 +89,23 @@ class WatchdogProcess:
             self.kill_workers()
 
     def kill_workers(self) -> None:
-        """Kill what it watches over, without it."""
+        """Kill the processes that the watchdog watches over, without its help."""
         for folder in self._folders:
             kill_marked(folder)
 
     def serve(self, folder: Path) -> bool:
-        """Serve another vehicle, in its ``folder``; False: it cannot, and is to be ended."""
+        """Serve another vehicle in its ``folder``; False if the watchdog must be ended instead."""
         if self._setting != _setting() or self.process.poll() is not None:
             return False
         self._folders[1:] = [folder]
         return self._does(SERVE, os.fsencode(folder), IMPORT_TIMEOUT)
 
     def retire(self) -> bool:
-        """End the vehicle's process and remove its folder, as :meth:`serve`."""
+        """End the vehicle's process and remove its folder; the result is that of :meth:`serve`."""
         return self._does(RETIRE, b"", END_TIMEOUT)
 
     def is_ours(self) -> bool:
-        """Whether this process has started it, and is no fork of that."""
+        """Return whether this process has started it, and is no fork of that."""
         return self._owner == os.getpid()
 
     def _does(self, what: bytes, argument: bytes, timeout: float) -> bool:
@@ -115,23 +116,23 @@ class WatchdogProcess:
         return True
 
     def _resume(self) -> None:
-        """Let it go on: an FMU may have stopped it with a signal."""
+        """Let the watchdog go on: an FMU may have stopped it with a signal."""
         with suppress(OSError):
             self.process.send_signal(signal.SIGCONT)
 
 
 def _setting() -> object:
-    """What a watchdog takes over from the process that starts it."""
+    """Return the settings that a watchdog takes over from the process that starts it."""
     return dict(os.environ), list(sys.path)
 
 
 @contextmanager
 def processes_reused() -> Iterator[None]:
-    """Within, the watchdog of a closed vehicle serves the next one instead of a new one.
+    """Reuse watchdogs within this context: that of a closed vehicle serves the next one.
 
-    It has imported everything and has never run an FMU; each start of one is a new process as ever.
-    The watchdog of an FMU that has crashed, hung or broken its connection is ended as without. On
-    leaving the outermost such block all that wait are ended. Other systems than Linux have none.
+    The watchdog has imported everything and has never run an FMU; each start of one is a new
+    process. The watchdog of an FMU that has crashed, hung or broken its connection is ended. All
+    waiting watchdogs end with the outermost context. Other systems than Linux have none.
     """
     _scopes.append(None)
     try:
@@ -145,7 +146,7 @@ def processes_reused() -> Iterator[None]:
 
 
 def watchdog_for(path: Path, folder: Path) -> WatchdogProcess:
-    """A watchdog for a vehicle: one that waits, or a new one; see :class:`WatchdogProcess`."""
+    """Return a watchdog for a vehicle: a waiting one, or a new one."""
     while _waiting:
         one = _waiting.pop()
         if one.is_ours():
@@ -156,7 +157,7 @@ def watchdog_for(path: Path, folder: Path) -> WatchdogProcess:
 
 
 def let_wait(watchdog: WatchdogProcess) -> bool:
-    """Have the watchdog of a closed vehicle wait for the next; False: it is to be ended."""
+    """Let the watchdog of a closed vehicle wait for the next; False if it must be ended."""
     if not (_scopes and watchdog.is_ours() and watchdog.retire()):
         return False
     _waiting.append(watchdog)

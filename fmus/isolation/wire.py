@@ -1,8 +1,9 @@
 """The messages between a vehicle or controller and its FMU's process.
 
-Requests and replies have a fixed head, so that a step costs one write and one read on each side;
-how many numbers it holds is agreed on from the beginning.
-Replies of the FMU's process are not trusted, because an FMU can write into any open file: nothing
+Requests and replies have a fixed head, so that a step costs one write and one read on each side.
+The number of values in it is agreed on at the beginning.
+
+Replies of the FMU's process are not trusted, because an FMU can write into any open file. Nothing
 is unpickled, every head must carry the number of its request, and the text that follows it is JSON
 of bounded size.
 """
@@ -17,21 +18,21 @@ from collections.abc import Sequence
 from time import monotonic
 from typing import Any, Final
 
-LOAD: Final = b"load"  # no numbers
-START: Final = b"strt"  # of a vehicle: position [m], speed [m/s]
-STEP: Final = b"step"  # the processor that its client runs on; then what the FMU is to be told
-QUIT: Final = b"quit"  # no numbers
-DONE: Final = b"done"  # the state: of a vehicle position [m], speed [m/s], acceleration [m/s2], ...
+LOAD: Final = b"load"  # without numbers
+START: Final = b"strt"  # numbers of a vehicle: position [m], speed [m/s]
+STEP: Final = b"step"  # numbers: the client's processor, then the inputs
+QUIT: Final = b"quit"  # without numbers
+DONE: Final = b"done"  # numbers: the state, e.g. position [m], speed [m/s], acceleration [m/s2]
 FAILED: Final = b"fail"  # the same numbers; the text is the error
-TEXT_LIMIT: Final = 1 << 16  # [bytes]
+TEXT_LIMIT: Final = 1 << 16  # [bytes] largest text
 START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
-END_WORKER: Final = b"end"  # with a patience [ms], before it is killed; answered by its report
+END_WORKER: Final = b"end"  # with a patience [ms] before the kill; answered by the report
 RETIRE: Final = b"retire"  # to the watchdog of a closed vehicle: end all, and wait for the next
 SERVE: Final = b"serve"  # to one that waits, with the folder of the next vehicle
-MESSAGE: Final = 4096  # [bytes] from and to the watchdog at most
+MESSAGE: Final = 4096  # [bytes] largest message from and to the watchdog
 CONNECTION_LOST: Final = 113  # exit status of a process whose connection has been closed
 
-_TURNS = 50  # some 50 us if nobody else wants the processor
+_TURNS = 50  # looks for a reply before waiting: some 50 us if nobody else wants the processor
 
 Text = dict[str, Any]
 Reply = tuple[bool, Sequence[float], Text]
@@ -47,8 +48,8 @@ class Client:
 
     Args:
         connection: a stream socket, owned by the client from now on.
-        asked: how many numbers each request has.
-        answered: how many each reply has.
+        asked: Number of values in each request.
+        answered: Number of values in each reply.
     """
 
     def __init__(self, connection: socket.socket, asked: int, answered: int) -> None:
@@ -67,9 +68,9 @@ class Client:
         """Send one request and return its reply.
 
         Args:
-            what: is to be done.
-            numbers: as many as were agreed on, or fewer: 0 from there on.
-            timeout: in which the reply must come [s].
+            what: Kind of the request.
+            numbers: Values of the request; missing ones are 0.
+            timeout: Timeout in which the reply must come [s].
 
         Raises:
             TimeoutError: no reply came.
@@ -98,7 +99,7 @@ class Client:
             raise EOFError from error
 
     def close(self) -> None:
-        """Close the connection; the process ends when it notices."""
+        """Close the connection, which ends the process."""
         self._closing()
 
     def _receive_head(self) -> int:
@@ -124,7 +125,7 @@ class Client:
         return text
 
     def _fill(self, buffer: bytearray, got: int, timeout: float) -> None:
-        """Fill a buffer whose first ``got`` bytes have come, within ``timeout`` [s]."""
+        """Fill the rest of a buffer after ``got`` bytes, within ``timeout`` [s]."""
         end, have = monotonic() + timeout, got
         self._timeout = None  # changed below
         while have < len(buffer):
@@ -153,7 +154,7 @@ def reply_layout(numbers: int) -> struct.Struct:
 def receive(
     connection: socket.socket, layout: struct.Struct
 ) -> tuple[bytes, int, Sequence[float]] | None:
-    """The next request, received in the FMU's process; None: the connection has been closed."""
+    """Receive the next request in the FMU's process; None if the connection is closed."""
     head = connection.recv(layout.size, socket.MSG_WAITALL)
     if len(head) != layout.size:
         return None

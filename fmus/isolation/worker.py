@@ -16,8 +16,8 @@ from typing import Any, NoReturn
 
 from fmus.description.model import Kind
 from fmus.errors import FmuError
+from fmus.isolation.hosted import Hosted
 from fmus.isolation.processor import Follower
-from fmus.isolation.riders import Rider
 from fmus.isolation.wire import (
     CONNECTION_LOST,
     DONE,
@@ -39,18 +39,18 @@ _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays 
 
 @dataclass(frozen=True)
 class Order:
-    """What the process shall run: an FMU, as what, and the folder that holds it unpacked."""
+    """The order for a process: the FMU, its adapter, and the folder that holds it unpacked."""
 
-    rider: type[Rider]
+    hosted: type[Hosted]
     prepared: Any
     folder: Path
 
-    def load(self) -> Rider:
+    def load(self) -> Hosted:
         """The FMU, loaded into this process."""
-        return self.rider(self.prepared, self.folder)
+        return self.hosted(self.prepared, self.folder)
 
     def import_ahead(self) -> None:
-        """Import what the FMU will need, so that forked workers need not import it again."""
+        """Import the modules that the FMU will need, so that forked workers need not do it."""
         if self.prepared.wiring.interface.kind is Kind.MODEL_EXCHANGE:
             from fmus.fmi import cvode
 
@@ -65,12 +65,12 @@ def read_order(folder: str) -> Order:
 
 
 def main(port: int, token: str, folder: str) -> NoReturn:
-    """Run as a worker without a watchdog; connect back to the process that wants the FMU.
+    """Run as a worker without a watchdog, and connect back to the client.
 
     Args:
-        port: on this machine.
-        token: proves that this is the worker that is waited for.
-        folder: the temporary folder.
+        port: Port on this machine.
+        token: Proof that this is the expected worker.
+        folder: Temporary folder.
     """
     parent = os.getppid()
 
@@ -87,7 +87,7 @@ def main(port: int, token: str, folder: str) -> NoReturn:
 
 
 def serve(order: Order, connection: socket.socket) -> NoReturn:
-    """Answer requests until the connection is closed; then end the process."""
+    """Answer requests until the connection is closed, then end the process."""
     status = CONNECTION_LOST
     with suppress(BaseException):  # whatever happens, the other side notices the closed connection
         _protect()
@@ -114,10 +114,10 @@ class _Worker:
     def __init__(self, order: Order, connection: socket.socket) -> None:
         self._order = order
         self._connection = connection
-        self._rider: Rider | None = None
+        self._hosted: Hosted | None = None
         self._warned = 0
         self._follower = Follower()
-        asked, answered = order.rider.numbers(order.prepared)
+        asked, answered = order.hosted.numbers(order.prepared)
         self._requests = request_layout(asked)
         self._layout, self._answered = reply_layout(answered), answered
 
@@ -136,21 +136,21 @@ class _Worker:
                     return
 
     def _do(self, what: bytes, numbers: Sequence[float]) -> Text | None:
-        rider = self._rider
-        if what == STEP and rider is not None:
+        hosted = self._hosted
+        if what == STEP and hosted is not None:
             self._follower.follow(int(numbers[0]))
-            rider.step(numbers)
+            hosted.step(numbers)
         elif what == LOAD:
-            self._rider = self._order.load()
-        elif what == START and rider is not None:
-            rider.start(numbers)
-        elif what == QUIT and rider is not None:
-            rider.close()
+            self._hosted = self._order.load()
+        elif what == START and hosted is not None:
+            hosted.start(numbers)
+        elif what == QUIT and hosted is not None:
+            hosted.close()
         return self._new_warnings()
 
     def _new_warnings(self) -> Text | None:
         """Warnings that have not been sent yet."""
-        warnings = self._rider.warnings if self._rider is not None else []
+        warnings = self._hosted.warnings if self._hosted is not None else []
         if len(warnings) == self._warned:
             return None
         new = warnings[self._warned :][:_WARNINGS]
@@ -158,11 +158,11 @@ class _Worker:
         return {"warnings": [printable(w, _WARNING) for w in new]}
 
     def _state(self) -> Sequence[float]:
-        state = () if self._rider is None else self._rider.state()
+        state = () if self._hosted is None else self._hosted.state()
         return state if len(state) == self._answered else (0.0,) * self._answered
 
     def _refuse(self, number: int, kind: str, message: str) -> None:
         text: dict[str, Any] = {"error": kind, "message": printable(message, _MESSAGE)}
-        text["time"] = 0.0 if self._rider is None else self._rider.time
+        text["time"] = 0.0 if self._hosted is None else self._hosted.time
         text |= self._new_warnings() or {}
         reply(self._connection, FAILED, number, self._state(), self._layout, text)

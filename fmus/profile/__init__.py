@@ -1,1 +1,1 @@
-"""Which variables play the vehicle's roles, and all preparation before native code runs."""
+"""The roles of an FMU's variables, and all preparation before native code runs."""

@@ -1,4 +1,4 @@
-"""Lines to write into a profile, given what stands there already."""
+"""Lines to write into a profile, given its present contents."""
 
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -7,14 +7,14 @@ from fmus.profile.vehicle_profile import VehicleProfile
 def gain_line(
     profile: VehicleProfile | None, table: str, role: str, factor: float, quote: str = "`"
 ) -> str:
-    """The line that multiplies an axis's gain: ``gain = 1.0`` in place of ``gain = -1.0``.
+    """Return the line that multiplies an axis's gain: ``gain = 1.0`` for ``gain = -1.0``.
 
     Args:
-        profile: of the vehicle; None: without a gain.
+        profile: Profile of the vehicle; None: without a gain.
         table: ``inputs`` or ``outputs``.
-        role: of the table.
-        factor: by which the gain is wrong.
-        quote: before and after each line.
+        role: Role of the table.
+        factor: Factor by which the gain is wrong.
+        quote: Quote before and after each line.
     """
     axis = getattr(getattr(profile, table), role, None) if profile is not None else None
     present = axis.gain if isinstance(axis, Axis) else None

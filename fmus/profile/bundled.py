@@ -1,4 +1,4 @@
-"""Where the shipped FMUs are, and how they are driven."""
+"""The shipped FMUs: their places and their profile."""
 
 import hashlib
 from functools import cache, lru_cache
@@ -32,7 +32,7 @@ def bundled_fmu(fmi_version: FmiVersion = "2.0") -> Path:
 
 
 def is_bundled(path: Path) -> bool:
-    """Whether this is a shipped FMU, or a copy of one, byte by byte."""
+    """Return whether this is a shipped FMU, or a copy of one, byte by byte."""
     try:
         return any(
             _state(path)[1] == bundled_fmu(version).stat().st_size
@@ -50,7 +50,7 @@ def _ours(version: FmiVersion) -> str:
 
 
 def _state(path: Path) -> tuple[int, int, int]:
-    """What differs as soon as a file does."""
+    """Return the properties of a file that differ as soon as the file does."""
     status = path.stat()
     return status.st_ino, status.st_size, status.st_mtime_ns
 

@@ -1,8 +1,8 @@
-"""From the force that the controller wants to what an FMU's inputs are set to: the inverse maps.
+"""The inverse maps: from the controller's force to the inputs of an FMU.
 
-The controller's model is M v' + alpha v = u (Yang & Özgüner 2019, eq. (2)). An FMU that takes no
-force gets what makes this model's car move the same way; M and alpha are the profile's
-``inverse_map``.
+The controller's model is M v' + alpha v = u (Yang & Özgüner 2019, eq. (2)). An FMU without a force
+input gets the values that move this model's car in the same way. M and alpha are those of the
+profile's ``inverse_map``.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ class Command(ABC):
         Args:
             force: u [N], forwards positive.
             speed: v [m/s] now.
-            inputs: to be filled.
+            inputs: Inputs to be filled.
         """
 
 
 @dataclass(frozen=True)
 class ForceCommand(Command):
-    """u itself; at a standstill a brake holds and does not push backwards."""
+    """The force u itself; at a standstill a brake holds and does not push backwards."""
 
     scale: float
     shift: float
     block_reverse: bool
 
     def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
-        """As for :class:`Command`."""
+        """Fill the inputs; see :class:`Command`."""
         if self.block_reverse and force < 0.0 and speed <= 0.0:
             force = 0.0
         inputs[0] = (force - self.shift) / self.scale
@@ -46,14 +46,14 @@ class ForceCommand(Command):
 
 @dataclass(frozen=True)
 class SplitForceCommand(Command):
-    """max(u, 0) for the drive, max(-u, 0) for the brake; at a standstill it is let go."""
+    """Drive force max(u, 0) and brake force max(-u, 0); at a standstill the brake is released."""
 
     drive: Wire
     brake: Wire
     block_reverse: bool
 
     def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
-        """As for :class:`Command`."""
+        """Fill the inputs; see :class:`Command`."""
         if self.block_reverse and force < 0.0 and speed <= 0.0:
             force = 0.0
         inputs[0] = self.drive.to_raw(max(force, 0.0))
@@ -62,7 +62,7 @@ class SplitForceCommand(Command):
 
 @dataclass(frozen=True)
 class AccelerationCommand(Command):
-    """(u - alpha v) / M."""
+    """The acceleration (u - alpha v) / M."""
 
     wire: Wire
     mass: float  # M [kg]
@@ -70,7 +70,7 @@ class AccelerationCommand(Command):
     block_reverse: bool
 
     def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
-        """As for :class:`Command`."""
+        """Fill the inputs; see :class:`Command`."""
         acceleration = (force - self.friction * speed) / self.mass
         if self.block_reverse and acceleration < 0.0 and speed <= 0.0:
             acceleration = 0.0
@@ -79,7 +79,7 @@ class AccelerationCommand(Command):
 
 @dataclass(frozen=True)
 class PedalCommand(Command):
-    """The share of the force at full throttle or full brake, up to 1."""
+    """Pedal positions: the share of the force at full throttle or full brake, up to 1."""
 
     throttle: Wire
     brake: Wire
@@ -87,14 +87,14 @@ class PedalCommand(Command):
     full_brake: float  # [N]
 
     def apply(self, force: float, _speed: float, inputs: memoryview[float], /) -> None:
-        """As for :class:`Command`."""
+        """Fill the inputs; see :class:`Command`."""
         inputs[0] = self.throttle.to_raw(min(max(force / self.full_drive, 0.0), 1.0))
         inputs[1] = self.brake.to_raw(min(max(-force / self.full_brake, 0.0), 1.0))
 
 
 @dataclass(frozen=True)
 class SetpointCommand(Command):
-    """v + T (u - alpha v) / M, never below 0.
+    """The speed setpoint v + T (u - alpha v) / M, never below 0.
 
     A speed loop v' = (v_set - v) / T then accelerates as the controller's model does.
     """
@@ -105,7 +105,7 @@ class SetpointCommand(Command):
     lead: float  # T [s]
 
     def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
-        """As for :class:`Command`."""
+        """Fill the inputs; see :class:`Command`."""
         acceleration = (force - self.friction * speed) / self.mass
         inputs[0] = self.wire.to_raw(max(0.0, speed + self.lead * acceleration))
 
@@ -114,9 +114,9 @@ def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: floa
     """The inverse map for the inputs that a profile names.
 
     Args:
-        profile: of the FMU.
-        wires: of its inputs, in the order of :func:`fmus.profile.wiring.wire`.
-        step_size: of the controller [s].
+        profile: Profile of the FMU.
+        wires: Wires of its inputs, in the order of :func:`fmus.profile.wiring.wire`.
+        step_size: Step size of the controller [s].
     """
     inputs, M, alpha = profile.inputs, profile.inverse_map.mass, profile.inverse_map.friction
     if inputs.force is not None:

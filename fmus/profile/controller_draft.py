@@ -1,4 +1,4 @@
-"""A controller profile drafted from names: only what leaves no doubt is used."""
+"""A controller profile drafted from names; only unambiguous names are used."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from fmus.profile.controller_profile import (
 from fmus.profile.draft import toml_value
 from fmus.text import listed, printable
 
-_NAMES: Final = {  # of variables, in small letters and without separators and brackets
+_NAMES: Final = {  # names of variables, in small letters, without separators and brackets
     "speed": "speed egospeed velocity egovelocity v vego vx",
     "acceleration": "acceleration egoacceleration a aego ax",
     "position": "position egoposition station s",
@@ -44,13 +44,13 @@ _NUMBER = re.compile(r"\[\d+\]$")
 
 @dataclass(frozen=True)
 class ControllerDraft:
-    """What names say of a controller's variables, and what they leave open.
+    """The findings about a controller's variables by their names, and the open questions.
 
     Attributes:
-        path: of the FMU.
-        inputs: variables by role.
-        answers: the same of its outputs.
-        open: variables that a role is to be found for, with what is asked.
+        path: Path of the FMU.
+        inputs: Variables by role.
+        answers: Output variables by role.
+        open: Variables without a role, and the question about each.
     """
 
     path: Path
@@ -59,7 +59,7 @@ class ControllerDraft:
     open: tuple[tuple[str, str], ...]
 
     def profile(self) -> ControllerProfile:
-        """The profile, if nothing is open.
+        """Return the profile if nothing is open.
 
         Raises:
             FmuProfileError: something is; the message says which lines to write.
@@ -78,7 +78,7 @@ class ControllerDraft:
 
     @property
     def toml(self) -> str:
-        """The draft as a file; what is open stands in comments."""
+        """Return the draft as a file, with the open questions in comments."""
         blocks = [f"# Controller profile of {printable(self.path.name, 100)}, drafted from names."]
         for table, found in (("inputs", self.inputs), ("outputs", self.answers)):
             for role, variable in found.items():
@@ -94,7 +94,7 @@ class ControllerDraft:
 
 
 def draft_controller(model: Model) -> ControllerDraft:
-    """The profile of a controller as far as names say what its variables are."""
+    """Draft the profile of a controller, as far as the names of its variables tell."""
     inputs: dict[str, Variable] = {}
     doubts: dict[str, str] = {}
     for variable in model.variables.values():

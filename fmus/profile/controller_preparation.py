@@ -15,8 +15,8 @@ from fmus.description.reading import read_model
 from fmus.profile.controller_draft import draft_controller
 from fmus.profile.controller_profile import ControllerProfile
 from fmus.profile.controller_wiring import ControllerWiring, wire_controller
-from fmus.profile.pace import Pace, pace_of
 from fmus.profile.preparation import Bound, bounds_of
+from fmus.profile.step_plan import StepPlan, step_plan_of
 
 
 @dataclass(frozen=True)
@@ -24,26 +24,26 @@ class PreparedController:
     """A controller that is ready to be unpacked and loaded.
 
     Attributes:
-        model: of the FMU.
-        profile: by which it is asked.
-        wiring: which variables it is told and answers by.
-        pace: how the control steps and the FMU's fit together.
-        bounds: of the inputs.
-        step_size: between two questions [s].
+        model: Model of the FMU.
+        profile: Profile by which it is asked.
+        wiring: Variables for its inputs and its answer.
+        step_plan: Relation of the control steps to the FMU's steps.
+        bounds: Bounds of the inputs.
+        step_size: Step size between two questions [s].
         binary: this platform's binary in the archive.
     """
 
     model: Model
     profile: ControllerProfile
     wiring: ControllerWiring
-    pace: Pace
+    step_plan: StepPlan
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
 
     @property
     def path(self) -> Path:
-        """Of the FMU."""
+        """Path of the FMU."""
         return self.model.path
 
 
@@ -55,13 +55,13 @@ def prepare_controller(
     profile: ControllerProfile | None = None,
     start_values: Mapping[str, Value] | None = None,
 ) -> PreparedController:
-    """Read a controller FMU through the archive's gate and fit a profile to it.
+    """Check and read a controller FMU, and fit a profile to it.
 
     Args:
         path: the .fmu file.
-        step_size: between two questions [s].
-        setup: what the run is set to, by the names of the profile's table ``setup`` [SI].
-        profile: which variable plays which part; None: a draft from names, if it leaves no doubt.
+        step_size: Step size between two questions [s].
+        setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
+        profile: Roles of the FMU's variables; None: a draft from names, if it leaves no doubt.
         start_values: further start values by variable name.
 
     Raises:
@@ -79,7 +79,7 @@ def prepare_controller(
         model=model,
         profile=profile,
         wiring=wiring,
-        pace=pace_of(path, profile.fmu.step, interface, model.default_step, step_size),
+        step_plan=step_plan_of(path, profile.fmu.step, interface, model.default_step, step_size),
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
         binary=binary_of(model, interface),
@@ -87,7 +87,7 @@ def prepare_controller(
 
 
 def choose_controller_profile(path: Path, profile: ControllerProfile | None) -> ControllerProfile:
-    """The profile to ask an FMU by: the one given, or a draft.
+    """Return the profile for asking an FMU: the given one, or a draft.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

@@ -1,4 +1,4 @@
-"""A controller profile: which variable of a controller FMU is told what, and which one answers.
+"""A controller profile: the roles of a controller FMU's inputs and outputs.
 
 The same tables are a TOML file and what :func:`fmus.profile.controller_draft.draft_controller`
 guesses. Whether it fits an FMU is checked by :mod:`fmus.profile.controller_wiring`.
@@ -23,25 +23,25 @@ class SpeedAnswer(Axis):
 
 
 class ControllerInputs(Table):
-    """What the FMU is told at each step; a series is an array, or ``x[1]``, ``x[2]``, ..."""
+    """The inputs of the FMU at each step; a series is an array, or ``x[1]``, ``x[2]``, ..."""
 
     speed: Axis | None = None  # [m/s]
     acceleration: Axis | None = None  # [m/s2]
     position: Axis | None = None  # [m] station of the point that keeps the safe distance
-    last_force: Axis | None = None  # [N] that acted in the step before
-    gap: Axis | None = None  # [m] from there to whoever or whatever is closest in front
-    person_gap: Axis | None = None  # [m] to the closest person in front
-    leader_gap: Axis | None = None  # [m] to the vehicle in front
-    leader_speed: Axis | None = None  # [m/s] of it
+    last_force: Axis | None = None  # [N] force that acted in the step before
+    gap: Axis | None = None  # [m] gap to the closest person, vehicle or stop ahead
+    person_gap: Axis | None = None  # [m] gap to the closest person in front
+    leader_gap: Axis | None = None  # [m] gap to the vehicle in front
+    leader_speed: Axis | None = None  # [m/s] speed of that vehicle
     speed_limit: Axis | None = None  # [m/s]
-    stop_gap: Axis | None = None  # [m] from the front bumper to where lights or priority want it
+    stop_gap: Axis | None = None  # [m] gap from the front bumper to the stop of lights or priority
     obstacle_positions: Axis | None = None  # [m] stations of whoever will be in front: a series
     obstacle_gaps: Axis | None = None  # [m] the same from where ``position`` is now: a series
     nothing: float = Field(1e9, gt=0, le=1e300)  # [SI] told for infinity: nobody, no limit
 
 
 class ControllerOutputs(Table):
-    """What it answers: one of force, acceleration, speed."""
+    """The FMU's answer: one of force, acceleration, speed."""
 
     force: Axis | None = None  # [N] forwards positive
     acceleration: Axis | None = None  # [m/s2]
@@ -57,7 +57,7 @@ class ControllerOutputs(Table):
 
 
 class ControllerSetup(Table):
-    """Parameters that are set to what the run is set to."""
+    """The FMU's parameters that get the settings of the run."""
 
     time_step: Axis | None = None  # [s] between two answers
     mass: Axis | None = None  # M [kg]
@@ -69,7 +69,7 @@ class ControllerSetup(Table):
 
 
 class ControllerProfile(Table):
-    """Everything that giveway needs to ask a controller FMU."""
+    """The settings that giveway needs to ask a controller FMU."""
 
     fmu: Stepping = Stepping()
     inputs: ControllerInputs
@@ -98,7 +98,7 @@ def make_controller_profile(values: dict[str, Any], origin: str) -> ControllerPr
     """The controller profile in nested dictionaries.
 
     Args:
-        values: with the keys of the TOML file.
+        values: Values with the keys of the TOML file.
         origin: named in errors.
 
     Raises:

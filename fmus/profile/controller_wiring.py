@@ -1,4 +1,4 @@
-"""Fitting a controller profile to an FMU: what is told to which variables, and what answers."""
+"""Fitting a controller profile to an FMU: the variables of its inputs and its answer."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ class ControllerWiring:
     """A controller profile that fits its FMU.
 
     Attributes:
-        interface: by which it is run.
-        inputs: one for each number that it is told; those of a series stand one after another.
-        answer: its output.
-        start_values: of its parameters.
+        interface: Interface by which it is run.
+        inputs: Wires of the inputs; those of a series stand one after another.
+        answer: Wire of its output.
+        start_values: Start values of its parameters.
     """
 
     interface: Interface
@@ -30,7 +30,7 @@ class ControllerWiring:
 
     @property
     def horizon(self) -> int:
-        """N: the steps of its longest series; 0: it has none."""
+        """Horizon N: the number of steps of its longest series, or 0 without a series."""
         roles = [wire.role for wire in self.inputs]
         return max(roles.count(series) for series in SERIES)
 
@@ -44,10 +44,11 @@ def wire_controller(
     """Find everything that ``profile`` names in an FMU.
 
     Args:
-        model: of the FMU.
-        profile: which variable plays which part.
-        setup: what the run is set to, by the names of the profile's table ``setup`` [SI].
-        start_values: by variable name; they come after the profile's own and ``setup``.
+        model: Model of the FMU.
+        profile: Roles of the FMU's variables.
+        setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
+        start_values: Start values by variable name; they come after the profile's own and
+            ``setup``.
 
     Raises:
         FmuInterfaceError: the FMU has not the kind that the profile asks for.
@@ -90,7 +91,7 @@ def _inputs(model: Model, profile: ControllerProfile) -> tuple[Wire, ...]:
 
 
 def _series(model: Model, role: str, axis: Axis) -> list[Axis]:
-    """An axis for each step ahead: of an array's elements, or of variables with numbers."""
+    """Return an axis for each step ahead, of an array's elements or of numbered variables."""
     name, variables = axis.variable, model.variables
     names: Iterable[str]
     if "#" in name:
@@ -113,7 +114,7 @@ def _series(model: Model, role: str, axis: Axis) -> list[Axis]:
 def _settings(
     model: Model, profile: ControllerProfile, setup: Mapping[str, float]
 ) -> dict[Channel, Value]:
-    """The parameters that are what the run is set to."""
+    """Return the parameters that get the settings of the run."""
     values: dict[str, Value] = {}
     for name in SETTINGS:
         axis = getattr(profile.setup, name)
@@ -125,7 +126,7 @@ def _settings(
 
 
 def _typed(model: Model, name: str, value: Value) -> Value:
-    """A whole number or a word of the command line, as the variable's type wants it."""
+    """Convert a whole number or a word of the command line to the variable's type."""
     variable = model.variables.get(name)
     if variable is None:
         return value

@@ -1,4 +1,4 @@
-"""A draft of a vehicle profile: what is certain, what is open, and the file with both."""
+"""A draft of a vehicle profile: certain settings, open questions, and the file with both."""
 
 import re
 from collections.abc import Container
@@ -34,8 +34,8 @@ class Entry:
 
     Attributes:
         table: such as ``inputs.force``.
-        why: the evidence for it.
-        doubt: what has to be decided before it can be used; empty if nothing.
+        why: Evidence for it.
+        doubt: Open decision; empty if there is none.
         sure: the table belongs to the draft, even if one of its lines is a question.
     """
 
@@ -47,7 +47,7 @@ class Entry:
 
     @property
     def confident(self) -> bool:
-        """Whether it can be used as it is."""
+        """Return whether it can be used as it is."""
         return self.sure and not self.doubt
 
     def __str__(self) -> str:
@@ -63,8 +63,8 @@ class Draft:
     """A drafted profile.
 
     Attributes:
-        entries: in the order of the file.
-        remarks: what a user should know besides.
+        entries: Entries in the order of the file.
+        remarks: Further remarks for the user.
     """
 
     model: Model
@@ -73,22 +73,22 @@ class Draft:
 
     @property
     def confident(self) -> bool:
-        """Whether nothing is open, so that the draft is a profile."""
+        """Return whether nothing is open, so that the draft is a profile."""
         return all(entry.confident for entry in self.entries)
 
     @property
     def doubts(self) -> list[str]:
-        """What is open, one phrase for each table."""
+        """Open decisions, one phrase for each table."""
         return [f"[{entry.table}] {entry.doubt}" for entry in self.entries if entry.doubt]
 
     @property
     def open_lines(self) -> bool:
-        """Whether any line is marked as open, even one that may stay so."""
+        """Return whether any line is marked as open, even one that may stay so."""
         return any(not (e.sure and all(line.sure for line in e.lines)) for e in self.entries)
 
     @property
     def values(self) -> dict[str, Any]:
-        """What is certain, as the profile's nested tables."""
+        """Certain settings, as the profile's nested tables."""
         values: dict[str, Any] = {}
         for entry in self.entries:
             if entry.sure:

@@ -12,7 +12,6 @@ from fmus.description.model import Kind, Model, Variable
 from fmus.errors import FmuProfileError
 from fmus.profile.draft import Draft, Entry, Line, toml_value
 from fmus.profile.matching import ROLES, Guess, guesses, unambiguous
-from fmus.profile.pace import divides
 from fmus.profile.questions import (
     axis_question,
     braking_question,
@@ -23,6 +22,7 @@ from fmus.profile.questions import (
     signed_question,
     unit_question,
 )
+from fmus.profile.step_plan import divides
 from fmus.profile.vehicle_profile import VehicleProfile, make_profile
 from fmus.text import listed, printable
 
@@ -121,7 +121,7 @@ def _distinct(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> bool:
 
 
 def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
-    """How well a way to drive fits: its weakest guess counts; two good ones beat a single one."""
+    """Rate a way to drive by its weakest guess; two inputs of its own beat a single one."""
     weakest = min(ranked[role][0].score for role in way)
     fits = min(-1 if ranked[role][0].fits is False else 0 for role in way)
     both = 1 if len(way) > 1 and way != ("throttle", "brake") else 0
@@ -208,7 +208,7 @@ def _outputs(model: Model) -> list[Entry]:
 
 
 def _initial(model: Model) -> list[Entry]:
-    """The variables for the start; without an unambiguous one the vehicle is driven up to speed."""
+    """Return the variables for the start; without a clear one the vehicle is run up to speed."""
     free = [
         v
         for v in model.variables.values()

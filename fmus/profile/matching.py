@@ -1,7 +1,7 @@
-"""Which of an FMU's variables may play which part, judged by name, unit and causality.
+"""The roles that an FMU's variables may play, judged by name, unit and causality.
 
-A wrong guess could drive a car by its steering angle. So where two variables fit equally well, or a
-unit contradicts a name, the draft asks a question.
+A wrong guess could drive a car by its steering angle. Therefore the draft asks a question where two
+variables fit equally well or a unit contradicts a name.
 """
 
 import re
@@ -15,10 +15,10 @@ from fmus.description.model import Channel, Dimension, Model, Variable
 
 @dataclass(frozen=True)
 class Role:
-    """How the variables of a role are usually named.
+    """The usual names of the variables of a role.
 
     Attributes:
-        dimension: of its quantity.
+        dimension: Dimension of its quantity.
         names: whole names (without separators and fillers), the strongest evidence.
         words: parts of a name that point at the role.
         never: parts of a name that exclude the role, besides those of :data:`OTHER_PARTS`.
@@ -161,17 +161,17 @@ class Guess:
 
     Attributes:
         name_score: 10 for a name of the role, 9 with fillers, 6 for a part of it, 0 for the unit.
-        fits: whether its unit is of the role's dimension; None: it has no unit, or an unknown one.
+        fits: True if its unit is of the role's dimension; None without a known unit.
     """
 
     channel: Channel
     name_score: float
     fits: bool | None
-    found: Dimension | None  # of its unit
+    found: Dimension | None  # dimension of its unit
 
     @property
     def score(self) -> float:
-        """Higher is better."""
+        """Rank of the guess; higher is better."""
         return self.name_score + (5.0 if self.fits else 0.0)
 
 
@@ -192,7 +192,7 @@ def guesses(model: Model, role: str, variables: Iterable[Variable]) -> list[Gues
 
 
 def unambiguous(ranked: list[Guess]) -> bool:
-    """Whether the first guess is better than every other."""
+    """Return whether the first guess is better than every other."""
     return len(ranked) == 1 or (len(ranked) > 1 and ranked[0].score > ranked[1].score)
 
 
@@ -226,7 +226,7 @@ def _guess(model: Model, role: str, variable: Variable) -> Guess | None:
 
 
 def _name_score(of_role: str, name: str) -> float | None:
-    """How well a name fits a role; None: it excludes the role."""
+    """Rate how well a name fits a role; None if it excludes the role."""
     derivative = re.fullmatch(r"der\((.+)\)", name)
     if derivative is not None:  # Modelica's name of it: der(vehicle.s)
         inner = _name_score(INTEGRALS[of_role], derivative[1]) if of_role in INTEGRALS else None

@@ -11,7 +11,7 @@ from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import Protocol
 
-from fmus.archive.gate import extract, open_archive
+from fmus.archive.archive_check import extract, open_archive
 from fmus.description.binaries import binary_of
 from fmus.description.model import Model, Value
 from fmus.description.reading import read_model
@@ -19,7 +19,7 @@ from fmus.errors import FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
 from fmus.profile.draft_profile import draft_profile, require_confident
-from fmus.profile.pace import Pace, pace_of
+from fmus.profile.step_plan import StepPlan, step_plan_of
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.profile.wires import Wire
 from fmus.profile.wiring import Wiring, wire
@@ -29,7 +29,7 @@ from fmus.profile.wiring import Wiring, wire
 class Bound:
     """The range that an FMU declares for an input, in the FMU's unit."""
 
-    index: int  # of the input
+    index: int  # index of the input
     low: float
     high: float
 
@@ -39,22 +39,22 @@ class Prepared:
     """A vehicle that is ready to be unpacked and loaded.
 
     Attributes:
-        model: of the FMU.
-        profile: by which it is driven.
-        wiring: which variables it is driven and read by.
-        command: the inverse map.
-        pace: how the controller's steps and the FMU's fit together.
-        bounds: of the inputs.
-        step_size: of the controller [s].
+        model: Model of the FMU.
+        profile: Profile by which it is driven.
+        wiring: Variables for its inputs and outputs.
+        command: Inverse map.
+        step_plan: Relation of the controller's steps to the FMU's steps.
+        bounds: Bounds of the inputs.
+        step_size: Step size of the controller [s].
         binary: this platform's binary in the archive.
-        ours: a shipped FMU: its outputs are trusted, and its state need not be saved.
+        ours: True for a shipped FMU: its outputs are trusted, and its state need not be saved.
     """
 
     model: Model
     profile: VehicleProfile
     wiring: Wiring
     command: Command
-    pace: Pace
+    step_plan: StepPlan
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
@@ -62,7 +62,7 @@ class Prepared:
 
     @property
     def path(self) -> Path:
-        """Of the FMU."""
+        """Path of the FMU."""
         return self.model.path
 
 
@@ -73,12 +73,12 @@ def prepare(
     profile: VehicleProfile | None = None,
     start_values: Mapping[str, Value] | None = None,
 ) -> Prepared:
-    """Read an FMU through the archive's gate and fit a profile to it.
+    """Check and read an FMU, and fit a profile to it.
 
     Args:
         path: the .fmu file.
-        step_size: of the controller [s].
-        profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
+        step_size: Step size of the controller [s].
+        profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
         start_values: further start values by variable name.
 
@@ -100,7 +100,9 @@ def prepare(
         profile=profile,
         wiring=wiring,
         command=make_command(profile, wiring.inputs, step_size),
-        pace=pace_of(path, profile.fmu.step, wiring.interface, model.default_step, step_size),
+        step_plan=step_plan_of(
+            path, profile.fmu.step, wiring.interface, model.default_step, step_size
+        ),
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
         binary=binary_of(model, wiring.interface),
@@ -109,7 +111,7 @@ def prepare(
 
 
 def choose_profile(path: Path, profile: VehicleProfile | None) -> VehicleProfile:
-    """The profile to drive an FMU by: the one given, the shipped FMUs' own, or a draft.
+    """Return the profile to drive by: the given one, the shipped FMUs' own, or a draft.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.
@@ -127,19 +129,19 @@ def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
 
 
 class Loadable(Protocol):
-    """An FMU of which is known what this platform needs."""
+    """An FMU whose binary for this platform is known."""
 
     @property
     def path(self) -> Path:
-        """Of the FMU."""
+        """Path of the FMU."""
 
     @property
     def binary(self) -> str:
-        """This platform's, in the archive."""
+        """Name of this platform's binary in the archive."""
 
 
 def unpack(prepared: Loadable, folder: Path) -> None:
-    """Unpack what this platform needs of the FMU into ``folder``.
+    """Unpack the members for this platform into ``folder``.
 
     Raises:
         FmuArchiveError: a member is damaged.
@@ -151,7 +153,7 @@ def unpack(prepared: Loadable, folder: Path) -> None:
 
 
 def bounds_of(inputs: Sequence[Wire]) -> tuple[Bound, ...]:
-    """The ranges that an FMU declares for its inputs, as far as it does."""
+    """Return the ranges that an FMU declares for its inputs."""
     return tuple(
         Bound(
             index,

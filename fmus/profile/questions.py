@@ -1,4 +1,4 @@
-"""The questions of a draft: what is open about a variable, and the line that answers it."""
+"""The questions of a draft: the open points about a variable, and the lines that answer them."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -10,13 +10,13 @@ from fmus.profile.draft import Line
 from fmus.profile.matching import FORCES, OTHER_PARTS, ROLES, Guess, words_of
 from fmus.text import printable
 
-PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] of a car of 1000 kg
+PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] for a car of 1000 kg
 DRIVES_ONLY: Final = frozenset(["drive", "driving", "propulsion", "propulsive", "accelerating"])
-MISSING: Final = {  # what an FMU needs besides
+MISSING: Final = {  # further inputs that an FMU needs
     "drive_force": "brake_force", "brake_force": "drive_force",
     "throttle": "brake", "brake": "throttle",
 }  # fmt: skip
-LEAD: Final = 0.5  # [s] of a speed controller, where nothing is known
+LEAD: Final = 0.5  # [s] assumed lead of a speed controller
 POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])  # they drive
 
 
@@ -54,10 +54,10 @@ def _unit_described(description: str, wanted: Dimension) -> str:
 
 
 def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, str] | None:
-    """The question about the only torque or command in per cent: with a gain it is a force.
+    """Return the question about the only torque or percentage input: a gain makes it a force.
 
     Returns:
-        the name, the line with the gain and the question; None: there is no such input, or two.
+        Name, line with the gain and question; None unless there is exactly one such input.
     """
     for dimension, what, line in (
         (units.TORQUE, "ratio of the gears / radius of the wheels [m]", "1/m"),
@@ -98,10 +98,10 @@ def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, st
 
 
 def braking_question(role: str, variable: Variable) -> tuple[list[Line], str]:
-    """What an FMU does not say of an input, and how hard a car brakes depends on; with its lines.
+    """Return profile lines and the open question about how strongly an input brakes.
 
     Returns:
-        the lines and the question; none and an empty one if nothing is open.
+        Lines and question; both empty if nothing is open.
     """
     name = printable(variable.name, 60)
     if role in PEDAL_FORCE:
@@ -138,7 +138,7 @@ def _brakes_by_negative(role: str, variable: Variable) -> tuple[list[Line], str]
 
 
 def idle_brake(ranked: Mapping[str, Sequence[Guess]], way: Sequence[str]) -> str:
-    """The question about a brake that the way to drive leaves alone; empty if there is none."""
+    """Return the question about a brake that the way to drive does not use, or an empty text."""
     used = [ranked[role][0].channel.variable.name for role in way]
     if len(way) > 1:
         return ""
@@ -156,10 +156,10 @@ def idle_brake(ranked: Mapping[str, Sequence[Guess]], way: Sequence[str]) -> str
 def signed_question(
     ranked: Mapping[str, Sequence[Guess]], inputs: Sequence[Variable]
 ) -> tuple[tuple[Line, ...], str] | None:
-    """The question about the only input, named after a drive or a brake: is it both, by its sign?
+    """Ask whether the only input, named after a drive or a brake, is both by its sign.
 
     Returns:
-        the lines of [inputs.force] and the question; None: the only input is neither.
+        Lines of [inputs.force] and question; None if the only input is neither.
     """
     if len(numbers(inputs)) != 1:
         return None
@@ -180,12 +180,12 @@ def signed_question(
 
 
 def channel_name(channel: Channel) -> str:
-    """The name as a profile may write it: an array of one element needs no number."""
+    """Return the name as a profile may write it; an array of one element needs no number."""
     return channel.name if channel.variable.size > 1 else channel.variable.name
 
 
 def numbers(variables: Sequence[Variable]) -> list[str]:
-    """The names of all numeric variables; of an array the first elements one by one."""
+    """Return the names of all numeric variables, and of the first elements of arrays."""
     return [
         printable(channel_name(Channel(variable, element)), 40)
         for variable in variables

@@ -1,4 +1,4 @@
-"""What all profiles share: tables, axes, how an FMU is stepped, start values, and their errors."""
+"""The common parts of all profiles: tables, axes, stepping, start values, and their errors."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Axis(Table):
     """
 
     variable: str = Field(min_length=1)
-    unit: str | None = None  # where the FMU declares none, or a wrong one
+    unit: str | None = None  # unit, where the FMU declares none or a wrong one
     gain: float | None = None  # None: 1, and the unit must be of the right dimension
     offset: float = 0.0
 
@@ -47,19 +47,19 @@ class Axis(Table):
 
 
 class Stepping(Table):
-    """How an FMU is stepped."""
+    """The settings for stepping an FMU."""
 
     kind: Literal["co-simulation", "model-exchange"] | None = None  # None: the former if it can
     step: float | None = Field(None, gt=0, le=10)  # [s] the FMU's own; None: the control step
     stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] told to the FMU; None: no stop time
-    solver: Literal["cvode", "rk4"] | None = None  # of Model Exchange; None: cvode where it runs
+    solver: Literal["cvode", "rk4"] | None = None  # Model Exchange; None: cvode where it runs
     tolerance: float | None = Field(None, gt=0, le=0.1)  # relative, of Model Exchange
     start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall clock
     step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall clock
 
 
 def flat(values: Any) -> Any:
-    """An unquoted ``vehicle.mass = 1`` is a table in TOML; here it is the variable's name."""
+    """Return the variables' values by full name: ``vehicle.mass = 1`` is a table in TOML."""
     if not isinstance(values, dict):
         return values
     found: dict[str, Any] = {}
@@ -101,9 +101,9 @@ def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:
     """The tables of a profile's TOML file.
 
     Args:
-        path: of the file.
-        what: it is expected to be.
-        guide: where one is to be had.
+        path: Path of the file.
+        what: Expected contents, in words.
+        guide: Place of a guide, for messages.
 
     Raises:
         FmuProfileError: the file is missing, or not TOML.
@@ -125,10 +125,10 @@ def validated(kind: type[_Profile], values: dict[str, Any], origin: str, guide: 
     """A profile of a kind.
 
     Args:
-        kind: of profile.
-        values: with the keys of the TOML file.
+        kind: Kind of profile.
+        values: Values with the keys of the TOML file.
         origin: named in errors.
-        guide: that describes the keys.
+        guide: Description of the keys, for messages.
 
     Raises:
         FmuProfileError: a key or value cannot be used.

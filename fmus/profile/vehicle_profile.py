@@ -1,4 +1,4 @@
-"""A vehicle profile: which variable of an FMU plays which part, in which unit, with what limits.
+"""A vehicle profile: the roles, units and limits of an FMU's variables.
 
 The same tables are a TOML file (``car.toml``), the draft that ``giveway fmu inspect`` prints, and
 the argument of :class:`fmus.VehicleFmu`. Whatever stands in a file is checked here; whether it
@@ -28,9 +28,11 @@ class SpeedSetpoint(Axis):
 
 
 class Inputs(Table):
-    """How the FMU is driven; one of: force, drive_force and brake_force, acceleration, throttle and
-    brake, speed_setpoint.
-    """  # noqa: D205 - one sentence
+    """The inputs that drive the FMU.
+
+    One of these is given: force, drive_force and brake_force, acceleration, throttle and brake,
+    speed_setpoint.
+    """
 
     force: Axis | None = None  # [N] forwards positive
     drive_force: Axis | None = None  # [N] never negative
@@ -77,7 +79,7 @@ class Outputs(Table):
 
 
 class Initial(Table):
-    """The variables that set where and how fast the FMU starts."""
+    """The variables that set the FMU's first position and speed."""
 
     speed: Axis | None = None  # [m/s] parameter or input with a start value
     position: Axis | None = None  # [m]; None: the position counts from where the FMU starts
@@ -85,13 +87,13 @@ class Initial(Table):
 
 
 class Fmu(Stepping):
-    """How a vehicle's FMU is stepped."""
+    """The settings for stepping a vehicle's FMU."""
 
     self_check: bool = True  # compare one step with two half steps before the run
 
 
 class Limits(Table):
-    """Limits that no car exceeds: beyond them the FMU is at fault and the run ends."""
+    """The limits that no car exceeds. Beyond them the FMU is at fault and the run ends."""
 
     speed: float = Field(100.0, gt=0, le=1e9)  # [m/s] absolute
     position_jump: float = Field(1.0, gt=0, le=1e9)  # [m] more or less than the speed accounts for
@@ -112,15 +114,15 @@ class FittedModel(Table):
     friction: float = Field(ge=0, le=1e6)  # alpha [N.s/m]
     lag: float = Field(0.0, ge=0, le=3)  # [s] first-order time constant of the actuator
     delay: float = Field(0.0, ge=0, le=2)  # [s] dead time; who answers later cannot be driven
-    r_squared: float = Field(le=1)  # of the speed's change per step
+    r_squared: float = Field(le=1)  # share of the variation of speed changes that is explained
     speed_error: float = Field(ge=0)  # [m/s] root mean square, one step ahead
     position_error: float = Field(ge=0, le=1e4)  # [m] 95 % of the errors at the horizon are smaller
-    horizon: float = Field(ge=1e-3, le=1e3)  # [s] of position_error
-    time_step: float = Field(gt=0)  # [s] of the fit
+    horizon: float = Field(ge=1e-3, le=1e3)  # [s] horizon of position_error
+    time_step: float = Field(gt=0)  # [s] time step of the fit
 
 
 class VehicleProfile(Table):
-    """Everything that giveway needs to drive a foreign FMU."""
+    """The settings that giveway needs to drive a foreign FMU."""
 
     record: tuple[str, ...] = Field((), max_length=100)  # variables whose values the rows keep
     fmu: Fmu = Fmu()
@@ -155,7 +157,7 @@ def make_profile(values: dict[str, Any], origin: str) -> VehicleProfile:
     """The vehicle profile in nested dictionaries.
 
     Args:
-        values: with the keys of the TOML file.
+        values: Values with the keys of the TOML file.
         origin: named in errors.
 
     Raises:

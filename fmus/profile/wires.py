@@ -1,4 +1,4 @@
-"""One role and the variable that plays it: found, and its conversion to SI units."""
+"""A role and the variable that plays it, with the conversion to SI units."""
 
 from dataclasses import dataclass
 
@@ -57,19 +57,19 @@ class Wire:
     channel: Channel
     scale: float
     shift: float
-    unit: str  # as shown to the user; empty if it has none
+    unit: str  # unit as shown to the user; empty without one
 
     def to_si(self, raw: float) -> float:
         """The quantity in SI units."""
         return self.scale * raw + self.shift
 
     def to_raw(self, value: float) -> float:
-        """The quantity as the FMU wants it."""
+        """Return the quantity in the unit of the FMU."""
         return (value - self.shift) / self.scale
 
 
 def interface_of(model: Model, wanted: str | None) -> Interface:
-    """The interface that a profile's ``kind`` asks for; None: Co-Simulation if there is one.
+    """Return the interface that a profile's ``kind`` asks for, by default Co-Simulation.
 
     Raises:
         FmuInterfaceError: the FMU has not got it.
@@ -90,10 +90,10 @@ def make_wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
     """The wire of one role.
 
     Args:
-        model: of the FMU.
-        table: of the profile, and the role in it.
-        role: see above.
-        axis: which variable plays it.
+        model: Model of the FMU.
+        table: Table of the profile, and the role in it.
+        role: Role; see ``table``.
+        axis: Variable of the role, with its unit and gain.
 
     Raises:
         FmuVariableError: the variable is missing, or cannot be used so.
@@ -124,7 +124,7 @@ def _is_input(variable: Variable) -> bool:
 
 
 def is_output(variable: Variable) -> bool:
-    """Whether the FMU computes a variable."""
+    """Return whether the FMU computes a variable."""
     changes = variable.variability not in {"constant", "fixed"}
     return changes and variable.causality in {"output", "local", "internal"}
 
@@ -151,7 +151,7 @@ def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel
 
 
 def _unit_problem(unit: Unit | None, axis: Axis, dimension: Dimension, usual: str) -> str:
-    """Why a unit does not say how to convert to SI, and the line to add; empty if it does."""
+    """Return why a unit cannot be converted to SI, and the line to add, or an empty text."""
     if axis.gain is not None:
         return ""
     if unit is None:

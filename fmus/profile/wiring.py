@@ -27,7 +27,7 @@ _OUTPUTS = ("speed", "position", "acceleration")
 
 
 class Recorded(NamedTuple):
-    """A variable whose values the rows keep, as the FMU describes it."""
+    """A variable that is recorded, as the FMU describes it."""
 
     name: str
     unit: str  # empty if it has none
@@ -48,12 +48,12 @@ class Wiring:
 
     @property
     def read(self) -> list[Channel]:
-        """All that is read after a step: the outputs, then what is recorded."""
+        """All values that are read after a step: the outputs, then the recorded variables."""
         return [*(wire.channel for wire in self.outputs), *self.recorded]
 
     @property
     def record(self) -> tuple[Recorded, ...]:
-        """What is recorded, in words."""
+        """Recorded variables with their units and descriptions."""
         return tuple(
             Recorded(channel.name, channel.variable.unit, channel.variable.description)
             for channel in self.recorded
@@ -61,17 +61,17 @@ class Wiring:
 
     @property
     def grade(self) -> int | None:
-        """The index of the road's grade among the inputs; None: the FMU is not told."""
+        """Index of the road's grade among the inputs, or None if it is not an input."""
         last = len(self.inputs) - 1
         return last if self.inputs[last].role in {"grade", "slope"} else None
 
     def grade_to_raw(self, grade: float) -> float:
-        """A grade [rad] as the FMU wants it: the last of the inputs."""
+        """Return a grade [rad] in the unit of the last input."""
         wire = self.inputs[-1]
         return wire.to_raw(tan(grade) if wire.role == "slope" else grade)
 
     def output(self, role: str) -> int | None:
-        """The index of a role among the outputs; None: the profile does not name it."""
+        """Return the index of a role among the outputs, or None if the profile does not name it."""
         return next((i for i, wire in enumerate(self.outputs) if wire.role == role), None)
 
 
@@ -81,9 +81,9 @@ def wire(
     """Find everything that ``profile`` names in an FMU.
 
     Args:
-        model: of the FMU.
-        profile: which variable plays which part.
-        start_values: by variable name; they come after the profile's ``parameters``.
+        model: Model of the FMU.
+        profile: Roles of the FMU's variables.
+        start_values: Start values by variable name; they come after the profile's ``parameters``.
 
     Raises:
         FmuInterfaceError: the FMU has not the kind that the profile asks for.
@@ -107,7 +107,7 @@ def wire(
 
 
 def _recorded(model: Model, name: str) -> Channel:
-    """A variable whose value is kept.
+    """Return a variable whose value is recorded.
 
     Raises:
         FmuVariableError: there is none, or it is no number that changes.

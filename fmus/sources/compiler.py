@@ -78,7 +78,7 @@ def compile_library(
         _zig(folder, "cc", "-target", target.zig, *options, "-c", source, "-o", objects[-1])
     name = output + target.suffix
     link = ["-target", target.zig, "-shared", "-s", *objects, *target.link, "-o", name]
-    if target.suffix == ".dylib":  # else the build's path would be the library's own name
+    if target.suffix == ".dylib":  # otherwise the build's path would be the library's own name
         link.append(f"-Wl,-install_name,@rpath/{name}")
     _zig(folder, "cc", *link)
     library = (folder / name).read_bytes()
@@ -125,7 +125,7 @@ def _zig(folder: Path, *arguments: str) -> None:
 # ---- any compiler, for FMUs that are not ours ----
 
 FOREIGN: Final = ("-O2", "-g0", "-fPIC", "-w", "-ffp-contract=off")
-LONGEST: Final = 600.0  # [s] of one file
+LONGEST: Final = 600.0  # [s] longest compilation of one file
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ class Compiler:
     """A C and C++ compiler for this machine.
 
     Attributes:
-        name: for messages.
+        name: Name for messages.
         c: the command for C.
         cpp: the command for C++.
     """

@@ -24,7 +24,7 @@ _OBSTACLE: Final = 100  # ... and OBSTACLE of instance.h
 
 @dataclass(frozen=True, slots=True)
 class _Variable:
-    """A variable; it is calculated if ``start`` is None."""
+    """A variable. It is calculated if ``start`` is None."""
 
     name: str
     reference: int
@@ -33,13 +33,13 @@ class _Variable:
     description: str
     unit: str | None = None
     start: float | bool | None = None
-    elements: int = 0  # of an array; 0: a scalar
+    elements: int = 0  # number of elements of an array; 0: a scalar
     low: float | None = None
     high: float | None = None
 
     @property
     def variability(self) -> str:
-        """As the causality wants it."""
+        """Variability that belongs to the causality."""
         if self.causality in ("parameter", "structuralParameter"):
             return "fixed"
         return "discrete" if self.causality == "output" else "continuous"
@@ -153,14 +153,14 @@ _TYPES: Final[dict[FmiVersion, dict[str, str]]] = {
 
 
 def _attributes(values: Mapping[str, object]) -> str:
-    """XML attributes; those that are None are left out."""
+    """Return XML attributes without those that are None."""
     return "".join(f" {k}={quoteattr(_text(v))}" for k, v in values.items() if v is not None)
 
 
 def _text(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, float):  # as short as it can be written without loss
+    if isinstance(value, float):  # shortest text without loss
         return f"{value:g}" if float(f"{value:g}") == value else repr(value)
     return str(value)
 
@@ -187,7 +187,7 @@ def _element(version: FmiVersion, v: _Variable) -> str:
 
 
 def _structure(version: FmiVersion, variables: list[_Variable]) -> Iterator[str]:
-    """Every output depends on every input, at once; at the start on every parameter too."""
+    """Yield the dependencies: every output on every input, at the start on parameters, too."""
     inputs = [i for i, v in enumerate(variables, start=1) if v.causality == "input"]
     outputs = [i for i, v in enumerate(variables, start=1) if v.causality == "output"]
     if version == "2.0":
@@ -235,10 +235,10 @@ def model_description(
     """The file modelDescription.xml of an export.
 
     Args:
-        version: of FMI.
+        version: Version of FMI.
         parameters: the start values; in FMI 2 the horizon is also the number of inputs.
-        token: of :func:`token_of`.
-        tool: what generated the FMU.
+        token: Token of :func:`token_of`.
+        tool: Name of the tool that generated the FMU.
         sources: the C files, in the order of compilation.
     """
     head = {

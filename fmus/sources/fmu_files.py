@@ -39,7 +39,7 @@ from fmus.sources.parameters import (
 
 SOURCE: Final = Path(__file__).parent / "vehicle"
 FRONT_ENDS: Final[dict[FmiVersion, str]] = {"2.0": "fmi2.c", "3.0": "fmi3.c"}
-SHARED: Final[dict[FmiVersion, tuple[str, ...]]] = {  # in SOURCE
+SHARED: Final[dict[FmiVersion, tuple[str, ...]]] = {  # shared files, in SOURCE
     "2.0": ("fmi2_begin.h", "fmi2_rest.h"),
     "3.0": ("fmi3_begin.h", "fmi3_rest.h"),
 }
@@ -47,11 +47,11 @@ SHARED: Final[dict[FmiVersion, tuple[str, ...]]] = {  # in SOURCE
 
 @dataclass(frozen=True)
 class Recipe:
-    """What one of our models is made of.
+    """The files that one of our models is made of.
 
     Attributes:
         model: its name, also that of the libraries.
-        folder: of the sources.
+        folder: Folder of the sources.
         files: headers and C files but for the front end, in the order of the archive.
         archives: the .fmu file per FMI version.
         flags: more of them for the compiler.
@@ -64,11 +64,11 @@ class Recipe:
     flags: tuple[str, ...] = ()
 
     def read(self, name: str) -> bytes:
-        """A source file, with the line ends that it has in the repository."""
+        """Return a source file, with the line ends that it has in the repository."""
         return (self.folder / name).read_bytes().replace(b"\r\n", b"\n")
 
     def c_files(self, version: FmiVersion) -> tuple[str, ...]:
-        """In the order of compilation."""
+        """Return the C files in the order of compilation."""
         return (*(name for name in self.files if name.endswith(".c")), FRONT_ENDS[version])
 
 
@@ -159,7 +159,7 @@ def _describe(
 
 
 def _fmi2_layout(model: str, libraries: Mapping[Target, bytes]) -> dict[str, bytes]:
-    """FMI 2's own folder names; one universal library serves both kinds of Mac."""
+    """Return files under FMI 2's folder names; one universal library serves both Macs."""
     return {
         f"linux64/{model}.so": libraries[LINUX_X86],
         f"aarch64-linux/{model}.so": libraries[LINUX_ARM],

@@ -1,7 +1,7 @@
 """Compiling the C sources of an FMU that has no binary for this platform.
 
-The archive passes the gate as ever. Compiling runs nothing of the FMU; what comes out is an FMU
-like any other, with one more binary, and runs in a process of its own.
+The archive is checked as always. Compiling runs nothing of the FMU. The result is an FMU like any
+other, with one more binary, and runs in a process of its own.
 """
 
 import os
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.gate import DESCRIPTION, ROOT, Archive, extract, open_archive, read_start
+from fmus.archive.archive_check import DESCRIPTION, ROOT, Archive, extract, open_archive, read_start
 from fmus.archive.markup import Element, parse
 from fmus.archive.packing import write_archive
 from fmus.description.binaries import START, Platform, misfit, this_platform
@@ -24,21 +24,21 @@ from fmus.sources.compiler import Compiler, find_compiler, fmi_headers
 from fmus.text import printable
 
 SOURCES: Final = "sources/"
-BUILD: Final = "sources/buildDescription.xml"  # of FMI 3
+BUILD: Final = "sources/buildDescription.xml"  # FMI 3's build description
 C_SUFFIXES: Final = (".c", ".cc", ".cpp", ".cxx")
-LARGEST: Final = 1 << 30  # [bytes] of an FMU that is packed again in memory
+LARGEST: Final = 1 << 30  # [bytes] largest FMU that is packed again in memory
 ENTRIES: Final = {"1.0": "{0}_fmi", "2.0": "fmi2Instantiate", "3.0": "fmi3Instantiate"}
 
 
 @dataclass(frozen=True)
 class Sources:
-    """What one library is compiled of; all paths within the archive.
+    """The sources of one library; all paths are within the archive.
 
     Attributes:
-        identifier: of the model, the library's name.
+        identifier: Identifier of the model, the library's name.
         files: C and C++.
         includes: folders.
-        definitions: of the preprocessor, ``NAME`` or ``NAME=VALUE``.
+        definitions: Definitions of the preprocessor, ``NAME`` or ``NAME=VALUE``.
     """
 
     identifier: str
@@ -138,7 +138,7 @@ def _plain_names(model: Model) -> Iterator[str]:
 
 
 def _sources(archive: Archive, model: Model) -> Iterator[Sources]:
-    """What each library of the FMU is compiled of.
+    """Yield the sources of each library of the FMU.
 
     Raises:
         FmuBuildError: the FMU does not bring them.

@@ -1,4 +1,4 @@
-"""The start values of an exported controller, and how its binary learns them."""
+"""The start values of an exported controller, and their way into its binary."""
 
 import dataclasses
 import math
@@ -88,9 +88,9 @@ def _require(good: bool, name: str, value: object, expected: str) -> None:
 def token_of(build: str, parameters: ControllerParameters) -> str:
     """The GUID or instantiation token of an export.
 
-    The binaries are the same for all exports, and the only text of the model description that a
-    host hands over to them is this one: so the start values travel in it, bit by bit, those that
-    are not the paper's. It stays below 255 characters, as some hosts name a folder by it.
+    The binaries are the same for all exports, and a host hands over only this text of the model
+    description. Therefore it carries the start values that differ from the paper's, bit by bit. It
+    stays below 255 characters, because some hosts name a folder after it.
     """
     entries = ""
     paper = dataclasses.astuple(ControllerParameters())

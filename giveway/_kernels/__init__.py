@@ -1,1 +1,1 @@
-"""Compiled kernels: how they are linked, and where they are kept."""
+"""Compiled kernels: their compilation, their linking and their cache."""

@@ -1,9 +1,9 @@
-"""Where compiled kernels are kept: by what they are, not by where or when they were installed.
+"""The cache of compiled kernels, by their content and not by place or time of installation.
 
-Numba's own cache knows a kernel by the path of its file, and looks at this file alone: it would
-compile again for every environment, and load stale code where a kernel that is inlined into
-another has changed. Ours is one folder for each content of all kernels, in the user's cache and not
-in the package folder, which may be read-only.
+Numba's own cache knows a kernel by the path of its file, and checks only this file. It would
+compile again for every environment, and load stale code where a kernel that is inlined into another
+has changed. Our cache is one folder for each content of all kernels. It is in the user's cache and
+not in the package folder, which may be read-only.
 """
 
 import functools
@@ -39,9 +39,9 @@ _KERNEL = re.compile(rb"^@(?:kernel|unlocked|inner|inlined)\b|^def kernel\b", re
 
 @functools.cache
 def kernel_digest() -> str:
-    """A text that changes with the content of any file that holds kernels, and with the compiler.
+    """Return a text that changes with the content of files that hold kernels, and the compiler.
 
-    The CPU is not in it: numba looks at that itself.
+    The CPU is not part of it: numba checks that itself.
     """
     compiler = (*sys.version_info[:2], numba.__version__, llvmlite.__version__)
     digest = hashlib.sha256(repr(compiler).encode())
@@ -73,7 +73,7 @@ def kernel_cache() -> Path:
 
 
 class KernelLocator(UserProvidedCacheLocator):
-    """Tells numba where it finds and keeps a kernel of ours; of other functions it says nothing."""
+    """Tells numba the place of a kernel of ours, and nothing about other functions."""
 
     def __init__(self, py_func: Any, py_file: str) -> None:
         self._lineno = py_func.__code__.co_firstlineno
@@ -84,12 +84,12 @@ class KernelLocator(UserProvidedCacheLocator):
         _ensure_writable(self._cache_path)
 
     def get_source_stamp(self) -> str:
-        """What the compiled code was made from: all kernels, since some are inlined into others."""
+        """Return the version of the compiled code: that of all kernels, since some are inlined."""
         return kernel_digest()
 
     @classmethod
     def from_function(cls, py_func: object, py_file: str) -> "KernelLocator | None":
-        """The locator of a kernel; None for somebody else's function."""
+        """Return the locator of a kernel, or None for a function of another package."""
         if _place(py_file).parts[0] not in (*_OF_KERNELS, "giveway"):
             return None
         locator = cls(py_func, py_file)
@@ -114,7 +114,7 @@ def _place(py_file: str) -> Path:
 
 
 class _Kernels(caching.FunctionCache):
-    """What differs in numba's cache for kernels of ours; put into numba's own class below."""
+    """The changes of numba's cache for our kernels; they are put into numba's class below."""
 
     load_as_ever: Any = caching.FunctionCache.load_overload
     save_as_ever: Any = caching.FunctionCache.save_overload
@@ -133,7 +133,7 @@ class _Kernels(caching.FunctionCache):
             return self._load_overload(signature, target_context)  # type: ignore[no-untyped-call]
 
     def save_overload(self, signature: Any, data: Any) -> None:
-        """Save one after the other: numba reads the list of a kernel's signatures and writes it.
+        """Save one at a time: numba reads the list of a kernel's signatures and writes it.
 
         Two processes at once might else give both signatures the same file.
         """
@@ -149,9 +149,9 @@ class _Kernels(caching.FunctionCache):
 _rebuild_as_ever: Any = environment._rebuild_env
 
 
-@functools.wraps(_rebuild_as_ever)  # by whose name numba's pickles call it
+@functools.wraps(_rebuild_as_ever)  # numba's pickles call it by this name
 def _environment(module: str, constants: list[Any], name: str) -> Any:
-    """Rebuild what a compiled function refers to, without importing numba's own module of it.
+    """Rebuild the environment of a compiled function without importing numba's module of it.
 
     Compiled code reads its constants from there; the globals of the module are for Python's
     objects, which no kernel handles.

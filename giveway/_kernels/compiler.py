@@ -1,6 +1,6 @@
-"""Numba's compiler without what it does that nobody here reads.
+"""Numba's compiler without the parts whose results nobody reads here.
 
-The code that comes out is the same. To import this module is to do so; it reaches into numba, hence
+The compiled code is the same. Importing this module makes the changes. It reaches into numba, hence
 ``cache.LINKED``.
 """
 
@@ -38,18 +38,18 @@ _rewrite_as_ever: Any = _Rewriting.run_pass
 _count_as_ever: Any = _Counts._call_incref_decref
 
 _ROOMS = ("controller", "giveway", "pedestrian_model")
-_INLINED = {"reduce", "stencil", "array"}  # what numba looks for beside closures
+_INLINED = {"reduce", "stencil", "array"}  # what numba searches for beside closures
 _OF_ARRAYS = ("unary", "binop", "call")
-_INHERITED = ("nrt", "fastmath", "error_model", "forceinline")  # by a function from its caller
+_INHERITED = ("nrt", "fastmath", "error_model", "forceinline")  # flags from the caller
 
-_sizes: dict[tuple[str, str], int] = {}  # by the data layout and the type
-_kinds: dict[type, type] = {}  # what holds variables, and how
-_signatures: dict[tuple[int, int], Any] = {}  # by the function and the context, which are kept
-_counted: dict[Any, bool] = {}  # by the type
+_sizes: dict[tuple[str, str], int] = {}  # sizes by the data layout and the type
+_kinds: dict[type, type] = {}  # node types that hold variables, and how
+_signatures: dict[tuple[int, int], Any] = {}  # by function and context, which are kept
+_counted: dict[Any, bool] = {}  # flags by the type
 
 
 def _optimize_functions(library: Any, module: Any) -> None:
-    """Prepare what the module defines, not what it only declares, which is nine of ten."""
+    """Prepare the module's definitions, and not its declarations, which are nine of ten."""
     module.data_layout = library._codegen._data_layout
     for function in module.functions:
         if not function.is_declaration:
@@ -58,7 +58,7 @@ def _optimize_functions(library: Any, module: Any) -> None:
 
 
 def _size(kind: Any, target_data: Any, context: Any = None) -> int:
-    """A type's size; numba has a module parsed for each time that it asks."""
+    """Return a type's size from a table; numba parses a module each time it asks."""
     key = str(target_data), str(kind)
     if key not in _sizes:
         _sizes[key] = _size_as_ever(kind, target_data, context)
@@ -66,13 +66,13 @@ def _size(kind: Any, target_data: Any, context: Any = None) -> int:
 
 
 def _for_c(target: Any, library: Any, description: Any, *rest: Any) -> None:
-    """Make the entry for C, but of numba's own helpers, which only compiled code calls."""
+    """Make the entry for C, except for numba's own helpers, which only compiled code calls."""
     if not description.modname.startswith("numba."):
         _for_c_as_ever(target, library, description, *rest)
 
 
 def _variables(_instruction: Any, value: Any) -> list[Any]:
-    """The variables in part of an instruction, in their order; asked for a million times."""
+    """Return the variables in part of an instruction, in order; numba asks a million times."""
     found: list[Any] = []
     _add_variables(value, found)
     return found
@@ -95,7 +95,7 @@ def _add_variables(value: Any, found: list[Any]) -> None:
 
 
 def _resolve(function: Any, context: Any, arguments: Any, keywords: Any) -> Any:
-    """The signature of a call; numba tries all that a function knows, and each of them anew.
+    """Return the signature of a call from a table; numba tries all candidates each time.
 
     What is written as Python is left to :func:`_implementation`: that notes which one was taken.
     """
@@ -111,9 +111,9 @@ def _resolve(function: Any, context: Any, arguments: Any, keywords: Any) -> Any:
 
 
 def _implementation(template: Any, arguments: Any, keywords: Any) -> Any:
-    """What a function is for these types, compiled once for all that it takes over from callers.
+    """Return a function's implementation for these types, compiled once for equal flags.
 
-    Numba compiles it again where the callers differ in any flag.
+    Numba compiles it again wherever the callers differ in any flag.
     """
     flags = _Flags.top_or_none()
     inherited = flags and tuple(str(getattr(flags, name)) for name in _INHERITED)
@@ -124,7 +124,7 @@ def _implementation(template: Any, arguments: Any, keywords: Any) -> Any:
 
 
 def _count(counts: Any, builder: Any, kind: Any, value: Any, name: str) -> None:
-    """Count a use, or its end, of what is counted: not of numbers and of tuples of them."""
+    """Count references, but not of numbers and of tuples of numbers."""
     if kind not in _counted:
         model = counts._context.data_model_manager[kind]
         _counted[kind] = model.contains_nrt_meminfo()
@@ -133,7 +133,7 @@ def _count(counts: Any, builder: Any, kind: Any, value: Any, name: str) -> None:
 
 
 def _inline(passing: Any, state: Any) -> Any:
-    """Inline closures, reductions, stencils and arrays of lists, where there may be some."""
+    """Inline closures, reductions, stencils and arrays of lists where there may be some."""
     code, module = state.func_id.code, state.func_id.modname
     made = any(isinstance(constant, CodeType) for constant in code.co_consts)
     if made or module.split(".")[0] not in _ROOMS or _INLINED.intersection(code.co_names):
@@ -142,7 +142,7 @@ def _inline(passing: Any, state: Any) -> Any:
 
 
 def _rewrite(passing: Any, state: Any) -> Any:
-    """Rewrite expressions of whole arrays, arrays of lists and keys, where there are some."""
+    """Rewrite expressions of whole arrays, arrays of lists and keys where there are some."""
     typed = state.typemap
     for block in state.func_ir.blocks.values():
         for one in block.find_insts(numba_ir.Assign):
@@ -157,7 +157,7 @@ def _rewrite(passing: Any, state: Any) -> Any:
 
 
 def _equal(one: Any, other: Any) -> Any:
-    """Compare what is set in either; numba looks at all options, a hundred thousand times."""
+    """Compare the options that are set in either; numba compares all, a hundred thousand times."""
     if not isinstance(other, TargetConfig):
         return NotImplemented
     if type(one) is not type(other):
@@ -169,7 +169,7 @@ def _equal(one: Any, other: Any) -> Any:
 
 
 def _tell_nobody() -> None:
-    """Of each call of LLVM, a hundred thousand, numba tells its timers twice; nobody reads them."""
+    """Remove numba's timers, which LLVM calls twice for each of a hundred thousand calls."""
     for told in list(ffi.lib._lock._cblist):
         if all(one.__module__ == "numba.core.base" for one in told):
             ffi.unregister_lock_callback(*told)

@@ -1,20 +1,21 @@
-"""Machine code for what Python calls, and for nothing else.
+"""Machine code for functions that Python calls, and for no others.
 
-Numba optimises each function that it compiles together with all that it calls, makes machine code
-of it, and does both once more for each caller: of a function five calls deep, six times. A function
-without an entry for Python is called by compiled code alone, and that has a copy of it. Here it is
-linked with what it calls and left at that, until somebody asks for its address after all. Numba's
-own helpers are such functions, and those of ours that are ``inner`` or ``inlined``.
+Numba optimises each function that it compiles together with all functions that it calls, and makes
+machine code of it. It does both once more for each caller: six times for a function five calls
+deep. A function without an entry for Python is called by compiled code alone, which has a copy of
+it. Therefore such a function is only linked here with the functions that it calls, until its
+address is needed after all. Numba's own helpers are such functions, and ours that are ``inner`` or
+``inlined``.
 
-To import this module is to do so. It reaches into numba, hence ``cache.LINKED``.
-The kernels' results do not change: whatever the optimiser sees at once, its arithmetic is strict.
+Importing this module makes the changes. It reaches into numba, hence ``cache.LINKED``.
+The kernels' results do not change, because the optimiser's arithmetic is strict in any case.
 """
 
 from typing import Any
 
 from numba.core import codegen
 
-_PYTHON = "_ZN7cpython"  # how numba calls the entry for Python, before the function's own name
+_PYTHON = "_ZN7cpython"  # numba's name of the entry for Python, before the function's own name
 
 _Library: Any = codegen.CPUCodeLibrary
 _JitLibrary: Any = codegen.JITCodeLibrary
@@ -25,7 +26,7 @@ _address_as_ever: Any = _JitLibrary.get_pointer_to_function
 _translate_as_ever: Any = _JitLibrary._finalize_specific
 _set_environment_as_ever: Any = _Codegen.set_env
 
-_environments: dict[str, Any] = {}  # of functions that no machine code refers to yet
+_environments: dict[str, Any] = {}  # environments of functions that no machine code refers to yet
 
 
 def _defined(module: Any) -> set[str]:
@@ -33,7 +34,7 @@ def _defined(module: Any) -> set[str]:
 
 
 def _finalize(library: Any) -> None:
-    """Link a function with what it calls; optimise and translate it if Python can call it."""
+    """Link a function with those that it calls; optimise and translate it only for Python."""
     ours = isinstance(library, _JitLibrary)
     if not ours or any(name.startswith(_PYTHON) for name in _defined(library._final_module)):
         _finalize_as_ever(library)
@@ -57,7 +58,7 @@ def _translate_after_all(library: Any) -> None:
 def _address(library: Any, name: str) -> Any:
     library._ensure_finalized()
     if getattr(library, "_only_linked", False) and name not in _defined(library._final_module):
-        return 0  # what numba says of an entry that there is not
+        return 0  # numba's value for a missing entry
     _translate_after_all(library)
     return _address_as_ever(library, name)
 
@@ -69,7 +70,7 @@ def _serialize(library: Any) -> Any:
 
 
 def _set_environment(generator: Any, name: str, environment: Any) -> None:
-    """Tell machine code what a function refers to; later, if there is none yet."""
+    """Tell machine code the environment of a function, or remember it until there is some."""
     if generator._engine.is_symbol_defined(name):
         _set_environment_as_ever(generator, name, environment)
     else:

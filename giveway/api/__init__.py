@@ -1,4 +1,4 @@
-"""The Python API: one call, one run, everything it left behind."""
+"""The Python API: one call runs a simulation and returns its result."""
 
 from giveway.api.running import in_journal, keep, run, run_checked
 from giveway.api.simulation import simulate

@@ -1,4 +1,4 @@
-"""What a simulation has left behind, made one result: rows, twin, remarks."""
+"""The result of a simulation: rows, counterfactual run, remarks."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -39,7 +39,7 @@ def outcome(
     error: Exception | None,
     elapsed: float,
 ) -> RunResult:
-    """What the loop has left behind."""
+    """Return the result that the loop has left."""
     rows = recorder.rows()
     egos = results_of_egos(parts.config, rows, ending, loop.endings)
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]
@@ -64,7 +64,7 @@ def outcome(
         facts=manifest(
             parts.config,
             scenario,
-            config_text=None,  # writing it takes longer than many a run of a study
+            config_text=None,  # writing it takes longer than many runs of a study
             vehicles={ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos},
             pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,
@@ -89,7 +89,7 @@ def with_twin(
     error: Exception | None,
     since: float,
 ) -> RunResult:
-    """The result with what the egos cost the people, or with why that is not known."""
+    """Add to the result the people's delay by the egos, or the reason why it is unknown."""
     if error is not None:
         error.args = (f"in the twin of the run, which is whole: {error}", *error.args[1:])
         return replace(result, error=error, facts=result.facts | {"error": str(error)})
@@ -131,7 +131,7 @@ def with_twin(
 
 
 def judged(result: RunResult) -> RunResult:
-    """The result with remarks on egos that did not keep to the law, a twin's evidence heard."""
+    """Add remarks on egos that did not keep to the law, with a twin's evidence."""
     judged = ((ego.id, ego.ledger) for ego in result.egos if ego.ledger is not None)
     against = [
         text for text in (law.remark(name, found.violations) for name, found in judged) if text
@@ -141,13 +141,13 @@ def judged(result: RunResult) -> RunResult:
 
 
 def _departure(parts: Parts, ego: str) -> dict[str, object]:
-    """When an inserted ego was due, which may have been drawn; of one taken over, nothing."""
+    """Return the departure time of an inserted ego, which may have been drawn, or nothing."""
     times = parts.departures.times
     return {"depart_time": times[ego]} if ego in times else {}
 
 
 def _mismatches(parts: Parts, egos: Sequence[EgoResult]) -> list[str]:
-    """Of vehicles that are not ours and that the controller's model does not describe."""
+    """Return remarks on foreign vehicles that the controller's model does not describe."""
     foreign = {ego.id for ego in parts.egos if not ego.description["bundled"]}
     remarks = [
         mismatch.remark(ego, parts.time_step, model_margin(ego.config, parts.time_step))

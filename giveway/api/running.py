@@ -1,4 +1,4 @@
-"""A run from its configuration to its folder: rows are kept whatever happens on the way."""
+"""A run from its configuration to its folder; the rows are kept after every failure."""
 
 import shlex
 from contextlib import ExitStack
@@ -51,7 +51,7 @@ def run(
         force: replace the results that are there.
         parquet: also write the tables as Parquet.
         pictures: also draw the state figure and the top view.
-        watcher: called with a ``Progress`` at every control step.
+        watcher: Function that is called with a ``Progress`` at every control step.
 
     Returns:
         The result. A run that was interrupted (Ctrl-C) returns too; see its ``ending``.
@@ -82,17 +82,17 @@ def run_checked(
     journal: Path | None = None,
     wording: Wording = FLAGS,
 ) -> RunResult:
-    """As :func:`run`, after the preflight.
+    """Do the same as :func:`run`, after the preflight.
 
     Args:
-        checked: what is to be run.
-        results: as for :func:`run`.
-        force: as for :func:`run`.
-        parquet: as for :func:`run`.
-        pictures: as for :func:`run`.
-        watcher: as for :func:`run`.
-        journal: an empty folder for the rows, to be read should this process die.
-        wording: of the caller, for messages.
+        checked: Run that has passed the preflight.
+        results: Folder, see :func:`run`.
+        force: Flag, see :func:`run`.
+        parquet: Flag, see :func:`run`.
+        pictures: Flag, see :func:`run`.
+        watcher: Function, see :func:`run`.
+        journal: Empty folder for the rows, to be read if this process dies.
+        wording: Wording of the caller, for messages.
     """
     folder = None if results is None else Path(results)
     if parquet:
@@ -137,12 +137,12 @@ def run_checked(
 
 
 def in_journal(journal: Path) -> str:
-    """What to tell a user whose rows could not be written, but are in a journal that is kept."""
+    """Tell the user how to write rows that could not be written but are in a kept journal."""
     return f"every row is kept: 'giveway recover {shlex.quote(str(journal))} --force' writes them"
 
 
 def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, taken: bool) -> None:
-    """Write everything into ``folder``, or free it if there is nothing to write.
+    """Write the result into ``folder``, or free the folder if there is nothing to write.
 
     Raises:
         ResultsError: it cannot be written.

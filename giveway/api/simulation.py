@@ -1,4 +1,4 @@
-"""One simulation: what was assembled is driven, and driven again without its effect on people."""
+"""One simulation: the assembled run, and its counterfactual run without effect on people."""
 
 import math
 from collections.abc import Callable
@@ -36,15 +36,15 @@ def simulate(
     journal: Journal | None = None,
     native_log: Path | None = None,
 ) -> RunResult:
-    """Run one configuration; an error on the way becomes the result's ``error``.
+    """Run one configuration. An error on the way becomes the result's ``error``.
 
     Args:
-        checked: what is to be run.
-        watcher: called at every control step.
-        interrupt: looked at between two steps.
-        outputs: folder for SUMO's own outputs; None drops them.
-        journal: keeps the rows where a dying process cannot take them along.
-        native_log: file for what SUMO prints; None: a temporary one.
+        checked: Run that has passed the preflight.
+        watcher: Function that is called at every control step.
+        interrupt: Request to end, checked between two steps.
+        outputs: Folder for SUMO's own outputs; None drops them.
+        journal: Journal that keeps the rows if the process dies.
+        native_log: File for the output of SUMO; None: a temporary one.
 
     Raises:
         GivewayError: the run could not begin.
@@ -64,7 +64,7 @@ def simulate(
         error: Exception | None = None
         try:
             ending = loop.run(watcher, interrupt)
-        except Exception as failure:  # whatever it is, the rows so far are the user's
+        except Exception as failure:  # after any failure the rows so far are the user's
             error, ending = _in_our_words(failure, checked.scenario), Ending.FAILED
         elapsed = perf_counter() - began
         result = outcome(parts, checked.scenario, recorder, loop, ending, error, elapsed)
@@ -84,13 +84,13 @@ def simulate(
 
 
 def _tell(watcher: Watcher | None, doing: str) -> None:
-    """What is done after the drive."""
+    """Tell the watcher what is done after the drive."""
     if watcher is not None:
         watcher(Progress(0.0, 0.0, math.nan, math.nan, math.nan, "", 0, doing))
 
 
 def _in_our_words(error: Exception, scenario: Scenario) -> Exception:
-    """What a run has failed by; SUMO's own errors with the scenario that they are about."""
+    """Return the error of a run; SUMO's own errors get the name of the scenario."""
     if not is_refusal(error):
         return error
     reason = " ".join(str(error).split())
@@ -102,7 +102,7 @@ def _in_our_words(error: Exception, scenario: Scenario) -> Exception:
 def _guarded(
     call: Callable[[], Result], scenario: Scenario
 ) -> tuple[Result | None, Exception | None]:
-    """What a call returns, or its failure: the run's rows are the user's in any case."""
+    """Return the result of a call, or its failure; the run's rows are kept in any case."""
     try:
         return call(), None
     except PedestrianModelError as error:

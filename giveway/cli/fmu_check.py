@@ -74,7 +74,7 @@ def check_command(
     console = Console(quiet=as_json)
     try:
         chosen = choose_profile(path, given)
-        fmu_step = prepare(path, step_size=step, profile=chosen).pace.step
+        fmu_step = prepare(path, step_size=step, profile=chosen).step_plan.step
     except FmuError as error:
         return _conclude(console, path, [Finding("fits", "fail", plain(error))], as_json=as_json)
     with console.status("Driving ...") as status:

@@ -32,7 +32,7 @@ def require_archives(config: Path | None, settings: Mapping[str, Any]) -> None:
     paths = [path for path in _named(merged) if path.is_file()]
     if not paths:
         return
-    from fmus.archive.gate import open_archive
+    from fmus.archive.archive_check import open_archive
     from fmus.errors import FmuError
 
     for path in paths:

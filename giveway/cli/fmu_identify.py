@@ -66,7 +66,7 @@ def identify_command(
     console = Console()
     try:
         chosen = choose_profile(path, given)
-        fmu_step = prepare(path, step_size=step, profile=chosen).pace.step
+        fmu_step = prepare(path, step_size=step, profile=chosen).step_plan.step
         found = _identified(console, path, chosen, step, fmu_step, horizon, force_limit, speeds)
     except FmuError as error:
         raise VehicleError(str(error)) from error

@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from fmus import FmuError
-from fmus.archive.gate import open_archive
+from fmus.archive.archive_check import open_archive
 from fmus.description.binaries import binary_of, this_platform
 from fmus.description.model import Interface, Model, Unit, Variable
 from fmus.description.reading import model_of

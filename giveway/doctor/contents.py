@@ -1,4 +1,4 @@
-"""What scenario files contain, counted while their bytes are read: cheap on files of any size."""
+"""The contents of scenario files, counted while their bytes are read, which is cheap."""
 
 import re
 from collections import Counter
@@ -19,7 +19,7 @@ _SIDEWALK: Final = b'allow="pedestrian"'
 
 @dataclass
 class Contents:
-    """What one or several files contain.
+    """The contents of one or several files.
 
     Attributes:
         elements: the number of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
@@ -44,7 +44,7 @@ class Contents:
 
 
 def read_contents(file: Path, into: Contents) -> None:
-    """Count what ``file`` contains.
+    """Count the contents of ``file``.
 
     Raises:
         OSError, EOFError: it cannot be read.

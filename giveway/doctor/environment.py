@@ -20,18 +20,18 @@ from giveway._environment import check_rooms
 from giveway.doctor.finding import Finding, error, note, ok, warning
 from giveway.errors import InstallationError
 
-_ENOUGH_SPACE = 1e9  # [bytes] for the results of a study
+_ENOUGH_SPACE = 1e9  # [bytes] space for the results of a study
 _OLDEST_PYTHON = (3, 11)
-_PATIENCE = 60.0  # [s] for a child process
-_CHARACTERS = "Özgüner – m/s² ± µs"  # what our summaries print
+_PATIENCE = 60.0  # [s] time limit of a child process
+_CHARACTERS = "Özgüner – m/s² ± µs"  # characters that our summaries print
 _IMPORT_SUMO = "from giveway.sumo.library import version; print(version())"
 
 
 def examine_environment(results: Path = Path("results")) -> list[Finding]:
-    """Look at everything that a run needs besides its scenario.
+    """Check everything that a run needs besides its scenario.
 
     Args:
-        results: where results would go.
+        results: Folder for results.
     """
     examinations: tuple[Callable[[], list[Finding]], ...] = (
         _python,
@@ -84,7 +84,7 @@ def _packages() -> list[Finding]:
 
 
 def _requirements() -> list[Requirement]:
-    """The requirements that giveway declares, as installed or in the repository it runs from."""
+    """Return the requirements that giveway declares, as installed or in its repository."""
     try:
         declared = metadata.requires("giveway") or []
     except metadata.PackageNotFoundError:
@@ -156,7 +156,7 @@ def _solver() -> list[Finding]:
 
 
 def _kernels() -> list[Finding]:
-    """Check that numba compiles and can keep what it has compiled."""
+    """Check that numba compiles, and can keep the compiled code."""
     import numba
 
     from giveway._kernels.cache import kernel_cache

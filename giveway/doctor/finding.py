@@ -8,13 +8,13 @@ Level = Literal["ok", "note", "warning", "error"]
 
 @dataclass(frozen=True)
 class Finding:
-    """What was looked at, what was found, and what to do about it.
+    """A finding: what was examined, the result, and the advice.
 
     Attributes:
         level: ``error`` stops a run, ``warning`` may spoil one, ``note`` is good to know.
-        subject: what was looked at, two or three words.
-        text: what was found, one line.
-        remedy: what to do; empty where there is nothing to do.
+        subject: Examined thing, two or three words.
+        text: Result, one line.
+        remedy: Advice; empty if there is nothing to do.
     """
 
     level: Level
@@ -24,20 +24,20 @@ class Finding:
 
 
 def ok(subject: str, text: str) -> Finding:
-    """A finding that all is well."""
+    """Return a finding that all is well."""
     return Finding("ok", subject, text)
 
 
 def note(subject: str, text: str, remedy: str = "") -> Finding:
-    """A finding that is good to know."""
+    """Return a finding that is good to know."""
     return Finding("note", subject, text, remedy)
 
 
 def warning(subject: str, text: str, remedy: str) -> Finding:
-    """A finding that may spoil a run."""
+    """Return a finding that may spoil a run."""
     return Finding("warning", subject, text, remedy)
 
 
 def error(subject: str, text: str, remedy: str) -> Finding:
-    """A finding that stops a run."""
+    """Return a finding that stops a run."""
     return Finding("error", subject, text, remedy)

@@ -1,4 +1,4 @@
-"""Egos, routes and zones by the people whom they meet, each with its command line."""
+"""Egos, routes and zones, ranked by the number of people they meet, with command lines."""
 
 import shlex
 from pathlib import Path
@@ -8,16 +8,16 @@ from giveway.config.files.layers import read_toml
 from giveway.doctor.finding import Finding, note
 from sumo_scenarios import find
 
-_RADIUS = 50  # [m] of the zone round an ego: the default
+_RADIUS = 50  # [m] default radius of the zone round an ego
 _WITHIN = "within 10 m of the moving vehicle"
 
 
 def meetings(config_file: Path, seen: dict[str, Any]) -> list[Finding]:
-    """The findings on who meets people, from what the probe has counted.
+    """Return the findings on encounters with people, from the counts of the probe.
 
     Args:
-        config_file: the scenario's.
-        seen: what the probe has printed.
+        config_file: File .sumocfg of the scenario.
+        seen: Output of the probe.
     """
     found = seen["meetings"]
     span = f"from {found['from']:.12g} to {seen['time']:.12g} s"
@@ -46,7 +46,7 @@ def meetings(config_file: Path, seen: dict[str, Any]) -> list[Finding]:
 
 
 def _seed(config_file: Path) -> str:
-    """What a run needs to see the trial's traffic, where the settings have it drawn by the run."""
+    """Return the flag with which a run sees the trial's traffic, if the settings draw a seed."""
     settings = find(config_file).settings_file
     drawn = settings is not None and read_toml(settings).values.get("sumo", {}).get("seed") == "run"
     return " --sumo-seed=scenario" if drawn else ""

@@ -1,4 +1,4 @@
-"""Checks of a scenario: whether its files are there, what they contain, what a run would do."""
+"""Checks of a scenario: its files, their contents, and what a run would do."""
 
 import math
 from collections import Counter
@@ -14,18 +14,18 @@ from giveway.scenario_files import STRIPING, ScenarioFiles, read_scenario
 from giveway.scenario_files.outputs import is_file
 from sumo_scenarios import ScenarioError, find
 
-_BLINK: Final = 0.5  # [s] in which somebody may step before a car that looks once in each
-_CONTROL_STEP: Final = 0.05  # [s] at most; a run takes the longest step that divides SUMO's
-_NETWORK_VERSION: Final = (1, 20)  # what SUMO 1.28's netconvert writes
-_OLDEST_NETWORK: Final = (1, 0)  # before it, walkingareas and lefthand mean something else
+_BLINK: Final = 0.5  # [s] interval in which a person may step before a car that looks once in each
+_CONTROL_STEP: Final = 0.05  # [s] largest one; a run takes the longest that divides SUMO's
+_NETWORK_VERSION: Final = (1, 20)  # version that SUMO 1.28's netconvert writes
+_OLDEST_NETWORK: Final = (1, 0)  # before it, walkingareas and lefthand have another meaning
 
 
 def examine_scenario(scenario: str | Path, patience: float = PATIENCE) -> list[Finding]:
-    """Look at a scenario as a run would use it; SUMO tries it in a process of its own.
+    """Check a scenario as a run would use it; SUMO tries it in a process of its own.
 
     Args:
         scenario: a bundled name, a folder or a .sumocfg.
-        patience: how long SUMO may take to load it [s].
+        patience: Time limit [s] for loading it.
     """
     try:
         files = read_scenario(find(scenario).config_file)
@@ -89,7 +89,7 @@ def _network(files: ScenarioFiles, network: Contents, demand: Contents) -> list[
 
 
 def _walkways(network: Counter[str], demand: Contents) -> Finding:
-    """Where SUMO's own persons can walk; giveway's pedestrians need no infrastructure."""
+    """Report where SUMO's own persons can walk; giveway's pedestrians need no infrastructure."""
     subject = "walkways"
     if network["walkingarea"] and network["sidewalk"]:
         text = (

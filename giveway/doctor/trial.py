@@ -1,4 +1,4 @@
-"""The probe of a scenario as its parent process sees it, also if SUMO crashes or hangs."""
+"""The probe of a scenario for its parent process, even if SUMO crashes or hangs."""
 
 import json
 import os
@@ -16,9 +16,9 @@ from giveway.errors import GivewayError
 from giveway.processes.causes import cause_of_end
 from giveway.walkways import WalkNetwork, beside
 
-PATIENCE: Final = 120.0  # [s] for loading and a moment's running
+PATIENCE: Final = 120.0  # [s] time limit for loading and a short run
 _HOUSE: Final = Path(__file__).resolve().parents[2]
-_SHOWN: Final = 12  # edges of a route
+_SHOWN: Final = 12  # largest number of edges shown of a route
 
 
 def try_in_sumo(
@@ -32,9 +32,9 @@ def try_in_sumo(
 
     Args:
         config_file: the .sumocfg.
-        patience: how long to wait [s].
-        people: the scenario has people of its own: find out who meets them.
-        net_file: its network; None: no place for people of the user's own is looked for.
+        patience: Time limit [s].
+        people: True if the scenario has people of its own: find their encounters.
+        net_file: Network of the scenario; None: search no place for people of the user's own.
     """
     # -P: a controller.py in the user's folder must not come before giveway's own.
     command = [sys.executable, "-P", "-m", "giveway.sumo.probe", str(config_file)]
@@ -66,7 +66,7 @@ def judged(
     people: bool = False,
     net_file: Path | None = None,
 ) -> list[Finding]:
-    """The findings from what the probe left: an exit code, JSON, SUMO's messages."""
+    """Return the findings from the probe's exit code, JSON and messages of SUMO."""
     if result.returncode < 0:
         name = cause_of_end(result.returncode)
         remedy = f"look at it alone: sumo -c {config_file}; report it to the authors of SUMO"
@@ -88,7 +88,7 @@ def judged(
 
 
 def _reasons(stderr: str, refused: str) -> str:
-    """All of SUMO's reasons: on stderr, and the exception's, which often says only "failed"."""
+    """Return all of SUMO's reasons: those on stderr, and that of the exception."""
     lines = [line.strip() for line in stderr.splitlines()]
     said = [line.removeprefix("Error:").strip() for line in lines if line.startswith("Error:")]
     return "; ".join(dict.fromkeys([*said, *([] if refused == "Process Error" else [refused])]))
@@ -100,7 +100,7 @@ def _loaded(seen: dict[str, Any]) -> list[Finding]:
 
 
 def _warnings(stderr: str, copies: dict[str, str]) -> list[Finding]:
-    """What SUMO complained of without giving up."""
+    """Return SUMO's warnings."""
     for copy, original in copies.items():
         stderr = stderr.replace(copy, original)
     findings = []
@@ -119,7 +119,7 @@ def _warnings(stderr: str, copies: dict[str, str]) -> list[Finding]:
 
 
 def _outputs(seen: dict[str, Any]) -> list[Finding]:
-    """What the scenario would write: its options, its additional files, its vehicles' devices."""
+    """Report the outputs of the scenario: of options, additional files and devices."""
     if not seen["outputs"]:
         return [ok("outputs", "the scenario writes none")]
     names = ", ".join(seen["outputs"][:_SHOWN])
@@ -129,7 +129,7 @@ def _outputs(seen: dict[str, Any]) -> list[Finding]:
 
 
 def _remarks(seen: dict[str, Any]) -> list[Finding]:
-    """What a run changes, if the findings on the scenario do not say it already."""
+    """Return the changes by a run that the findings on the scenario do not report already."""
     said = ("outputs", "pedestrian.model", "random")
     parted = [remark.partition(": ") for remark in seen["remarks"]]
     return [note(option, text) for option, _, text in parted if option not in said]
@@ -152,13 +152,13 @@ def _egos(seen: dict[str, Any]) -> list[Finding]:
 def _people_of_your_own(
     config_file: Path, seen: dict[str, Any], net_file: Path | None
 ) -> list[Finding]:
-    """Where added pedestrians would cross the first vehicle's way."""
+    """Report a place where added pedestrians would cross the first vehicle's path."""
     if net_file is None or len(seen["way"]) < 2:
         return []
     try:
         place = beside(np.array(seen["way"]), WalkNetwork.read(net_file))
     except GivewayError:
-        return []  # the finding on the network says what is wrong with it
+        return []  # the finding on the network reports the fault
     first = next(iter(seen["vehicles"]))
     text = f"added pedestrians can cross the way of {first}"
     remedy = f"giveway run {shlex.quote(str(config_file))} --ego={shlex.quote(first)}"

@@ -140,7 +140,7 @@ def _require_sound(
     try:
         result = convergence(
             opener_of(path, step_size=time_step, profile=profile),
-            prepare(path, step_size=time_step, profile=profile).pace.step,
+            prepare(path, step_size=time_step, profile=profile).step_plan.step,
             force=force,
             start_speed=speed,
         )

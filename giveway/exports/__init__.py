@@ -1,1 +1,1 @@
-"""A run in other people's formats: for SUMO, PedPy, JuPedSim, maps and films."""
+"""A run in other formats: for SUMO, PedPy, JuPedSim, maps and films."""

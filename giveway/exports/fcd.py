@@ -1,10 +1,10 @@
 """Floating car data that SUMO's replay device drives again, and sumo-gui shows.
 
-The device (``--device.fcd-replay.file``) takes the records of each object one SUMO step after the
-other, whatever their times say, so all are written at equal times without a break. SUMO 1.28 dies
-where a person's edge is one inside a junction: a person's ``edge`` is the nearest normal one at
-its first instant, with the place along it. All vehicle types are written beside, as SUMO knows
-neither our pedestrians' nor the egos'.
+The device (``--device.fcd-replay.file``) takes the records of each object in consecutive SUMO
+steps, whatever their times are. Therefore all are written at equal times without a break. SUMO 1.28
+dies if a person's edge is one inside a junction. Therefore a person's ``edge`` is the nearest
+normal one at its first instant, with the position along it. All vehicle types are written, too,
+because SUMO knows neither our pedestrians' nor the egos'.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from giveway.exports.sampling import PEDESTRIAN, Sampled, Track
 from giveway.replays.run_folder import RunFolder
 
 _BODIES = {PEDESTRIAN: (0.54, 0.54)}  # length and width [m]
-_CAR = (4.3, 1.8)  # of a vehicle whose size is not on record
+_CAR = (4.3, 1.8)  # length and width [m] of a vehicle whose size is not on record
 _COLOURS = {PEDESTRIAN: "213,94,0", "ego": "0,114,178"}
 _OTHERS = "118,118,118"
 
@@ -58,7 +58,7 @@ def write_fcd(run: RunFolder, sampled: Sampled, file: Path) -> str:
 
 
 def _kind(run: RunFolder, track: Track) -> tuple[str, float, float]:
-    """Type, length and width [m]."""
+    """Return type, length and width [m] of a track."""
     length, width = run.scene.body(track.object, _BODIES.get(track.type, _CAR))
     return track.type, length, width
 
@@ -79,7 +79,7 @@ def _write_types(file: Path, names: dict[tuple[str, float, float], str]) -> None
 
 
 def _rows(track: Track, net: Net, kind: str) -> list[str]:
-    """The elements of one object, one for each instant."""
+    """Return the elements of one object, one for each instant."""
     tag = "person" if track.type == PEDESTRIAN else "vehicle"
     head = f"        <{tag} id={quoteattr(track.id)} "
     columns = np.column_stack([track.x, track.y, track.angle, track.speed])
@@ -106,7 +106,7 @@ def _write_config(file: Path, net: Net, types: Path, fcd: Path, sampled: Sampled
         "end": f"{end:g}",
         "step-length": f"{sampled.step:g}",
         "ignore-route-errors": "true",
-        "insertion-checks": "none",  # who enters a step late would stay late
+        "insertion-checks": "none",  # an object that enters a step late would stay late
         "pedestrian.model": "striping",  # the only one that can be moved
         "no-warnings": "true",  # SUMO judges a motion that is not its own
         "collision.action": "none",

@@ -26,16 +26,16 @@ from giveway.replays.run_folder import RunFolder
 from giveway.run_data.road_marks import shown
 
 MP4_SIZE, GIF_SIZE = (1280, 720), (640, 360)  # pixels
-_FINER = 2  # times the size at which a frame is painted
-_MARGIN = 4.0  # [m] about all places
-_WHOLE = 110.0  # [m] a scene that is no wider is shown whole; else the view follows the first ego
-_FOLLOWED = 72.0  # [m] width of such a view
-_LEAST = 36.0  # [m] width of any view
+_FINER = 2  # factor between the painted and the final size of a frame
+_MARGIN = 4.0  # [m] margin around all places
+_WHOLE = 110.0  # [m] largest scene shown as a whole; else the view follows the first ego
+_FOLLOWED = 72.0  # [m] width of a view that follows
+_LEAST = 36.0  # [m] smallest width of any view
 _BODY = 0.27  # [m] radius of a pedestrian
-_CAR = (4.3, 1.8)  # [m] of a vehicle whose size is not on record
-_TICK = 1.0  # [s] of walking
-_TRAIL = 4.0  # [s] of the ego's way behind it
-_NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
+_CAR = (4.3, 1.8)  # [m] size of a vehicle whose size is not on record
+_TICK = 1.0  # [s] length of the walking direction's mark, as a time
+_TRAIL = 4.0  # [s] length of the ego's trail
+_NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # ego's arrow: parts of length, width
 _SKIN = "#8A3C00"
 
 
@@ -45,7 +45,7 @@ class Painter:
     Args:
         run: the results folder.
         sampled: its trajectories.
-        size: of a frame, width and height [pixels].
+        size: Size of a frame, width and height [pixels].
     """
 
     def __init__(self, run: RunFolder, sampled: Sampled, size: tuple[int, int]) -> None:
@@ -76,7 +76,7 @@ class Painter:
         return Box.around(np.concatenate(points), _MARGIN)
 
     def _view(self, index: int) -> Box:
-        """What a frame shows."""
+        """Return the view of a frame."""
         if not self._follows:
             return self._whole
         ego = self._egos[0]
@@ -262,7 +262,7 @@ def write_mp4(run: RunFolder, sampled: Sampled, file: Path) -> str:
 
 
 def _paletted(painter: Painter) -> Iterator[Image.Image]:
-    """The frames in the colours of the first and of all that moves: 256 for all of them."""
+    """Yield the frames in 256 colours for all, those of the first and of all that moves."""
     palette: Image.Image | None = None
     for frame in painter.frames():
         if palette is None:
@@ -282,7 +282,7 @@ def _told(sampled: Sampled, size: tuple[int, int]) -> str:
 
 
 def _widened(box: Box, aspect: float) -> Box:
-    """The smallest view of an aspect (height over width) that holds a box."""
+    """Return the smallest view of an aspect (height over width) that holds a box."""
     width, height = box.size
     width = max(width, height / aspect, _LEAST)
     middle = np.array([(box.left + box.right) / 2.0, (box.bottom + box.top) / 2.0])
@@ -290,7 +290,7 @@ def _widened(box: Box, aspect: float) -> Box:
 
 
 def _corners(x: float, y: float, angle: float, length: float, width: float) -> Array:
-    """A vehicle's corners (4, 2) [m], front left first, counter-clockwise; x, y is its front."""
+    """Return a vehicle's corners (4, 2) [m], front left first, from its front's middle."""
     heading = np.deg2rad(90.0 - angle)
     forward = np.array([np.cos(heading), np.sin(heading)])
     left = np.array([-forward[1], forward[0]]) * width / 2.0
@@ -307,7 +307,7 @@ def _font(size: int) -> Any:
 def _label(
     draw: ImageDraw.ImageDraw, place: tuple[int, int], text: str, font: Any, *, low: bool = False
 ) -> None:
-    """A line of text on a white ground."""
+    """Draw a line of text on a white ground."""
     anchor = "ls" if low else "la"
     x0, y0, x1, y1 = draw.textbbox(place, text, font=font, anchor=anchor)
     pad = (y1 - y0) / 4

@@ -17,11 +17,11 @@ from giveway.exports.sampling import Sampled
 from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 
-_DECIMALS = 9  # of degrees: a tenth of a millimetre
+_DECIMALS = 9  # decimals of degrees: a tenth of a millimetre
 
 
 class Projection:
-    """From a network's coordinates to longitude and latitude, and back.
+    """The projection between a network's coordinates and longitude and latitude.
 
     Args:
         net: the network.
@@ -55,12 +55,12 @@ class Projection:
         self._offset = net.offset
 
     def to_degrees(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Longitude and latitude [deg] of points [m]."""
+        """Return longitude and latitude [deg] of points [m]."""
         longitude, latitude = self._proj(x - self._offset[0], y - self._offset[1], inverse=True)
         return np.asarray(longitude), np.asarray(latitude)
 
     def to_network(self, longitude: Array, latitude: Array) -> tuple[Array, Array]:
-        """Points [m] of longitude and latitude [deg]."""
+        """Return the points [m] of longitude and latitude [deg]."""
         x, y = self._proj(longitude, latitude)
         return np.asarray(x) + self._offset[0], np.asarray(y) + self._offset[1]
 

@@ -1,4 +1,4 @@
-"""What exports need of a SUMO network: the lanes of its normal edges, and its projection."""
+"""The parts of a SUMO network for exports: the lanes of normal edges, and the projection."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from giveway.scenario_files.network import read_network
 from sumo_scenarios import ScenarioError as MissingScenarioError
 from sumo_scenarios import find
 
-_INTERNAL = ":"  # how SUMO's ids of what lies inside junctions begin
+_INTERNAL = ":"  # beginning of SUMO's ids inside junctions
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where on a lane somebody is."""
+    """A position on a lane."""
 
     edge: str
     lane: str
-    position: float  # [m] from its beginning
+    position: float  # [m] distance from the lane's beginning
     distance: float  # [m] beside its middle
 
 
@@ -34,8 +34,8 @@ class Net:
     """A network's normal lanes and projection.
 
     Attributes:
-        file: of the network.
-        offset: (2,) [m] that netconvert has added to projected coordinates.
+        file: File of the network.
+        offset: Offset (2,) [m] that netconvert has added to projected coordinates.
         projection: PROJ's parameters; "!" where there is none.
     """
 
@@ -95,7 +95,7 @@ class Net:
         return [self.place(int(k), point) for k, point in zip(found, points, strict=True)]
 
     def place(self, k: int, point: shapely.Point) -> Place:
-        """Where on the k-th lane is nearest to a point [m]."""
+        """Return the position on the k-th lane that is nearest to a point [m]."""
         edge, lane, length, line = self._lanes[k]
         along = min(line.project(point) * length / max(line.length, 1e-9), length)
         return Place(edge, lane, along, line.distance(point))

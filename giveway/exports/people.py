@@ -1,4 +1,4 @@
-"""People's trajectories as PedPy and JuPedSim read them.
+"""People's trajectories in the formats of PedPy and JuPedSim.
 
 PedPy's text format is that of the Jülich data archive: a header with frame rate and unit, then id,
 frame, x, y, z. JuPedSim's SQLite is its version 2 (JuPedSim 1.4): ``trajectory_data``, ``geometry``
@@ -18,8 +18,8 @@ from giveway.errors import ResultsError
 from giveway.exports.sampling import Sampled, Track, numbered
 from giveway.replays.run_folder import RunFolder
 
-_MARGIN = 2.0  # [m] of ground beyond everybody's places
-_DECIMALS = 4  # a tenth of a millimetre
+_MARGIN = 2.0  # [m] margin of the ground around all places
+_DECIMALS = 4  # decimals: a tenth of a millimetre
 
 
 def write_pedpy(run: RunFolder, sampled: Sampled, file: Path) -> str:
@@ -47,7 +47,7 @@ def write_pedpy(run: RunFolder, sampled: Sampled, file: Path) -> str:
 
 
 def write_jupedsim(run: RunFolder, sampled: Sampled, file: Path) -> str:
-    """Write JuPedSim's SQLite; the walkable area is the rectangle about everybody's places.
+    """Write JuPedSim's SQLite; the walkable area is the rectangle around all places.
 
     Returns:
         What was written, in words.

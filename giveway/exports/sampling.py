@@ -1,7 +1,8 @@
-"""A run's trajectories at equal times: what other formats expect.
+"""A run's trajectories at equal times, as other formats expect them.
 
 People and vehicles far from every ego are recorded once per second only, and SUMO's own vehicles at
-SUMO's steps; in between they are taken to move evenly. Who was away comes back under another name.
+SUMO's steps. In between they are interpolated linearly. An object that was away returns under
+another name.
 """
 
 from __future__ import annotations
@@ -19,21 +20,21 @@ from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 
 PEDESTRIAN = "pedestrian"
-_AWAY = 1.5  # of the longest time between two rows: longer apart is away
+_AWAY = 1.5  # factor on the longest time between two rows from which an object was away
 
 
 @dataclass(frozen=True)
 class Track:
-    """One object as long as it is there without a break.
+    """One object during a presence without a break.
 
     Attributes:
-        id: of SUMO; from its second presence on followed by ``#2``, ``#3`` ...
+        id: SUMO's id; from its second presence on followed by ``#2``, ``#3`` ...
         object: SUMO's id.
-        type: as in ``trajectories.csv``.
-        first: index of its first instant.
-        x, y: (n,) [m].
-        angle: (n,) [deg] navigational.
-        speed: (n,) [m/s].
+        type: Type as in ``trajectories.csv``.
+        first: Index of its first instant.
+        x, y: Coordinates (n,) [m].
+        angle: Navigational angle (n,) [deg].
+        speed: Speed (n,) [m/s].
     """
 
     id: str
@@ -54,10 +55,10 @@ class Sampled:
     """All objects of a run at t = ``begin`` + k ``step``.
 
     Attributes:
-        begin: [s] of SUMO's clock.
-        step: [s].
-        count: of instants.
-        tracks: in the order of their first rows.
+        begin: First instant [s] on SUMO's clock.
+        step: Time between two instants [s].
+        count: Number of instants.
+        tracks: Tracks in the order of their first rows.
     """
 
     begin: float
@@ -70,16 +71,16 @@ class Sampled:
         return [track for track in self.tracks if track.type == PEDESTRIAN]
 
     def time(self, index: int) -> float:
-        """[s] of an instant."""
+        """Return the time [s] of an instant."""
         return round(self.begin + index * self.step, 6)
 
 
 def sampled(run: RunFolder, step: float | None = None) -> Sampled:
-    """The trajectories of a run at equal times.
+    """Return the trajectories of a run at equal times.
 
     Args:
         run: the results folder.
-        step: between two instants [s], whole milliseconds as SUMO's; None: the control step.
+        step: Step between two instants [s], whole milliseconds as SUMO's; None: the control step.
 
     Raises:
         ConfigError: the step makes no sense.
@@ -122,9 +123,9 @@ def _track(shown: str, name: str, rows: pd.DataFrame, begin: float, step: float)
 
 
 def numbered(tracks: Sequence[Track]) -> tuple[dict[str, NDArray[np.int64]], list[str]]:
-    """Frame by frame what other tools read: ``frame``, ``id``, ``x``, ``y``, and names by id.
+    """Return columns in the order of frames, ``frame``, ``id``, ``x``, ``y``, and names by id.
 
-    Ids count from 1, as some readers take 0 for nobody.
+    Ids count from 1, because some readers take 0 for no object.
     """
     lengths = np.array([len(track) for track in tracks], dtype=np.int64)
     number = np.repeat(np.arange(1, len(tracks) + 1), lengths)

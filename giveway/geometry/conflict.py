@@ -1,4 +1,4 @@
-"""Where two ways come so close to one another that bodies on them would touch."""
+"""The conflict of two paths: where bodies on them would touch."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ import numpy as np
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at, stations_of
 
-_SAMPLE = 0.25  # [m] between the points of the ways that are compared
+_SAMPLE = 0.25  # [m] distance between the compared points of the paths
 
 
 class Conflict(NamedTuple):
@@ -20,12 +20,12 @@ class Conflict(NamedTuple):
 
 
 def conflict(own: Array, other: Array, apart: float) -> Conflict | None:
-    """The conflict of two ways; None: there is none.
+    """Return the conflict of two paths, or None without one.
 
     Args:
-        own: (k, 2) [m] one way.
-        other: (m, 2) [m] the other.
-        apart: [m] between the ways' middles, so that bodies on them do not touch.
+        own: One path (k, 2) [m].
+        other: Other path (m, 2) [m].
+        apart: Distance [m] of the paths' middles from which bodies on them do not touch.
     """
     along, points = _sampled(own)
     other_along, other_points = _sampled(other)

@@ -1,4 +1,4 @@
-"""The ego's rectangle and a pedestrian's circle, compiled: how far apart, and when they meet.
+"""Distance and contact times of the ego's rectangle and a pedestrian's circle, compiled.
 
 Both questions are asked in the rectangle's frame: origin at its centre, X along the heading, Y to
 the left. A circle of radius R touches the rectangle exactly when its centre lies in the rectangle
@@ -31,7 +31,7 @@ def signed_distance(x: float, y: float, half_length: float, half_width: float) -
 
 @inner
 def _slab(x: float, w: float, half: float) -> tuple[float, float]:
-    """The times during which x + w t lies in [-half, half]; (inf, -inf) if it never does."""
+    """Return the times during which x + w t lies in [-half, half]; (inf, -inf) if never."""
     if w == 0.0:
         return (-inf, inf) if abs(x) <= half else (inf, -inf)
     one = (-half - x) / w
@@ -41,7 +41,7 @@ def _slab(x: float, w: float, half: float) -> tuple[float, float]:
 
 @inner
 def _disc(x: float, y: float, w_x: float, w_y: float, radius: float) -> tuple[float, float]:
-    """The times during which (x, y) + (w_x, w_y) t lies in a disc about the origin."""
+    """Return the times during which (x, y) + (w_x, w_y) t is in a disc about the origin."""
     speed_2 = w_x * w_x + w_y * w_y
     cross = x * w_y - y * w_x
     discriminant = speed_2 * radius * radius - cross * cross
@@ -62,14 +62,15 @@ def contact_interval(
     half_width: float,
     radius: float,
 ) -> tuple[float, float]:
-    """First and last instant at which a circle in straight motion touches the rectangle.
+    """Return the first and last instant at which a moving circle touches the rectangle.
 
     The circle's centre is (x, y) + (w_x, w_y) t in the rectangle's frame, t over all reals, so
     either instant may be negative; (inf, -inf) if the two never touch.
 
-    A line that enters the rectangle's bounding box grown by ``radius`` through one of its four
-    corner squares meets the rounded corner there or nothing at all, because a corner square's
-    inner edges lie within the rounded rectangle. So one slab test and at most two disc tests do.
+    A line may enter the rectangle's bounding box, grown by ``radius``, through one of its four
+    corner squares. Then it meets the rounded corner there or nothing at all, because a corner
+    square's inner edges lie within the rounded rectangle. Therefore one slab test and at most two
+    disc tests suffice.
     """
     if hypot(w_x, w_y) < AT_REST:
         touching = signed_distance(x, y, half_length, half_width) <= radius
@@ -92,6 +93,6 @@ def contact_interval(
         corner_x = half_length if at_x > 0.0 else -half_length
         corner_y = half_width if at_y > 0.0 else -half_width
         _, leaving = _disc(x - corner_x, y - corner_y, w_x, w_y, radius)
-        # -inf here is a graze lost to rounding: the line has been inside already.
+        # -inf here is a contact lost to rounding: the line has been inside already.
         last = max(leaving, first)
     return first, last

@@ -1,6 +1,6 @@
 """numba's ``njit`` for giveway's own kernels, cached on disk, with strict IEEE arithmetic.
 
-The type of the arrays that they take stands here, too.
+The type of the arrays that kernels take is defined here, too.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 _STRICT: dict[str, Any] = {
     "error_model": "numpy",
-    "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
+    "no_cfunc_wrapper": True,  # no wrapper for C; it would be compiled with each kernel
 }
 
 
@@ -26,18 +26,18 @@ def kernel(function: Function) -> Function:
 
 
 def unlocked(function: Function) -> Function:
-    """As :func:`kernel`, without Python's lock: for what several threads call side by side."""
+    """Compile like :func:`kernel`, but without Python's lock, for several threads."""
     return cast("Function", njit(cache=True, nogil=True, **_STRICT)(function))
 
 
 def inner(function: Function) -> Function:
-    """Compile ``function`` with the kernels that call it, and for nobody else.
+    """Compile ``function`` with the kernels that call it, but not for Python.
 
-    From Python it runs as it stands, uncompiled: what Python calls is a kernel.
+    Python runs it as it stands, uncompiled; a function that Python calls is a kernel.
     """
     return register_jitable(**_STRICT)(function)
 
 
 def inlined(function: Function) -> Function:
-    """Compile ``function`` into its callers: each array that is handed over costs a count of it."""
+    """Compile ``function`` into its callers, which saves counting references to its arrays."""
     return register_jitable(forceinline=True, **_STRICT)(function)

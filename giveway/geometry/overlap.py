@@ -1,4 +1,4 @@
-"""Whether the rectangles of vehicles overlap."""
+"""The overlap of vehicles' rectangles."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,17 +10,18 @@ TOUCH = 0.01
 
 
 def rectangles_overlap(one: Array, other: Array, deeper_than: float = TOUCH) -> NDArray[np.bool_]:
-    """Whether rectangles overlap, pair by pair: no axis of either separates the two.
+    """Return whether rectangles overlap, pair by pair: no axis of either separates the two.
 
     Args:
-        one: (..., 5) x and y [m] of the front's middle, heading [rad], length and width [m].
-        other: likewise; the leading axes of both are broadcast.
-        deeper_than: [m] by which they have to reach into each other.
+        one: Rectangles (..., 5): x and y [m] of the front's middle, heading [rad], length and width
+            [m].
+        other: Rectangles in the same form; the leading axes of both are broadcast.
+        deeper_than: Depth [m] by which they have to reach into each other.
     """
     x, y, psi, length, width = np.moveaxis(one, -1, 0)
     x_2, y_2, psi_2, length_2, width_2 = np.moveaxis(other, -1, 0)
     c, s, c_2, s_2 = np.cos(psi), np.sin(psi), np.cos(psi_2), np.sin(psi_2)
-    d_x = x_2 - length_2 / 2 * c_2 - x + length / 2 * c  # from centre to centre
+    d_x = x_2 - length_2 / 2 * c_2 - x + length / 2 * c  # vector from centre to centre
     d_y = y_2 - length_2 / 2 * s_2 - y + length / 2 * s
     along, across = np.abs(np.cos(psi_2 - psi)), np.abs(np.sin(psi_2 - psi))
 

@@ -1,4 +1,4 @@
-"""Where a path passes a point."""
+"""The passage of a path by a point."""
 
 import numpy as np
 
@@ -24,18 +24,18 @@ def look(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Where a path comes by a point in front of the ego, and whether that may come to pass.
+    """Return the station at which a path passes a point ahead, and whether it may get there.
 
     Args:
-        vertices: (k + 1, 2) [m] of the path.
-        stations: (k + 1,) [m] of its vertices.
+        vertices: Points (k + 1, 2) [m] of the path.
+        stations: Stations (k + 1,) [m] of its vertices.
         first: the first segment that counts.
         last: the last segment that counts.
-        x: of the point [m].
-        y: of the point [m].
-        front: the station [m] of the ego's front.
-        half_width: of the corridor along the path [m].
-        reach: how far [m] the point could move.
+        x: Coordinate x of the point [m].
+        y: Coordinate y of the point [m].
+        front: Station [m] of the ego's front.
+        half_width: Half width of the corridor along the path [m].
+        reach: Distance [m] that the point could move.
 
     Returns:
         The station [m] of the closest passage within the corridor, inf without one; and whether
@@ -71,5 +71,5 @@ def look(
 
 @kernel
 def window(stations: Array, front: float, behind: float) -> tuple[int, int]:
-    """The first and last segment of the path that lie within sight, from ``behind`` [m] on."""
+    """Return the first and last segment of the path within sight, from ``behind`` [m] on."""
     return segment_at(stations, front - behind), segment_at(stations, front + SIGHT)

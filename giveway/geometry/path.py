@@ -27,7 +27,7 @@ class Pose(NamedTuple):
     heading: float  # [rad] counter-clockwise from +x
 
 
-_SEARCH = 20.0  # [m] SUMO's metres along a lane differ from the polyline's by less
+_SEARCH = 20.0  # [m] largest difference of SUMO's positions along a lane and the polyline's
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class EgoPath:
     """A polyline with its stations and headings.
 
     Attributes:
-        vertices: (k + 1, 2) [m].
-        stations: (k + 1,) [m] arc length at each vertex, from 0.
-        headings: (k,) [rad] of each segment.
+        vertices: Vertices (k + 1, 2) [m].
+        stations: Arc length (k + 1,) [m] at each vertex, from 0.
+        headings: Headings (k,) [rad] of each segment.
     """
 
     vertices: Array
@@ -68,20 +68,20 @@ class EgoPath:
         return float(self.stations[-1])
 
     def points(self, stations: Array) -> Array:
-        """(n, 2) [m] the points at ``stations`` (n,) [m]; beyond an end, the end."""
+        """Return the points (n, 2) [m] at ``stations`` (n,) [m]; beyond an end, the end."""
         return points_at(self.vertices, self.stations, stations)
 
     def pose(self, station: float, length: float = 0.0) -> Pose:
         """The pose of a body whose front and rear both have their middle on the path.
 
         Args:
-            station: of the front's middle [m].
-            length: of the body [m]; 0 gives the path's own direction.
+            station: Station of the front's middle [m].
+            length: Length of the body [m]; 0 gives the path's own direction.
         """
         return Pose(*body_pose(self.vertices, self.stations, self.headings, station, length))
 
     def locate(self, x: float, y: float, *, near: float) -> tuple[float, float]:
-        """Station [m] and lateral offset [m] of (x, y), looked for about the station ``near``."""
+        """Return station [m] and lateral offset [m] of (x, y), near the station ``near``."""
         first = segment_at(self.stations, near - _SEARCH)
         last = segment_at(self.stations, near + _SEARCH)
         part = slice(first, last + 2)
@@ -102,27 +102,28 @@ def stations_of(vertices: Array) -> Array:
 
 
 def points_at(vertices: Array, stations: Array, at: Array) -> Array:
-    """The points (..., 2) [m] of a polyline at the arc lengths ``at`` (...) [m].
+    """Return the points (..., 2) [m] of a polyline at the arc lengths ``at`` (...) [m].
 
     Args:
-        vertices: (k, 2) [m] of the polyline.
-        stations: (k,) [m] of its vertices.
-        at: where; beyond an end, it is the end.
+        vertices: Points (k, 2) [m] of the polyline.
+        stations: Stations (k,) [m] of its vertices.
+        at: Arc lengths [m]; beyond an end, the end is taken.
     """
     return np.stack([np.interp(at, stations, column) for column in vertices.T], axis=-1)
 
 
 def fine_near(near: Array, reach: float, begin: float, end: float, step: float) -> Array:
-    """Stations [m] from ``begin`` by ``step`` within ``reach`` of any of ``near``, before ``end``.
+    """Return stations [m] from ``begin`` by ``step`` within ``reach`` of any of ``near``.
 
-    A long way may come by a place again: what is between is left out.
+    The last one is before ``end``. A long path may pass a place again; the part between is left
+    out.
 
     Args:
-        near: (n,) [m] in rising order, one at least.
-        reach: [m].
-        begin: [m] of which all are whole steps away.
-        end: [m].
-        step: [m].
+        near: Stations (n,) [m] in rising order, at least one.
+        reach: Distance [m] from them.
+        begin: First station [m]; all others are whole steps away.
+        end: Station [m] before which they end.
+        step: Distance [m] between two of them.
     """
     stations = np.arange(begin, min(near[-1] + reach, end), step)
     after = np.minimum(np.searchsorted(near, stations), len(near) - 1)
@@ -133,14 +134,14 @@ def fine_near(near: Array, reach: float, begin: float, end: float, step: float) 
 
 @kernel
 def segment_at(stations: Array, station: float) -> int:
-    """Index of the segment that ``station`` [m] lies on; the first or last one beyond the ends."""
+    """Return the index of the segment at ``station`` [m], the first or last beyond the ends."""
     i: int = np.searchsorted(stations, station, side="right") - 1  # type: ignore[assignment]
     return min(max(i, 0), len(stations) - 2)
 
 
 @inner
 def point_on(vertices: Array, stations: Array, i: int, station: float) -> tuple[float, float]:
-    """x, y [m] at ``station`` [m] on the line through segment i."""
+    """Return x, y [m] at ``station`` [m] on the line through segment i."""
     along = station - stations[i]
     length = stations[i + 1] - stations[i]
     x = vertices[i, 0] + along * ((vertices[i + 1, 0] - vertices[i, 0]) / length)
@@ -152,9 +153,10 @@ def point_on(vertices: Array, stations: Array, i: int, station: float) -> tuple[
 def body_pose(
     vertices: Array, stations: Array, headings: Array, station: float, length: float
 ) -> tuple[float, float, float]:
-    """x, y [m] of the front's middle and heading [rad] of a body; straight beyond the ends.
+    """Return x, y [m] of the front's middle and the heading [rad] of a body.
 
-    The heading is that of the line from rear to front, as SUMO draws vehicles.
+    The path goes on straight beyond its ends. The heading is that of the line from rear to front,
+    as SUMO draws vehicles.
     """
     i = segment_at(stations, station)
     x, y = point_on(vertices, stations, i, station)

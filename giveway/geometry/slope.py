@@ -1,4 +1,4 @@
-"""How steep a path is, where its network has heights."""
+"""The slope of a path whose network has heights."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 
-_FLAT = 1e-6  # [m] of height: less is none
+_FLAT = 1e-6  # [m] largest difference of heights of a level path
 
 
 @dataclass(frozen=True)
 class Slope:
-    """The heights along a path, straight in between.
+    """The heights along a path, interpolated linearly.
 
     Attributes:
-        stations: (k,) [m] along the path, which is laid out in the plane.
-        heights: (k,) [m] there.
+        stations: Stations (k,) [m] along the path, which is laid out in the plane.
+        heights: Heights (k,) [m] at the stations.
     """
 
     stations: Array
@@ -27,7 +27,7 @@ class Slope:
 
     @classmethod
     def through(cls, points: Sequence[tuple[float, float]]) -> Slope | None:
-        """The slope through stations and heights [m], in order; None: the path is level."""
+        """Return the slope through stations and heights [m] in order, or None if it is level."""
         if not points:
             return None
         stations, heights = np.array(points, dtype=np.float64).T
@@ -36,11 +36,11 @@ class Slope:
         return cls(stations, heights)
 
     def grade(self, front: float, length: float) -> float:
-        """The angle [rad] at which a body stands, uphill positive: from its rear to its front.
+        """Return the grade [rad] of a body from its rear to its front, uphill positive.
 
         Args:
-            front: station of its front [m].
-            length: of the body [m]; what stands beyond an end of the path does not count.
+            front: Station of its front [m].
+            length: Length of the body [m]; what stands beyond an end of the path does not count.
         """
         first, last = self.stations[0], self.stations[-1]
         rear = min(max(front - length, first), last)
@@ -52,7 +52,7 @@ class Slope:
 
     @property
     def steepest(self) -> float:
-        """The largest angle [rad] between two of its points a metre or more apart."""
+        """Return the largest angle [rad] between two of its points a metre or more apart."""
         along, up = np.diff(self.stations), np.diff(self.heights)
         long = along >= 1.0
         return float(np.arctan2(np.abs(up[long]), along[long]).max(initial=0.0))

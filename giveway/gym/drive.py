@@ -1,8 +1,8 @@
 """A drive through a crowd as a Gymnasium environment (extra ``gym``): docs/gym.md.
 
-The co-simulation is the one of every run: SUMO, FMU, people, bounds of lights and priority. It goes
-on in a thread of its own, in which the environment is the controller by the door that is open to
-everybody; ``reset`` begins it, the constructor starts nothing.
+The co-simulation is that of every run: SUMO, FMU, people, bounds of lights and priority. It runs in
+a thread of its own, in which the environment is the controller, as a plug-in. ``reset`` begins it;
+the constructor starts nothing.
 """
 
 from __future__ import annotations
@@ -38,21 +38,21 @@ except ImportError as missing:
     ) from missing
 
 ID = "giveway/Drive-v0"
-FAR = 100.0  # [m] what is farther ahead is told as this far
-FAST = 40.0  # [m/s] likewise
-LATERAL = 30.0  # [m] people farther aside of the front bumper are not told
-_REAR = -10.0  # [m] nor those farther behind it
-_HARD = 10.0  # [m/s^2] the largest acceleration that is told
+FAR = 100.0  # [m] largest distance ahead in observations
+FAST = 40.0  # [m/s] largest speed in observations
+LATERAL = 30.0  # [m] largest lateral distance of people in observations
+_REAR = -10.0  # [m] farthest place behind the front bumper of people in observations
+_HARD = 10.0  # [m/s^2] largest acceleration in observations
 _DISCOMFORT = 0.02  # [s^3/m^2] per (m/s^2)^2 in a second: 4 m/s^2 cost as much as standing a third
-_CONTACT = 100.0  # [s] what hitting somebody costs
-_MOVES = 0.1  # [m/s] a slower ego hits nobody
+_CONTACT = 100.0  # [s] cost of hitting a person
+_MOVES = 0.1  # [m/s] speed below which the ego hits nobody
 _CONTROLLER = "giveway.gym:Seat"
 
 Dict = dict[str, NDArray[np.float32]]
 
 
 class _Exchange:
-    """Between the environment and the run's thread: one of the two waits at any time."""
+    """The exchange between the environment and the run's thread: one of them always waits."""
 
     def __init__(self, action: str) -> None:
         self.action = action
@@ -73,7 +73,7 @@ _here = threading.local()
 
 
 class Seat:
-    """The controller of an environment's run: asks the environment."""
+    """The controller of an environment's run, which asks the environment for its action."""
 
     def __init__(self, setup: Setup) -> None:
         self._exchange: _Exchange | None = getattr(_here, "exchange", None)
@@ -82,7 +82,7 @@ class Seat:
             self._exchange.setup = setup
 
     def control(self, seen: Observation) -> Force | Acceleration:
-        """The action that ``DriveEnv.step`` is called with."""
+        """Return the action that ``DriveEnv.step`` is called with."""
         exchange, limit = self._exchange, self._setup.force_limit
         if exchange is None:
             raise ConfigError(f"controller = '{_CONTROLLER}' is for giveway.gym.DriveEnv only")
@@ -113,9 +113,9 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
     * Seeds: ``reset(seed=s)`` is the run with ``seed = s``; without, it is drawn.
 
     Args:
-        config: as of ``giveway.run``: scenario, crowd, vehicle ...; its controller is the action.
-        action: what actions mean.
-        people: n of those in the observation.
+        config: Configuration as for ``giveway.run``; its controller is the action.
+        action: Meaning of actions.
+        people: Number n of people in the observation.
 
     Raises:
         GivewayError: the configuration cannot be used, or has not exactly one ego.
@@ -157,7 +157,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Dict, dict[str, Any]]:
-        """Begin a run; ``options`` has no keys.
+        """Begin a run; ``options`` must be empty.
 
         Raises:
             GivewayError: it cannot begin.
@@ -192,7 +192,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return self._observed(exchange), {"seed": drawn} | self._told(exchange)
 
     def step(self, action: NDArray[np.float32]) -> tuple[Dict, float, bool, bool, dict[str, Any]]:
-        """Let an action act for a control step.
+        """Apply an action for a control step.
 
         Raises:
             GivewayError: the run has failed.
@@ -209,7 +209,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         pace = seen.speed / setup.reference_speed - 1.0
         reward = setup.time_step * (pace - _DISCOMFORT * seen.acceleration**2)
         completed = truncated = hit = False
-        if exchange.over:  # there is no further instant: the last one again, and nothing lost
+        if exchange.over:  # no further instant: the last one again, without a cost
             reward = 0.0
             self._finish(exchange)
             completed = self.result is not None and self.result.ending is Ending.COMPLETED
@@ -224,7 +224,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return observation, reward, completed or hit, truncated, told
 
     def close(self) -> None:
-        """End the run, if there is one; its rows so far are in ``result``."""
+        """End the run if there is one; its rows so far are in ``result``."""
         exchange = self._exchange
         if exchange is not None and not exchange.over:
             exchange.interrupt.requested = True
@@ -245,7 +245,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
             raise error
 
     def _loaded(self, seed: int) -> tuple[RunConfig, Scenario]:
-        """The run's configuration and scenario."""
+        """Return the run's configuration and scenario."""
         config, scenario = load([*self._layers, Layer("reset", {"seed": seed})])
         egos = config.each_ego()
         if len(egos) != 1:
@@ -287,7 +287,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return told
 
     def _around(self, seen: Observation) -> Array:
-        """(m, 4) the people near the ego: place [m] and velocity [m/s], ahead and to the left."""
+        """Return the people near the ego (m, 4): place [m] and velocity [m/s], ahead and left."""
         if seen.people is None or seen.path is None or not len(seen.people.position):
             return np.empty((0, 4))
         x, y, heading = seen.path.poses(np.zeros(1))[0]
@@ -299,7 +299,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return around
 
     def _hits(self, speed: float, around: Array) -> bool:
-        """Whether the front touches somebody while the ego drives."""
+        """Return whether the front touches somebody while the ego drives."""
         beside = np.maximum(np.abs(around[:, 1]) - self._half, 0.0)
         touched = np.hypot(around[:, 0], beside) <= self._radius
         touched &= (around[:, 0] >= 0.0) | (beside == 0.0) & (around[:, 0] > -self._radius)

@@ -1,4 +1,4 @@
-"""Where how many people were: PedPy's classic density on a grid, averaged over a run."""
+"""The places where people were: PedPy's classic density on a grid, averaged over a run."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from giveway.measures.trajectories import surroundings, walks
 from giveway.run_data.tracks import CrowdTrack
 
 CELL = 0.5  # [m] side of a grid's cell
-SAMPLES = 200  # instants, at most, that the mean goes over
+SAMPLES = 200  # largest number of instants in the mean
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class DensityMap:
     """Mean density on a grid.
 
     Attributes:
-        density: (rows, columns) [1/m^2], the northern row first.
+        density: Density (rows, columns) [1/m^2], the northern row first.
         left, bottom, right, top: [m] the grid's edges.
     """
 
@@ -29,11 +29,11 @@ class DensityMap:
 
 
 def density_map(crowd: CrowdTrack, instants: int) -> DensityMap:
-    """The mean density over a run.
+    """Return the mean density over a run.
 
     Args:
         crowd: the crowd's track.
-        instants: how many the run has; those without anybody count too.
+        instants: Number of instants of the run; those without people count, too.
 
     Raises:
         ValueError: nobody was recorded.

@@ -1,4 +1,4 @@
-"""``measures.csv``: what PedPy measures on each line and area, interval by interval."""
+"""The table ``measures.csv``: PedPy's results on each line and area, interval by interval."""
 
 import importlib.util
 import warnings
@@ -24,7 +24,7 @@ SPEED_WINDOW = 0.2  # [s] over which PedPy differentiates positions to speeds
 
 
 def require_pedpy() -> None:
-    """Make sure that PedPy is there before anything is computed; it is not imported.
+    """Make sure that PedPy is installed before anything is computed, without importing it.
 
     Raises:
         ResultsError: it is missing.
@@ -39,12 +39,12 @@ def require_pedpy() -> None:
 def measure_table(
     measures: Sequence[MeasureConfig], time: NDArray[np.float64], crowd: CrowdTrack
 ) -> "pd.DataFrame":
-    """One row per measure and interval, columns as in ``MEASURE_COLUMNS``.
+    """Return one row per measure and interval, with the columns of ``MEASURE_COLUMNS``.
 
     Args:
-        measures: the lines and areas.
-        time: (T,) [s] the control instants, evenly spaced.
-        crowd: the crowd's track.
+        measures: Lines and areas.
+        time: Control instants (T,) [s], evenly spaced.
+        crowd: Track of the crowd.
     """
     import pandas as pd
 
@@ -53,7 +53,7 @@ def measure_table(
         return pd.DataFrame(columns=names)
     table = walks(crowd)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of PedPy: that nobody crosses a line is a result
+        warnings.simplefilter("ignore")  # PedPy warns if nobody crosses a line, which is a result
         rows = [
             row
             for measure in measures
@@ -64,7 +64,7 @@ def measure_table(
 
 
 def _intervals(measure: MeasureConfig, time: NDArray[np.float64]) -> list[tuple[int, int]]:
-    """The control instants at which each interval begins and before which it ends."""
+    """Return the control instants at which each interval begins and before which it ends."""
     step = (time[-1] - time[0]) / (len(time) - 1)
     length = max(1, round(measure.interval / step))
     last = len(time) - 1  # an instant later there is nothing
@@ -72,7 +72,7 @@ def _intervals(measure: MeasureConfig, time: NDArray[np.float64]) -> list[tuple[
 
 
 def _speeds(table: "pd.DataFrame", step: float) -> "tuple[Any, pd.DataFrame]":
-    """PedPy's trajectories, and everybody's speed [m/s] at each frame."""
+    """Return PedPy's trajectories, and every person's speed [m/s] at each frame."""
     from pedpy import SpeedCalculation, compute_individual_speed
 
     data = trajectory_data(table, step)
@@ -151,7 +151,7 @@ def _area_rows(
 def _area_series(
     measure: MeasureConfig, looked_at: NDArray[np.int64], step: float, table: "pd.DataFrame"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Classic and Voronoi density [1/m^2] and mean speed [m/s] at the frames ``looked_at``."""
+    """Return both densities [1/m^2] and the mean speed [m/s] at the frames ``looked_at``."""
     nobody = np.zeros(len(looked_at))
     sampled = table[table["frame"].isin(looked_at)]
     if not len(sampled):
@@ -195,14 +195,14 @@ def _area_series(
 
 
 def _by_frame(found: "pd.DataFrame", looked_at: NDArray[np.int64]) -> "pd.Series":
-    """PedPy's value at each frame; nan where it has none."""
+    """Return PedPy's value at each frame, nan without one."""
     if "frame" in found.columns:
         found = found.set_index("frame")
     return found.iloc[:, -1].reindex(looked_at)
 
 
 def _size(measure: MeasureConfig) -> float:
-    """[m^2] of an area, by the shoelace formula."""
+    """Return the size [m^2] of an area, by the shoelace formula."""
     x, y = np.array(measure.area).T
     return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0)
 

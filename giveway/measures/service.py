@@ -1,4 +1,4 @@
-"""Levels of service of walkways: how comfortable a density or a flow is, A (free) to F (jammed)."""
+"""Levels of service of walkways: the comfort of a density or a flow, A (free) to F (jammed)."""
 
 from dataclasses import dataclass
 from math import inf
@@ -9,9 +9,9 @@ class LevelsOfService:
     """The limits between the levels A to F of one source.
 
     Attributes:
-        source: where they stand.
-        space: [m^2 per person] above which it is A, B, C, D, E.
-        flow: [persons per minute and metre of width] up to which it is A, B, C, D, E.
+        source: Publication of the limits.
+        space: Space [m^2 per person] above which the level is A, B, C, D, E.
+        flow: Flow [persons per minute and metre] up to which it is A, B, C, D, E.
     """
 
     source: str
@@ -37,15 +37,15 @@ _LETTERS = "ABCDEF"
 def level_of_service(
     levels: LevelsOfService, *, density: float | None = None, specific_flow: float | None = None
 ) -> str:
-    """The letter of a density, or of a flow.
+    """Return the level of a density, or of a flow.
 
     A flow alone does not tell a free walkway from a jammed one: F by flow is demand beyond
     capacity. Where the density is known, that decides.
 
     Args:
-        levels: Fruin's or the manual's.
-        density: [1/m^2] of people.
-        specific_flow: [1/(m s)] over a line.
+        levels: Limits, Fruin's or the manual's.
+        density: Density [1/m^2] of people.
+        specific_flow: Flow [1/(m s)] over a line.
     """
     if density is not None:
         space = 1.0 / density if density > 0.0 else inf

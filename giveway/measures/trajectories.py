@@ -1,4 +1,4 @@
-"""A crowd's records as PedPy takes them."""
+"""A crowd's records in PedPy's form."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def walks(crowd: CrowdTrack) -> "pd.DataFrame":
-    """One row per record: id, frame (control instant), x, y [m].
+    """Return one row per record: id, frame (control instant), x, y [m].
 
-    Who was out of our hands for a while has another id after that: nobody jumps over a line.
+    A person who was out of our hands for a while gets another id, so that nobody jumps over a line.
     """
     import pandas as pd
 
@@ -26,19 +26,19 @@ def walks(crowd: CrowdTrack) -> "pd.DataFrame":
     number = np.concatenate([[0], np.cumsum(new)]) if len(order) else np.empty(0, dtype=np.int64)
     data = {"id": number, "frame": frame, "x": crowd.x[order], "y": crowd.y[order]}
     table = pd.DataFrame(data)
-    lasting = table.groupby("id")["frame"].transform("size") > 1  # of one record nobody knows more
+    lasting = table.groupby("id")["frame"].transform("size") > 1  # a single record tells no speed
     return table[lasting].reset_index(drop=True)
 
 
 def trajectory_data(table: "pd.DataFrame", time_step: float) -> Any:
-    """PedPy's own of ``walks``."""
+    """Return PedPy's trajectories of ``walks``."""
     from pedpy import TrajectoryData
 
     return TrajectoryData(data=table, frame_rate=1.0 / time_step)
 
 
 def surroundings(table: "pd.DataFrame", places: NDArray[np.float64], beyond: float) -> Any:
-    """A walkable area that holds all of ``table`` and ``places`` (k, 2) [m]."""
+    """Return a walkable area that holds all of ``table`` and ``places`` (k, 2) [m]."""
     from pedpy import WalkableArea
 
     points = np.concatenate([table[["x", "y"]].to_numpy(), places])

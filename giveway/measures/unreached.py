@@ -1,4 +1,4 @@
-"""Lines and areas to which nobody comes: most of them have a coordinate wrong."""
+"""Lines and areas that nobody reaches; most of them have a wrong coordinate."""
 
 from collections.abc import Sequence
 
@@ -7,11 +7,11 @@ import shapely
 from giveway.config.tables.measures import MeasureConfig
 from giveway.run_data.tracks import CrowdTrack
 
-NEAR = 1.0  # [m] who comes no nearer has nothing to do with a line or an area
+NEAR = 1.0  # [m] distance within which a person reaches a line or an area
 
 
 def unreached(measures: Sequence[MeasureConfig], crowd: CrowdTrack) -> tuple[str, ...]:
-    """A remark on each measure to which nobody came within a metre, with where people walked."""
+    """Return a remark on each measure that nobody reached, with the places where people walked."""
     if not measures:
         return ()
     if not len(crowd.x):

@@ -1,4 +1,4 @@
-"""What happened between ego and pedestrians, in the numbers that traffic engineers use."""
+"""The interactions of ego and pedestrians, in the numbers that traffic engineers use."""
 
 from giveway.metrics.anticipation import Anticipation, anticipation
 from giveway.metrics.conflicts import CRITICAL_TTC, Critical, Proximity, conflicts, proximity

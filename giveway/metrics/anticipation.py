@@ -1,7 +1,7 @@
-"""How early an ego slowed for people, and how long it stood in their midst.
+"""Anticipation: how early an ego slowed for people, and how long it stood among them.
 
 An attentive driver slows while the first person is still far off in time, and stops before a stream
-of people or flows through it. Lengths in m, times in s.
+of people or flows through it. Lengths are in m, times in s.
 """
 
 from dataclasses import fields
@@ -23,12 +23,12 @@ PASSING = 5.0
 
 
 class Anticipation(NamedTuple):
-    """How an ego met people.
+    """The anticipation of an ego.
 
     Attributes:
-        ttc_at_slowing: [s] as it began to slow, the time to the first person, had it kept its
-            speed; nan: it never slowed, or would have reached nobody.
-        time_among_people: [s] that it stood while people passed in front of and behind it.
+        ttc_at_slowing: Time [s] to the first person at the begin of slowing, at constant speed; nan
+            if it never slowed, or would have reached nobody.
+        time_among_people: Time [s] at standstill with people passing in front of and behind it.
     """
 
     ttc_at_slowing: float = nan
@@ -44,15 +44,15 @@ def anticipation(
     reference_speed: float | None,
     stop_speed: float,
 ) -> Anticipation:
-    """How early an ego slowed for people, and how long it stood in their midst.
+    """Return how early an ego slowed for people, and how long it stood among them.
 
     Args:
-        ego: the ego's track, T instants.
-        crowd: the crowd's track, R records of n pedestrians in time order.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
-        reference_speed: v_r [m/s]; None: the lanes say how fast.
-        stop_speed: the ego stands below it [m/s].
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd, R records of n pedestrians in time order.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
+        reference_speed: Reference speed v_r [m/s]; None: the lanes' limits count.
+        stop_speed: Speed [m/s] below which the ego stands.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -68,14 +68,14 @@ def anticipation(
 def _time_to_contact(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float, begin: int
 ) -> float:
-    """[s] from an instant until the ego would touch somebody, had it kept its speed from then on.
+    """Return the time [s] from an instant until a contact at constant speed of the ego.
 
-    The time to collision as the brakes go on (van der Horst 1990), with the way that the ego
-    drove and people who walk as they did, instead of straight lines.
+    This is the time to collision at the onset of braking (van der Horst 1990), but with the ego's
+    path and the people's walks as they were, instead of straight lines.
     """
     time, way = ego.time[begin:], np.maximum.accumulate(ego.position)
     station = way[begin] + ego.speed[begin] * (time - time[0])
-    count = int(np.searchsorted(station, way[-1], side="right"))  # beyond it nobody was recorded
+    count = int(np.searchsorted(station, way[-1], side="right"))  # nobody was recorded beyond it
 
     def there(column: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.asarray(np.interp(station[:count], way, column), dtype=np.float64)
@@ -102,10 +102,10 @@ def _time_to_contact(
 def _contact(
     people: CrowdTrack, apart: NDArray[np.float64], r: int, time: NDArray[np.float64]
 ) -> float:
-    """[s] when the distance became 0 before record ``r``, which it had become by then."""
+    """Return when [s] the distance became 0, shortly before the record ``r``."""
     k = people.step[r]
     before = (people.step == k - 1) & (people.pedestrian == people.pedestrian[r])
-    if not before.any():  # first seen where the ego would be
+    if not before.any():  # first seen in the ego's place
         return float(time[k])
     distance = float(apart[before][0])
     share = distance / (distance - float(apart[r]))
@@ -113,7 +113,7 @@ def _contact(
 
 
 def _among(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, stop_speed: float) -> float:
-    """[s] that the ego stood while people passed in front of and behind it, all stops added up."""
+    """Return the time [s] of all stops with people passing in front of and behind the ego."""
     stands = stops(ego, stop_speed)
     if not len(stands):
         return 0.0
@@ -129,7 +129,7 @@ def _among(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, stop_speed: fl
 def _passages(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """When [s] and where [m] people cross the ego's line of travel close to its bumpers.
+    """Return when [s] and where [m] people cross the ego's line of travel close to its bumpers.
 
     Places count from the ego's centre, positive in front.
     """

@@ -1,7 +1,7 @@
-"""How close every pedestrian and the ego came, and how many were close to a collision course.
+"""The proximity of each pedestrian and the ego, and the number of conflicts.
 
-The ego is its true rectangle, a pedestrian a circle of ``body_radius``; both are exact at the
-control instants. Lengths in m, times in s.
+The ego is its true rectangle, a pedestrian a circle of ``body_radius``. Both are exact at the
+control instants. Lengths are in m, times in s.
 """
 
 from dataclasses import dataclass
@@ -22,18 +22,18 @@ the range that observers of Hayward's (1972) near misses found."""
 
 
 class Proximity(NamedTuple):
-    """How close the pedestrian of each of R crowd records and the ego were; all are (R,).
+    """The proximity of pedestrian and ego for each of R crowd records; all are (R,).
 
     Attributes:
-        clearance: [m] distance between the pedestrian's skin and the ego's bodywork; negative where
+        clearance: Distance [m] between the pedestrian's skin and the ego's bodywork; negative where
             the circle overlaps the rectangle.
-        time_to_collision: [s] until the first contact if both kept their velocity: 0 when they
+        time_to_collision: Time [s] until the first contact if both kept their velocity: 0 when they
             touch already, inf when they never do on these courses. The usual surrogate (Hayward
             1972) without its usual shortcut of one line of travel: the rectangle moves along its
             heading at its present speed, the circle along its present velocity, and the first
             contact of the two shapes is solved exactly. A pedestrian walking into the side of a
             standing ego therefore has a finite time to collision too.
-        deceleration: [m/s^2] the deceleration to avoid a crash (DRAC, Cooper & Ferguson 1976), the
+        deceleration: Deceleration [m/s^2] to avoid a crash (DRAC, Cooper & Ferguson 1976), the
             constant braking that would just spare a pedestrian ahead: c^2 / (2 d) with the closing
             speed c and the distance d to be closed. Here c is along the ego's heading and
             d = c * (time to collision): braking by it, the ego has matched the pedestrian's speed
@@ -50,13 +50,13 @@ class Proximity(NamedTuple):
 def proximity(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> Proximity:
-    """How close every pedestrian and the ego came, record by record, in one pass.
+    """Return the proximity of pedestrians and ego for all records, in one pass.
 
     Args:
-        ego: the ego's track, T instants.
-        crowd: the crowd's track, R records.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd, R records.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -83,9 +83,9 @@ class Critical:
     """The conflicts of a drive.
 
     Attributes:
-        pedestrians: how many pedestrians had one.
-        share: of the control instants at which somebody had one.
-        minimum_ttc: [s] the smallest time to collision with the moving ego; nan if there is none.
+        pedestrians: Number of pedestrians who had one.
+        share: Share of the control instants at which somebody had one.
+        minimum_ttc: Smallest time [s] to collision with the moving ego; nan without one.
     """
 
     pedestrians: int
@@ -96,16 +96,16 @@ class Critical:
 def conflicts(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float, stop_speed: float
 ) -> Critical:
-    """Count whose time to collision is below ``CRITICAL_TTC`` while the ego moves.
+    """Count the pedestrians with a time to collision below ``CRITICAL_TTC`` while the ego moves.
 
-    A pedestrian who walks up to a standing ego is on a collision course too, but in no danger.
+    A pedestrian who walks up to a standing ego is on a collision course, too, but in no danger.
 
     Args:
-        ego: the ego's track, T instants.
-        crowd: the crowd's track.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
-        stop_speed: the ego moves above it [m/s].
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
+        stop_speed: Speed [m/s] above which the ego moves.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -123,12 +123,12 @@ def conflicts(
 
 
 def contact_body(shape: VehicleShape, body_radius: float) -> tuple[float, float, float]:
-    """What decides on a contact, as the kernels take it: half length, half width, radius [m]."""
+    """Return the sizes that decide on a contact: half length, half width, radius [m]."""
     return shape.length / 2.0, shape.width / 2.0, float(body_radius)
 
 
 def centre_poses(ego: EgoTrack, shape: VehicleShape) -> NDArray[np.float64]:
-    """The rectangle's centre and heading at every instant: (T, 4) rows of x, y, cos, sin."""
+    """Return the rectangle's centre and heading at every instant: (T, 4) of x, y, cos, sin."""
     poses = np.empty((ego.time.size, 4))
     _centre_poses(
         as_floats(ego.front_x),
@@ -141,12 +141,12 @@ def centre_poses(ego: EgoTrack, shape: VehicleShape) -> NDArray[np.float64]:
 
 
 def as_floats(column: NDArray[np.floating]) -> NDArray[np.float64]:
-    """The column in the layout that the kernels are compiled for; a copy only if it has another."""
+    """Return the column in the kernels' layout; a copy only if it has another one."""
     return np.ascontiguousarray(column, dtype=np.float64)
 
 
 def as_integers(column: NDArray[np.integer]) -> NDArray[np.int64]:
-    """The column in the layout that the kernels are compiled for; a copy only if it has another."""
+    """Return the column in the kernels' layout; a copy only if it has another one."""
     return np.ascontiguousarray(column, dtype=np.int64)
 
 

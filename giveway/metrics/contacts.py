@@ -1,7 +1,7 @@
-"""Whether the ego moved into a pedestrian: every overlap of the two is frontal or lateral.
+"""Contacts of ego and pedestrian: every overlap of the two is frontal or lateral.
 
-The ego is answerable for the pedestrians that it drives into, not for those who walk into its side
-or into it while it stands. The rule, and its odd cases, stand in docs/results.md.
+The ego is responsible for pedestrians that it drives into, not for those who walk into its side or
+into the standing ego. The rule and its rare cases are in docs/results.md.
 """
 
 from math import inf
@@ -39,7 +39,7 @@ def contacts(
     body_radius: float,
     clearance: NDArray[np.float64],
 ) -> NDArray[np.str_]:
-    """How each pedestrian and the ego came into contact, if they did.
+    """Return the kind of contact of each pedestrian with the ego, if there was one.
 
     A contact is frontal if at its first instant the pedestrian's centre is ahead of the line of
     the front bumper and the ego moves, or if both hold later on while the ego is the faster one
@@ -47,14 +47,14 @@ def contacts(
     The first instant is found between control instants, with straight motion between them.
 
     Args:
-        ego: the ego's track, T instants.
-        crowd: the crowd's track, R records of n pedestrians in time order.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
-        clearance: (R,) [m] of :func:`giveway.metrics.proximity`; below zero is a contact.
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd, R records of n pedestrians in time order.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
+        clearance: Clearance (R,) [m] of :func:`giveway.metrics.proximity`; below zero is a contact.
 
     Returns:
-        (n,) ``frontal`` if any contact was; else ``side`` if there was one; else empty.
+        (n,) ``frontal`` after any frontal contact, otherwise ``side``, or empty without a contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -89,7 +89,7 @@ def _first_touch(
     y: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """The contact that begins in the step before k: where along the ego, and the ego's speed then.
+    """Return place and ego's speed at the contact that begins in the step before k.
 
     The place [m] is the pedestrian's centre in the ego's frame.
     """
@@ -115,7 +115,7 @@ def _classify(
     body: tuple[float, float, float],
     kinds: NDArray[np.int64],
 ) -> None:
-    """Fill ``kinds`` (n,); the records are those of pedestrian 0, then 1, ..., each in order."""
+    """Fill ``kinds`` (n,). The records are sorted by pedestrian, and then by time."""
     half_length, _, _ = body
     for i in range(kinds.size):
         for r in range(bounds[i], bounds[i + 1]):

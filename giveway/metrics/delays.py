@@ -1,4 +1,4 @@
-"""What the egos cost each person: the run against its twin, in which nobody feels them."""
+"""The delay of each person by the egos: the run against its counterfactual run, the twin."""
 
 from dataclasses import dataclass, fields
 from typing import Annotated, Literal, NamedTuple
@@ -14,7 +14,7 @@ Basis = Literal["arrival", "route", ""]
 
 
 class DelayRow:
-    """The columns that a twin adds to a pedestrian's row; empty: it never came close to a way."""
+    """The columns that a twin adds to a pedestrian's row; empty far from every ego's path."""
 
     delay: Annotated[
         float,
@@ -37,12 +37,12 @@ DELAY_FIELDS = columns_of(DelayRow)
 
 
 class Delays(NamedTuple):
-    """What the egos cost each of n people, in the order of the run's ids; nan: it does not count.
+    """The delays of n people by the egos, in the order of the run's ids; nan if not counted.
 
     Attributes:
-        delay: (n,) [s].
-        basis: (n,) how that was found.
-        detour: (n,) [m].
+        delay: Delay (n,) [s].
+        basis: Method (n,) by which it was found.
+        detour: Detour (n,) [m].
     """
 
     delay: NDArray[np.float64]
@@ -52,7 +52,7 @@ class Delays(NamedTuple):
 
 @dataclass(frozen=True)
 class DelaySummary:
-    """What a twin adds to the summary; nan says that nobody came close to an ego's way."""
+    """The columns that a twin adds to the summary; nan if nobody came close to an ego's path."""
 
     people_delayed: Annotated[
         int, Quantity("persons", "people who came within 30 m of an ego's way and have a delay")
@@ -82,16 +82,16 @@ DELAY_SUMMARY_FIELDS = columns_of(DelaySummary)
 
 
 def delays(run: WalkTrack, twin: WalkTrack) -> Delays:
-    """Compare everybody who came close to an ego's way with himself in the twin.
+    """Compare every person who came close to an ego's path with the same person in the twin.
 
-    Who reached the last way-point in both has the difference of the instants. Everybody else has
-    the difference of what was left of the way at the last instant at which he was on record in
-    both, over the desired speed. With several walks (a person may go on by bus), the last one
-    counts that was finished in both.
+    A person who reached the last way-point in both runs has the difference of the instants. For
+    others the delay is the difference of the remaining lengths at the last instant with records in
+    both, divided by the desired speed. With several walks (a person may go on by bus), the last one
+    that was finished in both counts.
 
     Args:
-        run: how people got on.
-        twin: the same where they did not feel the egos.
+        run: Walks of the people.
+        twin: Walks of the same people when they did not feel the egos.
 
     Raises:
         ValueError: their time steps differ.
@@ -113,15 +113,15 @@ def delays(run: WalkTrack, twin: WalkTrack) -> Delays:
 def gave_way(
     run: NDArray[np.str_], twin: NDArray[np.str_], crossed: NDArray[np.bool_]
 ) -> NDArray[np.str_]:
-    """(n,) who of n people gave way to an ego: "yes", "no" or, without a crossing, "".
+    """Return whether each of n people gave way to an ego: "yes", "no", or "" without a crossing.
 
-    Somebody gives way who would have been at the place first, or together with the ego, had it
-    made no impression; and lets it go first.
+    A person gives way who would have been at the place first, or together with the ego, without its
+    influence, but lets it go first.
 
     Args:
-        run: (n,) who was first in the run, as in :class:`Encroachment`.
-        twin: (n,) the same in the twin.
-        crossed: (n,) whether the person counts at all.
+        run: Road user (n,) who was first in the run, as in :class:`Encroachment`.
+        twin: Road user (n,) who was first in the twin.
+        crossed: Mask (n,) of the persons who count.
     """
     met = crossed & (run != "")
     yielded = met & (run == EGO) & ((twin == PERSON) | (twin == CONTACT))
@@ -131,13 +131,13 @@ def gave_way(
 def summarise_delays(
     delay: NDArray[np.float64], gave_way: NDArray[np.str_], *, differs: bool, traffic: float
 ) -> DelaySummary:
-    """The delays of a run in one row.
+    """Summarise the delays of a run in one row.
 
     Args:
-        delay: (n,) [s] of each person; nan: he does not count.
-        gave_way: (n,) whether he did: "yes", "no" or "".
-        differs: whether lights or background vehicles did anything else in the twin.
-        traffic: [s] delay of the background vehicles; nan: not known.
+        delay: Delay (n,) [s] of each person; nan if not counted.
+        gave_way: Answer (n,) whether each person gave way: "yes", "no" or "".
+        differs: True if lights or background vehicles behaved differently in the twin.
+        traffic: Delay [s] of the background vehicles; nan if unknown.
     """
     known = delay[np.isfinite(delay)]
     crossed = int(np.count_nonzero(gave_way != ""))
@@ -183,7 +183,7 @@ class _Walks:
 def _delay(
     run: _Walk, twin: _Walk, time_step: float, desired_speed: float
 ) -> tuple[float, Basis, float]:
-    """Delay [s], how it was found, detour [m]."""
+    """Return delay [s], method, and detour [m]."""
     walks = min(len(run.arrivals), len(twin.arrivals))
     if walks:
         ours, theirs = run.arrivals[walks - 1], twin.arrivals[walks - 1]

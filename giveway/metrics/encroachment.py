@@ -1,4 +1,4 @@
-"""Post-encroachment time: how narrowly ego and pedestrian missed each other in time."""
+"""Post-encroachment time: the time by which ego and pedestrian missed each other."""
 
 from math import inf, nan
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from giveway.metrics.groups import PedestrianGroups
 from giveway.metrics.separation import blocks_of, ego_comes_later, separation
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
-SECTIONS = 16  # of a control period, to find the smallest separation in it
+SECTIONS = 16  # parts of a control period in which the smallest separation is searched
 GOLDEN = 0.6180339887498949
 
 
@@ -30,11 +30,11 @@ _NEVER, _PERSON, _EGO, _CONTACT = range(4)
 
 
 class Encroachment(NamedTuple):
-    """How narrowly the ego and each of n pedestrians missed each other in time.
+    """The post-encroachment times of the ego and n pedestrians.
 
     Attributes:
-        time: (n,) [s] post-encroachment time; nan where the paths never cross.
-        first: (n,) who was first: ``PERSON``, ``EGO`` or ``CONTACT``; empty: they never cross.
+        time: Post-encroachment time (n,) [s]; nan where the paths never cross.
+        first: Road user (n,) who was first: ``PERSON``, ``EGO`` or ``CONTACT``; empty if never.
     """
 
     time: NDArray[np.float64]
@@ -48,7 +48,7 @@ def encroachment(
     body_radius: float,
     clock: NDArray[np.float64] | None = None,
 ) -> Encroachment:
-    """Smallest time between the pedestrian's and the ego's presence at the same place.
+    """Find the smallest time between the pedestrian's and the ego's presence at one place.
 
     Allen, Shin & Cooper (1978) measure from the instant at which the first road user leaves the
     conflict area until the second one enters it; SSAM (Gettman & Head 2003, FHWA) takes the
@@ -63,11 +63,11 @@ def encroachment(
     within a control period is found to less than a thousandth of it.
 
     Args:
-        ego: the ego's track, T instants.
-        crowd: the crowd's track, R records of n pedestrians.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
-        clock: (K,) [s] control instants to which the crowd's records belong, the first T of them
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd, R records of n pedestrians.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
+        clock: Control instants (K,) [s] to which the crowd's records belong, the first T of them
             the ego's; None: the ego's.
 
     Returns:
@@ -96,7 +96,7 @@ def encroachment(
 def post_encroachment_time(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> NDArray[np.float64]:
-    """(n,) [s] the times of :func:`encroachment`."""
+    """Return the times (n,) [s] of :func:`encroachment`."""
     return encroachment(ego, crowd, shape, body_radius).time
 
 
@@ -113,7 +113,7 @@ def _separation_on_the_way(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """The separation after a ``share`` of step k, walking from (x[0], y[0]) to (x[1], y[1])."""
+    """Return the separation after a ``share`` of step k, from (x[0], y[0]) to (x[1], y[1])."""
     t = share * (clock[k + 1] - clock[k])
     at_x, at_y = x[0] + share * (x[1] - x[0]), y[0] + share * (y[1] - y[0])
     return separation(clock[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
@@ -132,7 +132,7 @@ def _smallest_between(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """The smallest separation during step k of a walk from (x[0], y[0]) to (x[1], y[1]).
+    """Find the smallest separation during step k of a walk from (x[0], y[0]) to (x[1], y[1]).
 
     Golden section: a separation has one minimum in a step, at or shortly before the edge of the
     swept strip if the walk crosses it, because the ego's corners are rounded. Beyond the edge it
@@ -163,7 +163,7 @@ def _share_inside(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """The share of step k after which a walk is first found within the strip; 0 if it never is."""
+    """Return the share of step k after which a walk is first found in the strip, or 0."""
     for section in range(1, 4 * SECTIONS):
         share = section / (4.0 * SECTIONS)
         if _separation_on_the_way(share, k, x, y, inf, clock, time, poses, blocks, body) < inf:
@@ -182,7 +182,7 @@ def _smallest_separations(
     y: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The post-encroachment times, and who was first.
+    """Return the post-encroachment times, and who was first.
 
     Pedestrian i has the records bounds[i] to bounds[i + 1].
     """
@@ -192,11 +192,11 @@ def _smallest_separations(
     who = np.full(bounds.size - 1, _NEVER)
     for i in range(pets.size):
         nearest = inf
-        t, at_x, at_y, at, reach = 0.0, 0.0, 0.0, 0, inf  # where and when that was, on record
+        t, at_x, at_y, at, reach = 0.0, 0.0, 0.0, 0, inf  # of the record before
         for r in range(bounds[i], bounds[i + 1]):
             k = step[r]
-            # Within a period a separation shrinks by less than a period: what is larger than the
-            # cutoff cannot lead to the smallest value.
+            # Within a period a separation shrinks by less than a period. A value beyond the cutoff
+            # therefore cannot lead to the smallest one.
             period = clock[k] - clock[max(k - 1, 0)]
             cutoff = nearest + 2.0 * period
             at_record[r] = separation(clock[k], x[r], y[r], k, cutoff, time, poses, blocks, body)

@@ -7,7 +7,7 @@ from giveway.run_data.tracks import CrowdTrack
 
 
 class PedestrianGroups:
-    """Reductions over each pedestrian's records; results are (n,), nan for those without records.
+    """Reductions over each pedestrian's records; results are (n,), nan without records.
 
     ``order`` (R,) sorts the records by pedestrian and keeps their order in time; pedestrian i then
     owns the places ``bounds[i]`` to ``bounds[i + 1]``.
@@ -22,7 +22,7 @@ class PedestrianGroups:
         self.last = self.bounds[1:][self.present] - 1
 
     def at(self, values: NDArray[np.float64], places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """The values (R,) at one place in ``order`` per present pedestrian."""
+        """Return the values (R,) at one place in ``order`` per present pedestrian."""
         return self._spread(values[self.order[places]])
 
     def total(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -41,9 +41,9 @@ class PedestrianGroups:
         return np.minimum.reduceat(places, self.first)
 
     def walked(self, crowd: CrowdTrack) -> NDArray[np.float64]:
-        """Distance [m] of each record (R,) to the same pedestrian's record before; 0 for the first.
+        """Return the distance [m] of each record (R,) to the same pedestrian's previous record.
 
-        Records that do not follow one another in time are joined by a straight line.
+        The first record has 0. Records with a gap in time are joined by a straight line.
         """
         x, y = crowd.x[self.order], crowd.y[self.order]
         distance = np.zeros(x.size)

@@ -1,4 +1,4 @@
-"""One row per pedestrian: how it walked, and how close the ego came to it."""
+"""One row per pedestrian: their walk, and their proximity to the ego."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -23,7 +23,7 @@ SLOW = 0.2
 
 
 class PedestrianRow:
-    """The columns of the table; nan (an empty cell) says that the event never occurred."""
+    """The columns of the table; nan (an empty cell) if the event never occurred."""
 
     id: Annotated[str, Quantity(None, "the pedestrian")]
     kind: Annotated[
@@ -75,13 +75,13 @@ PEDESTRIAN_FIELDS = columns_of(PedestrianRow)
 def pedestrian_metrics(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> "pd.DataFrame":
-    """Proximity and walking of every pedestrian; columns as in ``PEDESTRIAN_FIELDS``.
+    """Return proximity and walk of every pedestrian, with the columns of ``PEDESTRIAN_FIELDS``.
 
     Args:
-        ego: the ego's track, T instants.
-        crowd: the crowd's track, R records of n pedestrians in time order.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd, R records of n pedestrians in time order.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
 
     Returns:
         n rows in the order of ``crowd.ids``; a pedestrian who was never seen has nan throughout,
@@ -94,7 +94,7 @@ def pedestrian_metrics(
 
 
 def table_of(columns: Mapping[str, Any]) -> "pd.DataFrame":
-    """The table of :func:`pedestrian_columns`."""
+    """Return the table of :func:`pedestrian_columns`."""
     import pandas as pd
 
     return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
@@ -103,16 +103,16 @@ def table_of(columns: Mapping[str, Any]) -> "pd.DataFrame":
 def pedestrian_columns(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> dict[str, Any]:
-    """The columns of :func:`pedestrian_metrics`, (n,) each: a table takes longer than all of them.
+    """Return the columns (n,) of :func:`pedestrian_metrics`, quicker than their table.
 
     Args:
-        ego: as there.
-        crowd: as there.
-        shape: as there.
-        body_radius: as there.
+        ego: Track, as there.
+        crowd: Track, as there.
+        shape: Rectangle, as there.
+        body_radius: Radius, as there.
 
     Raises:
-        ValueError: as there.
+        ValueError: see there.
     """
     clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
@@ -136,11 +136,11 @@ def pedestrian_columns(
 
 
 def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":
-    """How every pedestrian walked where there was no ego: the columns that need none.
+    """Return the walk of every pedestrian without an ego, in the columns that need none.
 
     Args:
-        time: (T,) [s] the control instants.
-        crowd: the crowd's track.
+        time: Control instants (T,) [s].
+        crowd: Track of the crowd.
     """
     import pandas as pd
 
@@ -149,7 +149,7 @@ def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataF
 
 @dataclass(frozen=True)
 class WalkSummary:
-    """How people walked in a run without an ego; nan says that there were none."""
+    """The walks of people in a run without an ego; nan if there were none."""
 
     mean_walking_speed: Annotated[float, Quantity("m/s", "mean of these people's mean speeds")]
     mean_slow_time: Annotated[
@@ -166,7 +166,7 @@ WALK_SUMMARY_FIELDS = columns_of(WalkSummary)
 
 
 def summarise_walks(table: "pd.DataFrame") -> WalkSummary:
-    """The rows of :func:`walks_without_ego` in one."""
+    """Summarise the rows of :func:`walks_without_ego` in one."""
     seen = table[table["first_seen"].notna()]
     return WalkSummary(
         mean_walking_speed=float(seen["mean_speed"].mean()),
@@ -178,7 +178,7 @@ def summarise_walks(table: "pd.DataFrame") -> WalkSummary:
 def _walks(
     crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
 ) -> dict[str, Any]:
-    """The columns of how everybody walked; ``time`` (R,) [s] is that of the records."""
+    """Return the columns about walks; ``time`` (R,) [s] is that of the records."""
     first_seen, last_seen = groups.at(time, groups.first), groups.at(time, groups.last)
     path = groups.total(groups.walked(crowd))
     lasting, change = _changes(crowd, groups, time)
@@ -200,7 +200,7 @@ def _walks(
 def _changes(
     crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Each record's duration (R,) [s], and the acceleration (R,) [m/s^2] that led to it.
+    """Return each record's duration (R,) [s], and the acceleration (R,) [m/s^2] before it.
 
     A duration lasts until the same pedestrian's record of the next control instant; both are 0
     where that, or the one before, is not on record.
@@ -217,5 +217,5 @@ def _changes(
 
 
 def durations(ego: EgoTrack) -> NDArray[np.float64]:
-    """(T,) [s] the time from each instant to the next one; 0 for the last."""
+    """Return the time (T,) [s] from each instant to the next one; 0 for the last."""
     return np.append(np.diff(ego.time), 0.0)

@@ -1,4 +1,4 @@
-"""How far apart in time an ego and somebody who is at a place at an instant are there."""
+"""The separation in time of an ego and a person at the same place."""
 
 from math import hypot, inf
 
@@ -8,15 +8,15 @@ from numpy.typing import NDArray
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import inner
 
-BLOCK = 8  # ego instants that are ruled out together
+BLOCK = 8  # number of ego instants that are excluded together
 
 
 @inner
 def blocks_of(
     poses: NDArray[np.float64], half_length: float, half_width: float, radius: float
 ) -> NDArray[np.float64]:
-    """Circles that hold all that the ego touches in BLOCK steps: rows of x, y, radius^2."""
-    # A tenth more than the rectangle's own circle: room for turning by up to 49 deg in a step.
+    """Return circles that hold the ego's reach in BLOCK steps: rows of x, y, radius^2."""
+    # A tenth more than the rectangle's own circle, for turns by up to 49 deg in a step.
     reach = 1.1 * (hypot(half_length, half_width) + radius)
     steps = max(poses.shape[0] - 1, 1)
     blocks = np.empty(((steps + BLOCK - 1) // BLOCK, 3))
@@ -41,9 +41,9 @@ def _touch_in_step(
     poses: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """When the ego touches a circle standing at (x, y) during step k; (inf, -inf) if it does not.
+    """Return when the ego touches a circle at (x, y) during step k; (inf, -inf) if never.
 
-    Seen from the ego the circle moves; that motion is taken as straight within a step.
+    The circle moves relative to the ego; this motion is taken as straight within a step.
     """
     half_length, half_width, radius = body
     end = min(k + 1, time.size - 1)
@@ -74,14 +74,14 @@ def _separation_in_step(
     poses: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """Time between t and the ego's touch of a circle at (x, y) in step k; inf without one."""
+    """Return the time from t to the ego's touch of a circle in step k; inf without one."""
     first, last = _touch_in_step(k, x, y, time, poses, body)
     return max(first - t, t - last, 0.0)
 
 
 @inner
 def _out_of_reach(b: int, x: float, y: float, blocks: NDArray[np.float64]) -> bool:
-    """Whether the ego touches no circle at (x, y) in any step of block b."""
+    """Return whether the ego touches no circle at (x, y) in any step of block b."""
     return bool((x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2])
 
 
@@ -97,10 +97,11 @@ def separation(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """Time between t and the ego's nearest touch of a circle at (x, y); inf if beyond cutoff.
+    """Return the time from t to the ego's nearest touch of a circle; inf beyond the cutoff.
 
-    ``step`` is the ego's step that contains t. The search runs outwards from there and ends where
-    nothing closer in time can follow, so only near misses cost anything.
+    ``step`` is the ego's step that contains t, and (x, y) the circle's place. The search runs
+    outwards from there and ends where nothing closer in time can follow, so only near misses cost
+    time.
     """
     nearest = inf
     steps = max(time.size - 1, 1)
@@ -136,7 +137,7 @@ def ego_comes_later(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> bool:
-    """Whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
+    """Return whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
 
     Arguments as for ``separation``.
     """

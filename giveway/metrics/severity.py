@@ -1,7 +1,7 @@
-"""How severe each pedestrian's conflict with the ego was, when and where.
+"""The severity of each pedestrian's conflict with the ego, its time and its place.
 
-Times before a collision order conflicts, and a speed says what one would have meant; no single
-number does both (Laureshyn, Svensson & Hydén 2010), so class and speed stand in columns of their
+Times before a collision order conflicts, and a speed tells the severity of a collision. No single
+number does both (Laureshyn, Svensson & Hydén 2010). Therefore class and speed have columns of their
 own.
 """
 
@@ -34,7 +34,7 @@ ego moved into the pedestrian."""
 
 
 class SeverityRow:
-    """The columns of a pedestrian's conflict; empty where it had none."""
+    """The columns of a pedestrian's conflict; empty without one."""
 
     severity: Annotated[
         str,
@@ -66,18 +66,18 @@ def severities(
     stop_speed: float,
     per_pedestrian: "pd.DataFrame",
 ) -> "pd.DataFrame":
-    """Class, instant, relative speed and place of each pedestrian's conflict.
+    """Return class, instant, relative speed and place of each pedestrian's conflict.
 
     A conflict is closest to a collision where the time to collision with the moving ego is
     smallest; one by PET alone, where the clearance was.
 
     Args:
-        ego: the ego's track, T instants.
-        crowd: the crowd's track, R records of n pedestrians.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
-        stop_speed: the ego moves above it [m/s].
-        per_pedestrian: the table of ``pedestrian_metrics``.
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd, R records of n pedestrians.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
+        stop_speed: Speed [m/s] above which the ego moves.
+        per_pedestrian: Table of ``pedestrian_metrics``.
 
     Returns:
         n rows in the order of ``crowd.ids``, columns as in ``SEVERITY_FIELDS``.
@@ -113,7 +113,7 @@ def severities(
 
 
 def _classes(ttc: NDArray[np.float64], per_pedestrian: "pd.DataFrame") -> NDArray[np.object_]:
-    """(n,) the class of each pedestrian's conflict, empty where there was none."""
+    """Return the class (n,) of each pedestrian's conflict, empty without one."""
     pet = per_pedestrian["post_encroachment_time"].to_numpy(dtype=np.float64)
     frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy(dtype=np.bool_)
     slight, serious, collision = SEVERITIES

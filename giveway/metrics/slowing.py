@@ -1,4 +1,4 @@
-"""Whether people ever slowed an ego: its speed against what it drives there with nobody about."""
+"""Slowing for people: an ego's speed compared with its free speed, with nobody about."""
 
 import math
 
@@ -11,36 +11,37 @@ SLOWED = 0.8
 """Of the free speed: an ego below it is slowed."""
 SLOWING = 0.95
 """Of the free speed: an ego that gets below it, and then is slowed, begins to slow there."""
-_RISE = 0.5  # [m/s^2] with which the free speed rises from the start, or from where it was held up
-_HELD = 30.0  # [m] nearer to a stop or a vehicle in front, these may hold it up, whoever walks
-_STANDING = 0.1  # [m/s] a free speed below it says nothing
+_RISE = 0.5  # [m/s^2] rise of the free speed from the start, or from the place of a delay
+_HELD = 30.0  # [m] distance to a stop or a vehicle in front below which these may delay the ego
+_STANDING = 0.1  # [m/s] free speed below which nothing can be concluded
 
 
 def slowed(ego: EgoTrack, reference: float | None) -> bool:
-    """Whether the ego was, at any instant, below 0.8 times its speed with nobody about.
+    """Return whether the ego was ever below 0.8 times its free speed.
 
     The free speed rises with 0.5 m/s^2 from the start up to the reference speed of the place. A
-    stop (a red light) or a vehicle less than 30 m in front may slow an ego that is alone, too: such
-    instants do not count, and the free speed rises anew from the ego's after them.
+    stop (a red light) or a vehicle less than 30 m in front may slow an ego without people, too.
+    Such instants do not count, and the free speed rises anew from the ego's speed after them.
 
     Args:
-        ego: its track.
-        reference: v_r [m/s]; None where the lanes say how fast: then what the controller aimed
-            at while nobody was in front, interpolated over the way.
+        ego: Track of the ego.
+        reference: Reference speed v_r [m/s]; None where the lanes' limits count. Then it is the
+            speed that the controller aimed at while nobody was in front, interpolated over the
+            path.
     """
     return _first_slowed(ego, free_speed(ego, reference)) is not None
 
 
 def slowing_begins(ego: EgoTrack, reference: float | None) -> int | None:
-    """The instant at which an ego that is ever :func:`slowed` begins to slow; None: it never is.
+    """Return the index of the control instant at which the ego starts to slow, or None.
 
-    The last instant before it is, for the first time, at which it was not below 0.95 times its
-    speed with nobody about; if it was always below, since the start or since it was held up, the
-    first one of these.
+    From the first instant at which :func:`slowed` holds, go back to the last one at which the speed
+    was at least 0.95 of the free speed, or to the first instant after a stop or a leader held the
+    ego up.
 
     Args:
-        ego: its track.
-        reference: as :func:`slowed` takes it.
+        ego: Track of the ego.
+        reference: Reference speed as for :func:`slowed`.
     """
     free = free_speed(ego, reference)
     at = _first_slowed(ego, free)
@@ -55,7 +56,7 @@ def slowing_begins(ego: EgoTrack, reference: float | None) -> int | None:
 
 
 def free_speed(ego: EgoTrack, reference: float | None) -> NDArray[np.float64]:
-    """(T,) [m/s] what the ego drives with nobody about; nan where a stop or a vehicle is near."""
+    """Return the free speed (T,) [m/s] of the ego; nan where a stop or a vehicle is near."""
     held = (ego.vehicle_gap < _HELD) | (ego.stop_gap < _HELD)
     way = np.diff(ego.position, prepend=ego.position[0])
     columns = held, ego.speed, way, _reference(ego, reference)
@@ -68,18 +69,18 @@ def free_speed(ego: EgoTrack, reference: float | None) -> NDArray[np.float64]:
 
 
 def _first_slowed(ego: EgoTrack, free: NDArray[np.float64]) -> int | None:
-    """The first instant at which the ego is slowed."""
+    """Return the first instant at which the ego is slowed, or None."""
     slow = np.flatnonzero((free > _STANDING) & (ego.speed < SLOWED * free))
     return int(slow[0]) if slow.size else None
 
 
 def _reference(ego: EgoTrack, reference: float | None) -> NDArray[np.float64]:
-    """(T,) [m/s] the speed to aim at where the ego is at each instant."""
+    """Return the reference speed (T,) [m/s] at the ego's place at each instant."""
     if reference is not None:
         return np.full(len(ego.time), reference)
     free = np.isinf(ego.gap) & np.isfinite(ego.reference_speed)
     free &= (ego.vehicle_gap >= _HELD) & (ego.stop_gap >= _HELD)
     if not free.any():
-        return np.zeros(len(ego.time))  # it says nothing
+        return np.zeros(len(ego.time))  # nothing can be concluded
     places = np.maximum.accumulate(ego.position)
     return np.asarray(np.interp(places, places[free], ego.reference_speed[free]), dtype=np.float64)

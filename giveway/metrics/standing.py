@@ -1,4 +1,4 @@
-"""When an ego stands."""
+"""The stops of an ego."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from giveway.run_data.tracks import EgoTrack
 
 
 def stops(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.int64]:
-    """(n, 2) the instants at which each stop begins and ends, in the order of time.
+    """Return the instants (n, 2) at which each stop begins and ends, in order of time.
 
     An instant stands for the time until the next one, so a stop lasts from the first instant below
     ``stop_speed`` [m/s] to the first one that is not, or to the end of the track.
@@ -20,6 +20,6 @@ def stops(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.int64]:
 
 
 def waiting_times(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.float64]:
-    """Duration [s] of every stop in the order of time."""
+    """Return the duration [s] of every stop, in order of time."""
     begins, ends = stops(ego, stop_speed).T
     return np.asarray(ego.time[ends] - ego.time[begins], dtype=np.float64)

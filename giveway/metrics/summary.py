@@ -24,18 +24,18 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _OPTIMISERS = frozenset({"mpc", "mpc-paper"})
-SAFETY = "safety"  # the name under which the safety layer acts
+SAFETY = "safety"  # name under which the safety layer acts
 HARD = 4.0
 """[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
-_CAUSE = 15.0  # [m] nobody nearer in front at a hard brake: it has no cause
-_ROUNDING = 1.0 + 1e-6  # of a velocity in a table
+_CAUSE = 15.0  # [m] distance ahead of a cause (person, vehicle, stop) of a hard brake
+_ROUNDING = 1.0 + 1e-6  # relative tolerance for the rounding of velocities in a table
 _NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
-_AROUND = 0.5  # [s] before and after its begin in which that is looked for
+_AROUND = 0.5  # [s] time before and after its begin in which the cause is searched
 
 
 @dataclass(frozen=True)
 class Summary:
-    """The summary's columns in their order; nan says that the event never occurred."""
+    """The summary's columns in their order; nan if the event never occurred."""
 
     completed: Annotated[bool, Quantity(None, "whether the ego reached its goal")]
     completion_time: Annotated[
@@ -156,19 +156,19 @@ def summarise(
     of the track; one uninterrupted stop is one waiting time.
 
     Args:
-        ego: the ego's track, at least one instant.
-        per_pedestrian: the table of ``pedestrian_metrics``, or its columns.
-        critical: the drive's ``conflicts``.
-        met: the drive's ``anticipation``.
-        goal: the position that ends the run [m]; the time at which it is reached is interpolated
+        ego: Track of the ego, at least one instant.
+        per_pedestrian: Table of ``pedestrian_metrics``, or its columns.
+        critical: Conflicts of the drive.
+        met: Anticipation of the drive.
+        goal: Position that ends the run [m]; the time at which it is reached is interpolated
             between control instants.
-        safe_distance: d_safe [m].
-        reference_speed: v_r [m/s]; None: the lanes say how fast.
-        stop_speed: the ego stands below it [m/s].
-        controller: its name; "mpc" and "mpc-paper" optimise.
-        people: what the safety layer takes them to do at worst; None: there is no such layer.
-        hasty: rows of ``per_pedestrian`` who set out from a sidewalk harder than that.
-        vehicles: the background vehicles that it came into contact with.
+        safe_distance: Safe distance d_safe [m].
+        reference_speed: Reference speed v_r [m/s]; None: the lanes' limits count.
+        stop_speed: Speed [m/s] below which the ego stands.
+        controller: Name of the controller; "mpc" and "mpc-paper" optimise.
+        people: Worst motion of people that the safety layer assumes; None without the layer.
+        hasty: Rows of ``per_pedestrian`` who set out from a sidewalk harder than that.
+        vehicles: Background vehicles that it came into contact with.
 
     Raises:
         ValueError: the ego's track is empty.
@@ -237,18 +237,18 @@ def summarise(
 
 
 def _share(whom: NDArray[np.bool_]) -> float:
-    """The share of all pedestrians, met or not, who are meant; nan: of none."""
+    """Return the share of the marked pedestrians in all; nan without pedestrians."""
     return float(np.mean(whom)) if len(whom) else float("nan")
 
 
 def _beyond(hardest: NDArray[np.float64], people: WorstMotion) -> NDArray[np.bool_]:
-    """Which pedestrians accelerated harder than ``people`` allows, by more than rounding."""
+    """Return which pedestrians accelerated harder than ``people`` allows, beyond rounding."""
     with np.errstate(invalid="ignore"):
         return np.asarray(hardest > people.acceleration * _ROUNDING, dtype=np.bool_)
 
 
 def _time_at(ego: EgoTrack, goal: float) -> float:
-    """Time [s] since the start at which ``goal`` [m] is reached; nan if it is not."""
+    """Return the time [s] since the start at which ``goal`` [m] is reached; nan if never."""
     if ego.position[-1] < goal:
         return float("nan")
     k = int(np.argmax(ego.position >= goal))
@@ -260,7 +260,7 @@ def _time_at(ego: EgoTrack, goal: float) -> float:
 
 
 def hard_brakes(ego: EgoTrack) -> NDArray[np.int64]:
-    """The instants at which a deceleration beyond ``HARD`` begins.
+    """Return the instants at which a deceleration beyond ``HARD`` begins.
 
     A pause of less than ``_AROUND`` does not end the braking.
     """
@@ -270,7 +270,7 @@ def hard_brakes(ego: EgoTrack) -> NDArray[np.int64]:
 
 
 def _has_cause(ego: EgoTrack, k: int) -> bool:
-    """Whether somebody, a vehicle or a stop was within ``_CAUSE`` in front about instant k."""
+    """Return whether a person, vehicle or stop was within ``_CAUSE`` ahead about instant k."""
     first, last = np.searchsorted(ego.time, (ego.time[k] - _AROUND, ego.time[k] + _AROUND))
     near = [gap[first : last + 1].min() for gap in (ego.gap, ego.vehicle_gap, ego.stop_gap)]
     return bool(min(near) <= _CAUSE)
@@ -279,6 +279,6 @@ def _has_cause(ego: EgoTrack, k: int) -> bool:
 def _extreme(
     values: NDArray[np.float64], extreme: Callable[[NDArray[np.float64]], np.float64]
 ) -> float:
-    """The smallest or largest of the finite values; nan if there is none."""
+    """Return the smallest or largest of the finite values; nan without any."""
     finite = values[np.isfinite(values)]
     return float(extreme(finite)) if finite.size else np.nan

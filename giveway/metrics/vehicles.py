@@ -1,4 +1,4 @@
-"""Which background vehicles came into contact with the ego."""
+"""The background vehicles that came into contact with the ego."""
 
 from typing import NamedTuple
 
@@ -15,22 +15,22 @@ class VehicleContact(NamedTuple):
     """One background vehicle whose rectangle overlapped the ego's."""
 
     id: str
-    first: float  # [s] simulation time of the first instant
-    duration: float  # [s] of all contacts with it
+    first: float  # [s] first instant, in simulation time
+    duration: float  # [s] sum of all contacts with it
 
 
 def vehicle_contacts(
     ego: EgoTrack, background: BackgroundTrack, shape: VehicleShape
 ) -> tuple[VehicleContact, ...]:
-    """The background vehicles that overlapped the ego, in the order of their first contact.
+    """Return the background vehicles that overlapped the ego, in order of their first contact.
 
-    Background vehicles are looked at where SUMO has put them, at SUMO's instants; an instant stands
-    for the time until the next one of the same vehicle.
+    Background vehicles are taken at SUMO's instants and places. An instant stands for the time
+    until the next one of the same vehicle.
 
     Args:
-        ego: the ego's track, T instants.
-        background: the background vehicles' rows.
-        shape: the ego's rectangle.
+        ego: Track of the ego, T instants.
+        background: the background vehicles.
+        shape: Rectangle of the ego.
     """
     if not len(background.time) or not len(ego.time):
         return ()

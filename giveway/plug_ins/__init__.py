@@ -1,1 +1,1 @@
-"""Code of other packages: where it is installed, what it is, and what it may be told."""
+"""Code of other packages: finding it, loading it, and reading its options."""

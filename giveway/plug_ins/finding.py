@@ -1,8 +1,8 @@
 """Finding the class that a name means, in installed distributions and nowhere else.
 
-A name is that of an entry point, or ``module:attribute``. The file that would be imported has to
-belong to an installed distribution: by its RECORD, or, installed for development (``pip install
--e``), below its project's folder. What merely lies in the working folder is never imported.
+A name is that of an entry point, or ``module:attribute``. The imported file has to belong to an
+installed distribution: by its RECORD, or, if installed for development (``pip install -e``), below
+its project's folder. A file that merely lies in the working folder is never imported.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ _REFERENCE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*(\.[A-Za-z_]
 
 @dataclass(frozen=True)
 class Found:
-    """A plug-in and what it belongs to, as manifests tell it.
+    """A plug-in and its distribution, as manifests tell it.
 
     Attributes:
-        socket: it is for.
-        name: as the user wrote it.
+        socket: Socket that it is for.
+        name: Name as the user wrote it.
         reference: ``module:attribute``.
         distribution: the installed distribution that has it.
-        version: of the distribution.
-        sha256: of all files of its package.
+        version: Version of the distribution.
+        sha256: SHA-256 of all files of its package.
     """
 
     socket: Socket
@@ -52,37 +52,37 @@ class Found:
     sha256: str
 
     def described(self) -> dict[str, Any]:
-        """For the manifest."""
+        """Return the entries for the manifest."""
         return {key: value for key, value in asdict(self).items() if key != "socket"}
 
 
 def is_reference(name: str) -> bool:
-    """Whether a name is ``module:attribute`` and not that of an entry point."""
+    """Return whether a name is ``module:attribute`` and not that of an entry point."""
     return _REFERENCE.fullmatch(name) is not None
 
 
 def is_fmu(name: str) -> bool:
-    """Whether a name is that of a file with an FMU."""
+    """Return whether a name is that of a file with an FMU."""
     return name.lower().endswith(".fmu")
 
 
 def same_name(name: Any) -> Any:
-    """A name as it is compared: a file's may be written in several ways."""
+    """Return a name for comparison; a file's name may be written in several ways."""
     return os.path.abspath(name) if isinstance(name, str) and is_fmu(name) else name  # noqa: PTH100
 
 
 def shown(name: str) -> str:
-    """A name without the folder of a file."""
+    """Return a name without the folder of a file."""
     return Path(name).name if is_fmu(name) else name
 
 
 def declared_names(socket: Socket = CONTROLLER) -> list[str]:
-    """The names that installed distributions declare for a socket."""
+    """Return the names that installed distributions declare for a socket."""
     return sorted({point.name for point in metadata.entry_points(group=socket.group)})
 
 
 def find(name: str, socket: Socket = CONTROLLER) -> Found:
-    """What a name means; nobody's code is imported.
+    """Return the plug-in that a name means, without importing it.
 
     Raises:
         ControlError: nothing installed has it.
@@ -94,7 +94,7 @@ def find(name: str, socket: Socket = CONTROLLER) -> Found:
 
 
 def load(found: Found) -> Any:
-    """Import what was found.
+    """Import a plug-in that was found.
 
     Raises:
         ControlError: it cannot be imported.
@@ -116,12 +116,12 @@ def load(found: Found) -> Any:
 
 
 def load_class(name: str, socket: Socket, settings: Mapping[str, Any]) -> tuple[Any, Any]:
-    """The class that a name means, and the options that it is made with; None: it has none.
+    """Return the class that a name means, and its options (None if it has none).
 
     Args:
-        name: of the plug-in.
-        socket: it is for.
-        settings: of its options, as the user has set them.
+        name: Name of the plug-in.
+        socket: Socket that it is for.
+        settings: Settings of its options, as the user has set them.
 
     Raises:
         ConfigError: its options cannot be used.
@@ -174,14 +174,14 @@ def _owner(setting: str, package: str) -> tuple[metadata.Distribution, list[Path
 
 
 def _places(origin: str | None, folders: Any) -> list[Path]:
-    """The file, or the folders of a package without one, that a module is imported from."""
+    """Return the file, or the folders of a package without one, that a module is imported from."""
     if origin is not None and os.path.isfile(origin):  # noqa: PTH113 - "built-in" is a name, too
         return [Path(origin).absolute()]
     return [Path(folder).absolute() for folder in folders or ()]
 
 
 def _has(distribution: metadata.Distribution, place: Path) -> bool:
-    """Whether a distribution has installed a file or folder, or was installed from above it."""
+    """Return whether a file or folder belongs to a distribution or to its project's folder."""
     root = Path(str(distribution.locate_file(""))).absolute()
     record = distribution.read_text("RECORD")
     if record is not None and place.is_relative_to(root):
@@ -194,7 +194,7 @@ def _has(distribution: metadata.Distribution, place: Path) -> bool:
 
 
 def _project(distribution: metadata.Distribution) -> Path | None:
-    """The folder that a distribution was installed from for development; None: it was not."""
+    """Return the folder of a distribution installed for development, or None."""
     with contextlib.suppress(ValueError, TypeError, AttributeError):
         direct = json.loads(distribution.read_text("direct_url.json") or "{}")
         if direct.get("dir_info", {}).get("editable"):
@@ -203,7 +203,7 @@ def _project(distribution: metadata.Distribution) -> Path | None:
 
 
 def _files(origins: list[Path]) -> list[Path]:
-    """All files of a package, or the one of a module."""
+    """Return all files of a package, or the one of a module."""
     folders = [place.parent if place.name == "__init__.py" else place for place in origins]
     found: list[Path] = []
     for place in folders:
@@ -212,7 +212,7 @@ def _files(origins: list[Path]) -> list[Path]:
 
 
 def _digest(files: list[Path]) -> str:
-    """SHA-256 of names and contents; they are read again only when one has changed."""
+    """Return the SHA-256 of names and contents, read again only after a change."""
     stamps = tuple((str(f), f.stat().st_mtime_ns, f.stat().st_size) for f in files)
     return _digest_of(stamps)
 
@@ -230,7 +230,7 @@ def _digest_of(stamps: tuple[tuple[str, int, int], ...]) -> str:
 
 @contextlib.contextmanager
 def _without_working_folder() -> Iterator[None]:
-    """Import as if Python had been started with ``-P``: not from where the user happens to be."""
+    """Import as with Python's ``-P`` in this context: not from the working folder."""
     kept = sys.path[:]
     if not sys.flags.safe_path and sys.path and sys.path[0] in {"", str(Path.cwd())}:
         del sys.path[0]

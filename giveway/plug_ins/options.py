@@ -1,4 +1,4 @@
-"""The options of a plug-in: what its ``Options`` says, filled in from texts and TOML values."""
+"""The options of a plug-in: its ``Options``, filled with texts and TOML values."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from giveway.plug_ins.sockets import CONTROLLER, Socket
 def read_options(
     name: str, kind: type | None, values: Mapping[str, Any], socket: Socket = CONTROLLER
 ) -> Any:
-    """The options of a plug-in.
+    """Return the options of a plug-in.
 
     Args:
-        name: of the plug-in, for messages.
-        kind: its ``Options``, a dataclass or pydantic model; None: it has no options.
-        values: as the user has set them; a command line's are texts.
-        socket: that the plug-in is for.
+        name: Name of the plug-in, for messages.
+        kind: Class ``Options`` of the plug-in, a dataclass or pydantic model; None without one.
+        values: Values as the user has set them; those of a command line are texts.
+        socket: Socket that the plug-in is for.
 
     Returns:
         An instance of ``kind``; None without one.
@@ -61,7 +61,7 @@ def read_options(
 
 
 def plain(options: Any) -> dict[str, Any]:
-    """The options, defaults included, as a manifest tells them."""
+    """Return the options, defaults included, as a manifest tells them."""
     if isinstance(options, BaseModel):
         return options.model_dump(mode="json")
     if options is None:

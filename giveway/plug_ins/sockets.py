@@ -1,4 +1,4 @@
-"""Where code of other packages can be plugged in, and what its users call that."""
+"""The sockets for code of other packages, and their names for users."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Socket:
-    """A place where code of other packages can be plugged in.
+    """A socket for code of other packages.
 
     Attributes:
-        what: is plugged in there.
-        setting: the key that names it, as a TOML file has it.
-        location: of that key.
-        options: the table of its options.
-        manifest: the key of a run's manifest that tells of it.
-        group: of the entry points that declare such code.
-        flag: of the command line that names it.
-        set_flag: that sets one of its options.
-        method: that such a class has to have.
+        what: Kind of code, in words.
+        setting: Key of a TOML file that names it.
+        location: Location of that key.
+        options: Table of its options.
+        manifest: Key of a run's manifest with its description.
+        group: Group of the entry points that declare such code.
+        flag: Flag of the command line that names it.
+        set_flag: Flag that sets one of its options.
+        method: Method that such a class has to have.
     """
 
     what: str

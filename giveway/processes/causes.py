@@ -1,7 +1,7 @@
-"""How a process ended, in words: from its exit code, and from what it left in its folder.
+"""The cause of a process's end in words, from its exit code and the files that it left.
 
-The supervisor of a run and that of a study's workers both watch a child's heartbeat; what they say
-about the end of a child, and how they let a hanging one speak, is the same and stands here.
+The supervisor of a run and that of a study's workers both watch a child's heartbeat. They share
+these words about the end of a child, and the way in which a hanging child reports its place.
 """
 
 import os
@@ -10,7 +10,7 @@ import subprocess
 from contextlib import suppress
 from pathlib import Path
 
-_LAST_WORDS = 2.0  # [s] for a hanging process to write its traceback
+_LAST_WORDS = 2.0  # [s] time for a hanging process to write its traceback
 WINDOWS_CAUSES = {
     0xC0000005: "access violation",
     0xC000001D: "illegal instruction",
@@ -22,10 +22,10 @@ WINDOWS_CAUSES = {
 
 
 def cause_of_end(returncode: int) -> str:
-    """Why a process ended that did not end by itself: "SIGSEGV", "exit(3) called ...".
+    """Return the cause of a process's end: "SIGSEGV", "exit(3) called ...".
 
     Args:
-        returncode: as :mod:`subprocess` has it: minus the signal, or the exit code.
+        returncode: Return code of :mod:`subprocess`: minus the signal, or the exit code.
     """
     if returncode < 0:
         return _signal_name(-returncode)
@@ -35,7 +35,7 @@ def cause_of_end(returncode: int) -> str:
 
 
 def let_speak(process: subprocess.Popen[bytes]) -> None:
-    """Let a hanging process write where it hangs, which takes a signal; it may survive that."""
+    """Make a hanging process write its traceback, by a signal that it may survive."""
     if os.name == "nt":
         return
     with suppress(OSError):
@@ -45,12 +45,12 @@ def let_speak(process: subprocess.Popen[bytes]) -> None:
 
 
 def stood_still(seconds: float) -> str:
-    """Why a process was killed that had shown no sign of life for so many ``seconds``."""
+    """Return the reason for killing a process without a sign of life for ``seconds``."""
     return f"no progress for {seconds:g} s"
 
 
 def text_in(file: Path) -> str:
-    """What a dead process has written into ``file``; empty without the file."""
+    """Return the text of a dead process in ``file``; empty without the file."""
     try:
         return file.read_text(encoding="utf-8", errors="replace").strip()
     except OSError:

@@ -1,4 +1,4 @@
-"""The child's half of a supervised run: it says where it stands, and dies with its supervisor."""
+"""The child's half of a supervised run: it tells its state, and dies with its supervisor."""
 
 import contextlib
 import faulthandler
@@ -14,16 +14,16 @@ from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.processes.interrupts import ENDING, RaisedSignals, exit_code_of
 
 JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # names the journal's folder to the child
-TRACEBACK_FILE = "traceback.txt"  # where Python stood when native code died
-STDERR_FILE = "stderr.txt"  # what native code printed, kept here so that its last words are read
+TRACEBACK_FILE = "traceback.txt"  # traceback of Python at the death of native code
+STDERR_FILE = "stderr.txt"  # output of native code, kept for its last words
 _ORPHAN_POLL = 1.0  # [s]
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 def take_journal_folder() -> Path | None:
-    """The folder a supervisor has named to this process; None: nobody supervises it.
+    """Return the folder that a supervisor has named to this process, or None without one.
 
-    The variable is taken away: processes that this one starts are not the supervised run.
+    The variable is removed, since processes that this one starts are not the supervised run.
     """
     folder = os.environ.pop(JOURNAL_VARIABLE, None)
     return Path(folder) if folder and Path(folder).is_dir() else None
@@ -33,17 +33,17 @@ _supervised = False
 
 
 def is_supervised() -> bool:
-    """Whether another process watches over this one, so that its crash costs one run only."""
+    """Return whether another process supervises this one, so that a crash costs one run only."""
     return _supervised
 
 
 class Supervised:
-    """The context, in the main thread, round everything that a supervised process does.
+    """The context, in the main thread, of everything that a supervised process does.
 
     An end that is not reported by leaving this context is a crash, even one with exit code 0.
 
     Args:
-        folder: of the journal, from :func:`take_journal_folder`; with None the context does
+        folder: Folder of the journal, from :func:`take_journal_folder`; with None the context does
             nothing.
     """
 
@@ -69,7 +69,7 @@ class Supervised:
             self._heartbeat.finish(_exit_code(error))
 
     def listen(self) -> None:
-        """Let a signal through that the supervisor has held back while Python started.
+        """Let a signal through that the supervisor has blocked while Python started.
 
         Raises:
             KeyboardInterrupt: there has been one.
@@ -79,7 +79,7 @@ class Supervised:
 
 
 def _exit_code(error: BaseException | None) -> int:
-    """What Python will make of ``error`` when it ends the process."""
+    """Return the exit code that Python will give for ``error``."""
     if error is None:
         return 0
     if isinstance(error, SystemExit):
@@ -90,7 +90,7 @@ def _exit_code(error: BaseException | None) -> int:
 
 
 def die_with(supervisor: int) -> None:
-    """End this process at once when its supervisor has been killed; its rows are journalled.
+    """End this process at once when its supervisor has been killed; its rows are in the journal.
 
     Linux does it itself, even while native code hangs, when the *thread* that started this process
     ends. On other Unixes a thread of this process does it, which has to wait while native code

@@ -1,19 +1,19 @@
-"""When Python looks for garbage: a look at all that exists takes a tenth of a second."""
+"""The schedule of Python's garbage collection: a full collection takes a tenth of a second."""
 
 import contextlib
 import gc
 from collections.abc import Iterator
 from typing import Final
 
-_NEVER: Final = 1 << 30  # collections of the middle generation before one of the oldest
+_NEVER: Final = 1 << 30  # number of collections of the middle generation before a full one
 
 
 @contextlib.contextmanager
 def full_collections_put_off() -> Iterator[None]:
-    """No look at all that exists in the meantime; what is new is looked at as ever.
+    """Put off full collections in this context; new objects are collected as before.
 
-    What exists is not frozen for it: objects that are unfrozen do not count as new ones, so that
-    hardly ever a full collection would follow.
+    Existing objects are not frozen for this: unfrozen objects do not count as new ones, so that
+    a full collection would hardly ever follow.
     """
     before = gc.get_threshold()
     gc.set_threshold(*before[:2], _NEVER)

@@ -1,8 +1,8 @@
-"""Where a run stands, visible to another process even after this one has died.
+"""The state of a run, visible to another process even after this one has died.
 
-It is 64 bytes of shared memory in a file: the child stores, its supervisor reads. A store costs no
-more than an assignment, so every phase of every control step is told. Nothing heavy is imported,
-since the supervisor has to be there at once.
+The heartbeat is 64 bytes of shared memory in a file: the child stores, its supervisor reads. A
+store costs no more than an assignment, so every phase of every control step is stored. This module
+imports nothing heavy, since the supervisor has to start at once.
 """
 
 import enum
@@ -19,7 +19,7 @@ MILLISECONDS = 1000.0  # per second: SUMO's own resolution
 
 
 class Phase(enum.IntEnum):
-    """What a run is doing."""
+    """The phases of a run."""
 
     STARTING = 0  # Python itself starts; the value before the first beat
     LOADING = 1
@@ -57,7 +57,7 @@ class Pulse(NamedTuple):
 
     @property
     def place(self) -> str:
-        """Where that is, in words that continue a sentence."""
+        """Return the phase in words that continue a sentence."""
         return _PLACES[self.phase].format(time=self.time, step=self.step)
 
 
@@ -65,13 +65,13 @@ class Heartbeat:
     """The shared memory of a child, which stores, and its supervisor, which reads.
 
     Args:
-        folder: of the journal; the file is made if there is none. With None the memory is this
-            process's own.
+        folder: Folder of the journal; the file is made if there is none. With None the memory is
+            this process's own.
 
     Attributes:
         slots: the memory, one int64 each. The loop stores into ``slots[PHASE]`` and
             ``slots[INSTANT]`` itself, which saves it five calls a step.
-        instant: room for step and time, before they are stored.
+        instant: Buffer of step and time, before they are stored.
 
     Raises:
         OSError: the file cannot be made or mapped.
@@ -95,33 +95,33 @@ class Heartbeat:
 
     @classmethod
     def supervised_by(cls, process_id: int, folder: Path) -> Self:
-        """A new heartbeat that names its reader."""
+        """Return a new heartbeat that names its reader."""
         heartbeat = cls(folder)
         heartbeat.slots[_SUPERVISOR] = process_id
         return heartbeat
 
     def beat(self, phase: int) -> None:
-        """Tell what is being done from now on."""
+        """Store the phase that begins."""
         self.slots[PHASE] = phase
 
     def step(self, step: int, time: float) -> None:
-        """Tell which control step begins, at which time [s] of SUMO's clock."""
+        """Store the control step that begins, and its time [s] on SUMO's clock."""
         instant = self.instant
         instant[0], instant[1] = step, round(time * MILLISECONDS)
         self.slots[INSTANT] = instant
 
     def finish(self, code: int) -> None:
-        """Tell that everything has been done, and the exit code: an end without this is a crash."""
+        """Store the exit code and the regular end; an end without this is a crash."""
         self.slots[_CODE] = code
         self.slots[PHASE] = Phase.DONE
 
     def keep(self) -> None:
-        """Ask that the journal be kept: its rows have not been written elsewhere."""
+        """Ask to keep the journal: its rows have not been written elsewhere."""
         self.slots[_KEEP] = 1
 
     @property
     def kept(self) -> bool:
-        """Whether the journal is to be kept."""
+        """Return whether the journal is to be kept."""
         return bool(self.slots[_KEEP])
 
     def read(self) -> Pulse:
@@ -132,12 +132,12 @@ class Heartbeat:
 
 
 class Stillness:
-    """How long a heartbeat has stood still, for a supervisor that looks at it now and then.
+    """The time without a change of a heartbeat, for a supervisor that reads it now and then.
 
     The time between looks is added up; the clock would go on while both processes are suspended.
 
     Args:
-        heartbeat: to look at.
+        heartbeat: Heartbeat to look at.
     """
 
     def __init__(self, heartbeat: Heartbeat) -> None:
@@ -146,10 +146,10 @@ class Stillness:
         self._quiet = 0.0
 
     def look(self, passed: float) -> tuple[Pulse, float]:
-        """The pulse, and for how long [s] it has not changed.
+        """Return the pulse, and the time [s] for which it has not changed.
 
         Args:
-            passed: [s] since the last look.
+            passed: Time [s] since the last call.
         """
         pulse = self._heartbeat.read()
         self._quiet = self._quiet + passed if pulse == self._last else 0.0

@@ -1,4 +1,4 @@
-"""Starting a Python process that imports what this one would."""
+"""The command of a Python process with the same imports as this one."""
 
 import json
 import sys
@@ -9,11 +9,11 @@ _PATHS: Final = "import json, sys; sys.path[:], arguments = json.loads(sys.argv[
 
 
 def command(code: str, arguments: list[int | str]) -> list[str]:
-    """The command line of an interpreter like this one, with its flags and its ``sys.path``.
+    """Return the command of an interpreter like this one, with its flags and ``sys.path``.
 
     Args:
-        code: what it runs; ``arguments`` is a name there.
-        arguments: for the code.
+        code: Code to run, in which ``arguments`` is a name.
+        arguments: Arguments for the code.
     """
     flags = {
         "-E": sys.flags.ignore_environment,
@@ -27,5 +27,5 @@ def command(code: str, arguments: list[int | str]) -> list[str]:
 
 
 def _absolute(entry: str) -> str:
-    """An entry of sys.path as an absolute path; those of import hooks are returned unchanged."""
+    """Return an entry of sys.path as an absolute path; those of import hooks stay unchanged."""
     return str(Path(entry).absolute()) if Path(entry).exists() else entry

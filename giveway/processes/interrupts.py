@@ -1,9 +1,9 @@
 """Ctrl-C, and the other signals by which a user ends a process.
 
-In the loop they are requests, honoured between two steps: a KeyboardInterrupt raised between a
-person's moveToXY and SUMO's step would crash the next simulation, and one raised inside the
-recorder would leave half a row. Everywhere else they are raised as exceptions, so that whatever
-is open is closed: temporary folders are removed, and the user reads a line.
+In the loop they are requests, honoured between two steps: a KeyboardInterrupt between a person's
+moveToXY and SUMO's step would crash the next simulation, and one inside the recorder would leave
+half a row. Everywhere else they are raised as exceptions, so that all open resources are closed:
+temporary folders are removed, and the user reads a line.
 """
 
 import signal
@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from types import FrameType
 from typing import Any, Self
 
-PATIENCE = 10.0  # [s] after which a second interrupt acts at once
+PATIENCE = 10.0  # [s] time after which a second interrupt acts at once
 ENDING = frozenset(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
@@ -21,10 +21,10 @@ ENDING = frozenset(
 
 
 class TerminatedError(KeyboardInterrupt):
-    """Somebody has asked this process to end, by a signal other than Ctrl-C's.
+    """The user has asked this process to end, by a signal other than Ctrl-C's.
 
     Args:
-        number: of the signal.
+        number: Number of the signal.
     """
 
     def __init__(self, number: int) -> None:
@@ -33,25 +33,25 @@ class TerminatedError(KeyboardInterrupt):
 
 
 def who_ended(error: KeyboardInterrupt) -> str:
-    """How the user has ended us, in a word or two: "interrupted", or "ended by SIGTERM"."""
+    """Return the way in which the user has ended us: "interrupted", or "ended by SIGTERM"."""
     if isinstance(error, TerminatedError):
         return f"ended by {signal.Signals(error.number).name}"
     return "interrupted"
 
 
 def exit_code_of(error: KeyboardInterrupt) -> int:
-    """128 + the signal, as shells have it."""
+    """Return 128 + the signal, as shells have it."""
     return 128 + (error.number if isinstance(error, TerminatedError) else signal.SIGINT)
 
 
 class SignalHandler:
-    """While active, signals are handed to :meth:`handle`; their former handlers come back after it.
+    """The context in which :meth:`handle` receives signals instead of their former handlers.
 
     Signals that this process was told to ignore, as nohup does, are still ignored. Outside the
     main thread, where handlers cannot be set, nothing changes.
 
     Args:
-        numbers: of the signals.
+        numbers: Numbers of the signals.
     """
 
     def __init__(self, numbers: Iterable[int]) -> None:
@@ -71,17 +71,17 @@ class SignalHandler:
         self._previous.clear()
 
     def handle(self, number: int, _frame: FrameType | None) -> None:
-        """A signal has come."""
+        """Receive a signal."""
         raise NotImplementedError
 
 
 class RaisedSignals(SignalHandler):
-    """While active, a signal by which the user ends us is raised where the main thread stands.
+    """The context in which a signal to end is raised in the main thread.
 
     Args:
-        once: only the first one is; one that comes ``PATIENCE`` after it acts at once, and those
-            between them do nothing. A terminal tells a supervised process, and so does its
-            supervisor: the second must not disturb the tidying up.
+        once: True: only the first signal is raised. One that comes ``PATIENCE`` after it acts at
+            once, and those between them do nothing. A supervised process gets the signal from the
+            terminal and from its supervisor, and the second must not disturb the tidying up.
     """
 
     def __init__(self, *, once: bool = False) -> None:
@@ -90,7 +90,7 @@ class RaisedSignals(SignalHandler):
         self._first: float | None = None
 
     def handle(self, number: int, frame: FrameType | None) -> None:
-        """Raise.
+        """Raise the exception for a signal.
 
         Raises:
             KeyboardInterrupt: it was Ctrl-C.
@@ -109,10 +109,10 @@ class RaisedSignals(SignalHandler):
 
 
 class DeferredInterrupt(SignalHandler):
-    """While active, a signal by which the user ends us only sets :attr:`requested`.
+    """The context in which a signal to end only sets :attr:`requested`.
 
-    So an impatient second Ctrl-C does not cost the rows that are being written. One that comes
-    ``PATIENCE`` after the first acts at once: a native call may hang.
+    An impatient second Ctrl-C therefore does not cost the rows that are being written. One that
+    comes ``PATIENCE`` after the first acts at once: a native call may hang.
     """
 
     def __init__(self) -> None:

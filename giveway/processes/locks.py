@@ -1,4 +1,4 @@
-"""A folder that one process has to itself, until it ends in whatever way."""
+"""The lock of a folder for one process, until its end."""
 
 import contextlib
 import os
@@ -13,7 +13,7 @@ class FolderInUseError(Exception):
 
 @contextlib.contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Lock a folder; the lock is the system's, leaves no file, and ends with this process.
+    """Lock a folder. The lock is the system's, leaves no file, and ends with this process.
 
     Windows, and network disks without such locks, lock nothing.
 
@@ -40,7 +40,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def in_use(folder: Path) -> bool:
-    """Whether another process has locked a folder.
+    """Return whether another process has locked a folder.
 
     Raises:
         OSError: it cannot be opened.

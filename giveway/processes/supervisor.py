@@ -29,19 +29,19 @@ from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
 from giveway.processes.interrupts import ENDING, SignalHandler
 from giveway.processes.locks import in_use, locked
 
-HANG_LIMIT = 120.0  # [s] of wall clock without a sign of life from the loop
+HANG_LIMIT = 120.0  # [s] wall-clock limit without a sign of life from the loop
 _PREFIX = "giveway-journal-"
-_KEPT = 7 * 86400.0  # [s] that the journal of a killed supervisor stays for "giveway recover"
+_KEPT = 7 * 86400.0  # [s] time that a killed supervisor's journal is kept for "giveway recover"
 _PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it
-_TEARDOWN_LIMIT = 10.0  # [s] from "done" to the process's end; native destructors hang, too
+_TEARDOWN_LIMIT = 10.0  # [s] limit from "done" to the process's end; native destructors hang, too
 _POLL = 1.0  # [s] between two looks at the heartbeat
 _SIGNALLED = 128  # a shell's exit code of a process that died of signal n is 128 + n
-_SHOW_CURSOR = "\r\x1b[2K\x1b[?25h"  # a progress bar that died has hidden it
+_SHOW_CURSOR = "\r\x1b[2K\x1b[?25h"  # shows the cursor that a progress bar has hidden
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a supervised process.
+    """The end of a supervised process.
 
     Attributes:
         code: the exit code to pass on: the child's own, or a shell's 128 + n for a signal;
@@ -49,9 +49,9 @@ class Verdict:
         crashed: it ended without having told so; what it had recorded is in the journal.
         interrupted: it ended by a signal that the user sent us, or after one.
         cause: "SIGSEGV", "no progress for 120 s", ...; empty unless crashed.
-        pulse: where it stood.
-        traceback: where Python stood, if it could tell, as faulthandler prints it.
-        last_words: what native code had printed on the standard error of the child, if kept.
+        pulse: Last state of its heartbeat.
+        traceback: Traceback of Python by faulthandler; empty without one.
+        last_words: Output of native code on the standard error of the child, if kept.
     """
 
     code: int
@@ -70,7 +70,7 @@ class Verdict:
 
 @contextlib.contextmanager
 def journal_folder() -> Iterator[Path]:
-    """A folder for a journal, gone afterwards unless its heartbeat asks to keep it.
+    """Provide a folder for a journal, which is removed unless its heartbeat asks to keep it.
 
     It is a local temporary folder and not the results folder, which may be a network disk (the
     journal is written at every control step), is not known before the configuration has been
@@ -93,10 +93,10 @@ def journal_folder() -> Iterator[Path]:
 
 
 def journal_place() -> Path:
-    """Where journals are.
+    """Return the folder of all journals.
 
-    ``/var/tmp`` comes before ``/tmp``, which often is memory that the run itself needs; ``TMPDIR``
-    before both.
+    ``TMPDIR`` comes first, then ``/var/tmp``, then ``/tmp``, which often is memory that the run
+    itself needs.
     """
     large = Path("/var/tmp")
     named = os.environ.get("TMPDIR") or not os.access(large, os.W_OK)
@@ -104,7 +104,7 @@ def journal_place() -> Path:
 
 
 def journals() -> list[Path]:
-    """The folders of journals whose supervisors are gone, oldest first."""
+    """Return the folders of journals whose supervisors are gone, oldest first."""
     found: list[tuple[float, Path]] = []
     for folder in journal_place().glob(f"{_PREFIX}*"):
         with contextlib.suppress(OSError):
@@ -114,7 +114,7 @@ def journals() -> list[Path]:
 
 
 def verdict_on_left(journal: Path) -> Verdict:
-    """What became of a process whose supervisor, killed too, could not tell.
+    """Return the end of a process whose supervisor was killed, too.
 
     Raises:
         OSError: the folder cannot be read.
@@ -125,7 +125,7 @@ def verdict_on_left(journal: Path) -> Verdict:
 
 
 def _sweep(place: Path) -> None:
-    """Remove the journals that nobody has asked for in a week; a living one is locked."""
+    """Remove the journals that have not been used for a week; those in use are locked."""
     with contextlib.suppress(OSError):
         for folder in place.glob(f"{_PREFIX}*"):
             written = max((file.stat().st_mtime for file in folder.iterdir()), default=math.inf)
@@ -134,7 +134,7 @@ def _sweep(place: Path) -> None:
 
 
 def own_command() -> list[str]:
-    """How this very process was started, interpreter options included."""
+    """Return the command of this process, interpreter options included."""
     return [sys.executable, *sys.orig_argv[1:]]
 
 
@@ -177,12 +177,12 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
 
 
 def temporary_in(journal: Path) -> Path:
-    """The temporary folder of the process that writes the journal."""
+    """Return the temporary folder of the process that writes the journal."""
     return journal / "tmp"
 
 
 def _temporary(journal: Path) -> dict[str, str]:
-    """Variables that name the child's temporary folder, which is removed with the journal."""
+    """Return variables that name the child's temporary folder, removed with the journal."""
     folder = temporary_in(journal)
     folder.mkdir(exist_ok=True)
     return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
@@ -190,9 +190,9 @@ def _temporary(journal: Path) -> dict[str, str]:
 
 @contextlib.contextmanager
 def _held_back() -> Iterator[None]:
-    """Let a child that is started here inherit blocked signals, until :meth:`Supervised.listen`.
+    """Start children with blocked signals in this context, until :meth:`Supervised.listen`.
 
-    While Python itself starts, a Ctrl-C would end in a traceback, and the others without a line.
+    While Python itself starts, a Ctrl-C would end in a traceback, and the others without a message.
     """
     if sys.platform == "win32":
         yield
@@ -205,11 +205,11 @@ def _held_back() -> Iterator[None]:
 
 
 class _Relay(SignalHandler):
-    """Passes on the signals by which a user ends a run, so that the child decides when.
+    """Passes the signals by which a user ends a run to the child, which decides when to end.
 
     Attributes:
         first: the first such signal.
-        killed: whether a second one had to kill the child.
+        killed: True if a second one had to kill the child.
     """
 
     def __init__(self) -> None:
@@ -220,13 +220,13 @@ class _Relay(SignalHandler):
         self._child: subprocess.Popen[bytes] | None = None
 
     def connect(self, child: subprocess.Popen[bytes]) -> None:
-        """Name the child; a signal that came before is passed on now."""
+        """Name the child, and pass on a signal that came before."""
         self._child = child
         if self.first is not None:
             self._send(self.first)
 
     def handle(self, number: int, _frame: FrameType | None) -> None:
-        """Pass on the first signal; the second one kills a child that has had its time."""
+        """Pass on the first signal; a later second one kills the child."""
         if self.first is None:
             self.first, self._at = number, time.monotonic()
             self._send(number)
@@ -240,10 +240,10 @@ class _Relay(SignalHandler):
 
 
 class _Watchdog:
-    """Looks at the heartbeat once a second, and kills a child whose loop stands still.
+    """Reads the heartbeat once a second, and kills a child whose loop stands still.
 
     Attributes:
-        waited: how long [s] the child had stood still when it was killed; 0 if it was not.
+        waited: Time [s] without a sign of life before the kill; 0 if the child was not killed.
     """
 
     def __init__(

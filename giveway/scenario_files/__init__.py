@@ -1,7 +1,7 @@
-"""Somebody's SUMO scenario as files: what it names, and how to run it without touching it.
+"""A SUMO scenario as files: its contents, and how to run it without changing it.
 
-``read_scenario`` says what a .sumocfg names; ``prepare_start`` makes of it a command for SUMO
-that writes nothing beside the scenario.
+``read_scenario`` returns the contents of a .sumocfg; ``prepare_start`` turns them into a command
+for SUMO that writes nothing beside the scenario.
 """
 
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, ScenarioFiles, read_scenario

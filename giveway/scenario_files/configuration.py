@@ -1,4 +1,4 @@
-"""A .sumocfg as what it names: input files, outputs, and the settings that a run depends on."""
+"""The contents of a .sumocfg: input files, outputs, and the settings that a run depends on."""
 
 import os
 import re
@@ -21,7 +21,7 @@ from giveway.scenario_files.options import (
 
 _Value = TypeVar("_Value")
 
-SUMO_SEED: Final = 23423  # what SUMO takes where neither scenario nor command line names a seed
+SUMO_SEED: Final = 23423  # SUMO's seed if neither scenario nor command line names one
 STRIPING: Final = "striping"  # SUMO's default pedestrian model, and the only one that can be moved
 
 _LATEST: Final = 9e15  # [s] SUMO counts milliseconds in 63 bits
@@ -33,18 +33,19 @@ _FALSE = frozenset({"false", "0", "no", "off", "-", "f"})
 
 @dataclass(frozen=True)
 class ScenarioFiles:
-    """What a .sumocfg says; all paths are absolute.
+    """The contents of a .sumocfg; all paths are absolute.
 
     Attributes:
         config_file: the .sumocfg.
         options: each option that it sets, under the name that SUMO's help lists, to its value.
         net_file: the road network.
-        route_files, additional_files: in the order in which SUMO reads them.
+        route_files, additional_files: Files in the order in which SUMO
+            reads them.
         begin: first instant [s].
         end: last instant [s]; None if the scenario ends when nobody is left.
         step_length: SUMO's step [s].
-        seed: as the scenario names it; None leaves SUMO's own.
-        random: whether SUMO is to seed itself with the clock.
+        seed: Seed that the scenario names; None: SUMO's own.
+        random: True if SUMO is to seed itself with the clock.
         pedestrian_model: one of SUMO's, ``striping`` where none is named.
         outputs: each output option set, to the file or files as the scenario names them.
     """
@@ -86,7 +87,7 @@ class ScenarioFiles:
         return {name: value for name, value in self.options.items() if "teleport" in name}
 
     def is_set(self, option: str) -> bool:
-        """Whether the scenario switches a yes-or-no option on."""
+        """Return whether the scenario switches a yes-or-no option on."""
         return self.options.get(option, "").strip().lower() in _TRUE
 
     def require_inputs(self) -> None:
@@ -118,7 +119,7 @@ class ScenarioFiles:
 
 
 def read_scenario(config_file: Path) -> ScenarioFiles:
-    """What ``config_file`` says; :attr:`ScenarioFiles.missing` tells which files do not exist.
+    """Read ``config_file``; :attr:`ScenarioFiles.missing` lists the files that do not exist.
 
     Options may stand in sections or flat, under any of SUMO's names, with the value in ``value``,
     ``v`` or as text; lists are separated by commas; ``${NAME}`` stands for an environment
@@ -199,7 +200,7 @@ def _root(config_file: Path) -> ET.Element:
 
 
 def _names(value: str, option: str) -> tuple[str, ...]:
-    """The files that an option names, as they are written."""
+    """Return the files that an option names, as they are written."""
     parts = value.split(",") if option in LISTS or option not in OUTPUTS else [value]
     return tuple(part.strip() for part in parts if part.strip())
 
@@ -210,13 +211,13 @@ def _paths(config_file: Path, value: str) -> tuple[Path, ...]:
 
 
 def located(name: str, named_in: Path) -> Path:
-    """The file that ``name`` means where it stands in the file ``named_in``."""
+    """Return the file that ``name`` means in the file ``named_in``."""
     path = Path(name).expanduser() if name.startswith("~/") else Path(name)
     return Path(os.path.abspath(named_in.parent / path))  # noqa: PTH100 - resolve() follows links
 
 
 def seconds(text: str) -> float:
-    """A time as SUMO writes it: seconds, ``h:m:s`` or ``d:h:m:s``.
+    """Convert a time of SUMO to seconds: seconds, ``h:m:s`` or ``d:h:m:s``.
 
     Raises:
         ValueError: it is none of these, or beyond SUMO's clock.
@@ -226,13 +227,13 @@ def seconds(text: str) -> float:
         raise ValueError(text)
     days, hours, minutes, rest = [0.0] * (4 - len(parts)) + parts
     time = ((days * 24.0 + hours) * 60.0 + minutes) * 60.0 + rest
-    if not abs(time) <= _LATEST:  # nor a nan
+    if not abs(time) <= _LATEST:  # also false for nan
         raise ValueError(text)
     return time
 
 
 def _truth(text: str) -> bool:
-    """Whether ``text`` is one of SUMO's words for true; a ValueError if it is none for false."""
+    """Return whether ``text`` is a word for true; a ValueError if it is none for false either."""
     if text.lower() not in _TRUE | _FALSE:
         raise ValueError(text)
     return text.lower() in _TRUE
@@ -245,7 +246,7 @@ def _parsed(
     parse: Callable[[str], _Value],
     expected: str,
 ) -> _Value | None:
-    """The value of an option; None if it is not set."""
+    """Return the value of an option, or None if it is not set."""
     if name not in options:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Scenario files that write: run from copies whose outputs go into the results folder."""
+"""Copies of scenario files that write outputs: these go into the results folder."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,8 +30,8 @@ _DEVICES: Final = ("device.ssm.file", "device.toc.file")  # parameters of a type
 _SSM: Final = "has.ssm.device"
 _ELEMENTS: Final = frozenset({*_WRITES, *READS, "param", "poly", "poi", "vType"})
 
-# A file that writes or refers to another file contains one of these; they are searched for first,
-# since that is far faster than to parse the file.
+# A file that writes or refers to another file contains one of these signs. They are searched for
+# first, which is far faster than parsing the file.
 _SIGNS: Final = tuple(
     sign.encode()
     for sign in (
@@ -52,11 +52,11 @@ class Copies:
     Args:
         config_file: the .sumocfg, to which the names in vehicles' parameters are relative.
         scratch: folder for the copies; they are needed as long as the simulation runs.
-        outputs: where the outputs go.
+        outputs: Folder of the outputs.
 
     Attributes:
-        config_file: as given.
-        has_ssm: whether a type or vehicle in the prepared files carries an SSM device.
+        config_file: File as given.
+        has_ssm: True if a type or vehicle in the prepared files carries an SSM device.
     """
 
     def __init__(self, config_file: Path, scratch: Path, outputs: OutputFolder) -> None:
@@ -69,16 +69,16 @@ class Copies:
 
     @property
     def read(self) -> tuple[Path, ...]:
-        """Every file prepared, and all files that they include."""
+        """Files that were prepared, and all files that they include."""
         return tuple(self._prepared)
 
     @property
     def made(self) -> dict[Path, Path]:
-        """Each copy to its original, for messages that name the copy."""
+        """Original of each copy, for messages that name the copy."""
         return {copy: file for file, copy in self._prepared.items() if copy != file}
 
     def prepared(self, file: Path) -> Path:
-        """The file to give to SUMO instead of ``file``: itself, as a rule.
+        """Return the file to give to SUMO instead of ``file``: itself, unless it must be copied.
 
         Raises:
             ScenarioError: the file, or one that it includes, cannot be read.
@@ -108,12 +108,12 @@ class Copies:
         return file
 
     def redirected(self, name: str, named_in: Path) -> str:
-        """The file in the results folder for the output ``name`` of the file ``named_in``."""
+        """Return the place of the output ``name`` of ``named_in`` in the results folder."""
         return str(self._outputs.place(located(name, named_in)))
 
 
 class _Editor:
-    """Finds what changes in the copy of one file."""
+    """Finds the changes for the copy of one file."""
 
     def __init__(self, file: Path, copies: Copies) -> None:
         self._file = file
@@ -156,5 +156,5 @@ class _Editor:
 
 
 def _has_signs(file: Path) -> bool:
-    """Whether the file can name an output at all; reads it once, in pieces."""
+    """Return whether the file can name an output at all; reads it once, in pieces."""
     return any(sign in text for text in pieces(file) for sign in _SIGNS)

@@ -1,6 +1,6 @@
-"""The ids of the vehicles and persons that a scenario's files declare, however late they depart.
+"""The ids of the vehicles and persons that a scenario's files declare.
 
-A vehicle that no file declares will never depart; a person that is added needs a name of its own.
+A vehicle that no file declares will never depart. An added person needs a name that is not taken.
 """
 
 import difflib
@@ -14,16 +14,16 @@ from giveway.scenario_files.reading import pieces
 _VEHICLE = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _PERSON = re.compile(rb"<(?:person|personFlow)\s[^>]*?\bid\s*=\s*[\"']([^\"']*)")
 _CALIBRATOR = b"<calibrator"  # inserts vehicles of names of its own
-_INCLUDE = b"<include"  # of a file that may declare anything
-_COMPARED = 5_000  # declared names among which a similar one is looked for
+_INCLUDE = b"<include"  # tag of an included file, which may declare anything
+_COMPARED = 5_000  # number of declared names among which a similar one is searched
 
 
 def undeclared(name: str, files: Iterable[Path]) -> str | None:
-    """What to say if no vehicle ``name`` is declared in ``files``; None if one is or may be.
+    """Return a message if no vehicle ``name`` is declared in ``files``; None if one may be.
 
     Args:
         name: SUMO's id of a vehicle; one of a flow is the flow's id, a point and a number.
-        files: everything that SUMO reads, compressed or not.
+        files: Files that SUMO reads, compressed or not.
     """
     flow, _, number = name.rpartition(".")
     known: dict[str, None] = {}
@@ -36,7 +36,7 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
             if len(known) < _COMPARED:
                 known[declared + ".0" if kind == b"flow" else declared] = None
     except (OSError, EOFError):
-        return None  # SUMO will say what is wrong with the file
+        return None  # SUMO will report the fault in the file
     close = difflib.get_close_matches(name, known, n=1)
     shown = ", ".join(list(known)[:3])
     if close:
@@ -45,7 +45,7 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
 
 
 def declares(name: str, files: Iterable[Path]) -> bool:
-    """Whether a vehicle ``name`` is certainly declared in ``files``."""
+    """Return whether a vehicle ``name`` is certainly declared in ``files``."""
     flow, _, number = name.rpartition(".")
     wanted = {(b"vehicle", name), (b"trip", name)}
     if number.isdecimal():
@@ -57,7 +57,7 @@ def declares(name: str, files: Iterable[Path]) -> bool:
 
 
 def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
-    """Kind and id of every vehicle, trip and flow; of a calibrator the kind alone."""
+    """Yield kind and id of every vehicle, trip and flow; of a calibrator the kind alone."""
     for file in files:
         for text in pieces(file):
             yield from _in(text)
@@ -72,7 +72,7 @@ def _in(text: bytes) -> Iterator[tuple[bytes, str]]:
 
 
 def declares_people(files: Iterable[Path]) -> bool:
-    """Whether a person or a flow of persons is declared in any of ``files``, or may be."""
+    """Return whether a person or a flow of persons is declared in any of ``files``, or may be."""
     try:
         return any(
             _PERSON.search(text) or _INCLUDE in text for file in files for text in pieces(file)
@@ -82,11 +82,11 @@ def declares_people(files: Iterable[Path]) -> bool:
 
 
 def free_prefix(wanted: str, files: Iterable[Path]) -> str:
-    """``wanted``, or a longer prefix with which no person's id begins in any of ``files``.
+    """Return ``wanted``, or a longer prefix with which no person's id in ``files`` begins.
 
     Args:
-        wanted: names are to be this with a number.
-        files: everything that SUMO reads, compressed or not.
+        wanted: Prefix of the names, which end with a number.
+        files: Files that SUMO reads, compressed or not.
     """
     names: set[bytes] = set()
     start = wanted.encode()

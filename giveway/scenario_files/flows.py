@@ -1,7 +1,7 @@
-"""The flows of a scenario whose next vehicle is due: SUMO makes it in the very step it departs in.
+"""The flows of a scenario whose next vehicle is due.
 
-A vehicle of its own is known to SUMO before it departs, one of a flow only when it stands on the
-road. Who wants to enter the road in the same step has to know of it before.
+SUMO knows a single vehicle before it departs, but a flow's vehicle only when it is on the road. An
+ego that wants to enter the road in the same step has to know of it before.
 """
 
 import math
@@ -21,22 +21,22 @@ _ROUNDING = 0.001  # [s] SUMO's clock counts milliseconds
 
 
 class FlowStart(NamedTuple):
-    """Where a flow's vehicles enter the road, as far as the file says it; both empty: unknown."""
+    """The place where a flow's vehicles enter the road; both are empty if it is unknown."""
 
     edge: str
     route: str  # SUMO's id of a route
 
 
 def flows_due(files: Iterable[Path], after: float, until: float, begin: float) -> list[FlowStart]:
-    """Where a flow may let a vehicle depart after ``after`` and not later than ``until`` [s].
+    """Return the places of flows that may depart after ``after`` and up to ``until`` [s].
 
     Flows that depart at random may always do so while they last.
 
     Args:
-        files: everything that SUMO reads, compressed or not.
-        after: [s].
-        until: [s].
-        begin: of the simulation [s], when flows begin that do not say when.
+        files: Files that SUMO reads, compressed or not.
+        after: Begin of the period [s].
+        until: End of the period [s].
+        begin: Start of the simulation [s], for flows without a begin of their own.
     """
     due = []
     try:
@@ -75,14 +75,14 @@ def _is_due(flow: dict[str, str], after: float, until: float, begin: float) -> b
         return True  # like "triggered": at any time
     if not period > 0.0:
         return True
-    number = max(0, math.ceil((after + _ROUNDING - first) / period))  # of the next to depart
+    number = max(0, math.ceil((after + _ROUNDING - first) / period))  # number of the next vehicle
     if number >= float(flow.get("number", math.inf)):
         return False
     return first + number * period <= min(until, last) + _ROUNDING
 
 
 def _period(flow: dict[str, str], duration: float) -> float:
-    """The time [s] between two departures; 0: at random."""
+    """Return the time [s] between two departures; 0 for random departures."""
     if "period" in flow:
         return seconds(flow["period"])
     for name in ("vehsPerHour", "perHour"):

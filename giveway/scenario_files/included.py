@@ -20,13 +20,13 @@ _REFERENCE = re.compile(
 
 
 def with_included(files: Iterable[Path]) -> list[Path]:
-    """The files, and those that exist of what they refer to, and these, each once.
+    """Return the files and all existing files that they refer to, directly or not, each once.
 
-    A file that cannot be read refers to none: whoever reads it next says so.
+    A file that cannot be read refers to none; its next reader reports the error.
     """
     found = list(files)
     known = {file.resolve() for file in found}
-    for file in found:  # which grows
+    for file in found:  # the list grows meanwhile
         for there in _referred(file):
             if there.is_file() and there.resolve() not in known:
                 known.add(there.resolve())

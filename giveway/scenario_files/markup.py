@@ -1,4 +1,4 @@
-"""XML rewritten as it streams by: only the attributes that are asked for change, byte for byte."""
+"""XML rewritten as a stream: only the wanted attributes change, all else byte by byte stays."""
 
 import codecs
 import html
@@ -20,15 +20,15 @@ _ENCODING = re.compile(rb"<\?xml[^>]*encoding\s*=\s*[\"']([\w.-]+)")
 def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor, names: frozenset[str]) -> None:
     """Copy XML from ``source`` to ``target``, with some attributes changed.
 
-    Nothing is checked and nothing else changes: what is not well-formed stays so, and SUMO will
-    say it. The memory used grows with the depth of the nesting, and not with the file.
+    Nothing is checked and nothing else changes. What is not well-formed stays so, and SUMO will
+    report it. The memory used grows with the depth of the nesting, not with the file.
 
     Args:
         source: XML in an encoding that contains ASCII.
-        target: receives the copy.
-        visit: called with an element's name, its attributes and its parent's name; returns the
+        target: Stream that receives the copy.
+        visit: Function of an element's name, its attributes and its parent's name; it returns the
             new values of the attributes that change. Attributes that the element lacks are ignored.
-        names: of the elements that it is called for.
+        names: Names of the elements for which it is called.
     """
     copy = _Copy(target, visit, names)
     pending = b""
@@ -38,7 +38,7 @@ def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor, names: frozens
 
 
 class _Copy:
-    """Where a copy stands: the elements that are open, the encoding."""
+    """The state of a copy: the elements that are open, the encoding."""
 
     def __init__(self, target: IO[bytes], visit: Visitor, names: frozenset[str]) -> None:
         self._target = target
@@ -69,7 +69,7 @@ class _Copy:
         return b""
 
     def _end_of_other(self, text: bytes, start: int) -> int | None:
-        """Where the comment, declaration or literal text at ``start`` ends, if in ``text``."""
+        """Return the end of the comment, declaration or literal text at ``start``, or None."""
         for opening, closing in _ENDS:
             if text.startswith(opening, start):
                 end = text.find(closing, start + len(opening))
@@ -92,7 +92,7 @@ class _Copy:
                 self._encoding = "utf-8"
 
     def _changed(self, tag: re.Match[bytes]) -> bytes | None:
-        """The tag with its new values; None if it stays."""
+        """Return the tag with its new values, or None if it stays."""
         closing, name, inside = tag.groups()
         if closing:
             if self._open:

@@ -13,7 +13,7 @@ _GZIP_MAGIC = b"\x1f\x8b"
 
 
 class _Stream(Protocol):
-    """What expat reads from."""
+    """A stream that expat reads from."""
 
     def read(self, size: int = ..., /) -> bytes: ...
 
@@ -23,8 +23,8 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
 
     Args:
         net_file: the network.
-        handlers: by the elements' names; a missing attribute may raise ``KeyError``, a bad value
-            ``ValueError``.
+        handlers: Handlers by the elements' names; a missing attribute may raise ``KeyError``, a bad
+            value ``ValueError``.
 
     Raises:
         ScenarioError: unreadable, damaged, or no SUMO network.
@@ -61,7 +61,7 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
 
 
 class _Reader:
-    """Hands start tags on."""
+    """Passes start tags to handlers."""
 
     def __init__(self, handlers: Mapping[str, Callable[[dict[str, str]], None]]) -> None:
         self.is_network = False

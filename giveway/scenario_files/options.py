@@ -1,4 +1,4 @@
-"""SUMO's options: those that name files, those that giveway has to know by all their names.
+"""SUMO's options: those that name files, and those that giveway has to know completely.
 
 The tables hold for SUMO 1.28; a test compares them with what ``sumo --save-template`` says, so
 that no output option of a later version is missed. libsumo ships without the program, which is
@@ -113,12 +113,12 @@ SYNONYMS: Final = {
 
 
 def canonical(name: str) -> str:
-    """The name under which SUMO's help lists the option; ``name`` itself if it is one already."""
+    """Return the name under which SUMO's help lists the option."""
     return SYNONYMS.get(name, name)
 
 
 def parse_options(extra: Sequence[str]) -> dict[str, str]:
-    """The user's own SUMO options, by the name that SUMO's help lists.
+    """Return the user's own SUMO options, by the name that SUMO's help lists.
 
     Raises:
         ConfigError: a word is no option, or an option is not the user's to set.

@@ -1,4 +1,4 @@
-"""Where SUMO's outputs go instead of beside the scenario."""
+"""The places of SUMO's outputs: in the results folder instead of beside the scenario."""
 
 from collections.abc import Mapping
 from pathlib import Path, PurePath
@@ -9,13 +9,13 @@ _NOWHERE = frozenset({"stdout", "stderr", "-", "nul", "/dev/null", "/dev/stdout"
 
 
 def is_file(name: str) -> bool:
-    """Whether an output of this name is a file, and not a stream, nothing or a network address."""
+    """Return whether an output of this name is a file: no stream, no address, not empty."""
     colon = name.find(":")  # SUMO takes host:port for an address; C: is a drive
     return bool(name.strip()) and name.strip().lower() not in _NOWHERE and colon <= 1
 
 
 class OutputFolder:
-    """Gives every file that SUMO would write a name of its own in one folder.
+    """The folder in which every file that SUMO would write gets a name of its own.
 
     Args:
         folder: the folder; created with the first file.
@@ -28,11 +28,11 @@ class OutputFolder:
 
     @property
     def placed(self) -> Mapping[Path, Path]:
-        """Each file that the scenario names, to the file that is written instead."""
+        """Files that are written, by the files that the scenario names."""
         return self._placed
 
     def place(self, original: Path) -> Path:
-        """The file to write instead of ``original``; the same one at each call.
+        """Return the file to write instead of ``original``, at each call the same.
 
         Raises:
             ResultsError: SUMO cannot write into this folder.
@@ -42,7 +42,7 @@ class OutputFolder:
         return self._placed[original]
 
     def _free_name(self, original: PurePath) -> str:
-        """The original's own name, or with its folders' names in front if that is taken."""
+        """Return the original's name, with its folders' names in front if it is taken."""
         name = original.name
         folders = [part for part in reversed(original.parts[1:-1]) if part]
         for folder in folders:

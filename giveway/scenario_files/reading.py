@@ -12,7 +12,7 @@ _GZIP = b"\x1f\x8b"  # the magic number: SUMO looks at the content too, not at t
 
 @contextmanager
 def opened(path: Path) -> Iterator[IO[bytes]]:
-    """The file's content, decompressed where it is gzip.
+    """Open a file; gzip content is decompressed.
 
     Raises:
         OSError: it cannot be read.
@@ -29,7 +29,7 @@ def opened(path: Path) -> Iterator[IO[bytes]]:
 
 
 def pieces(path: Path) -> Iterator[bytes]:
-    """The file's content in large pieces that begin and end between two tags.
+    """Yield the content of a file in large pieces that begin and end between two tags.
 
     Raises:
         OSError: it cannot be read.

@@ -1,8 +1,8 @@
-"""Who has to let whom go first at each junction, as a network file says it.
+"""The priorities at each junction, as a network file states them.
 
-A junction's links from lane to lane are numbered in the order of its ``intLanes``; each has a
-``request`` with two rows of bits, read from the right: whom the link's vehicles let go first
-(``response``), and whose ways theirs cross or join (``foes``).
+A junction's links from lane to lane are numbered in the order of its ``intLanes``. Each link has a
+``request`` with two rows of bits, read from the right: the links to which it yields (``response``)
+and the links whose ways cross or join its own (``foes``).
 """
 
 import functools
@@ -13,22 +13,22 @@ from giveway.scenario_files.network import read_network
 
 
 class Request(NamedTuple):
-    """Of one link of a junction: numbers of other links."""
+    """The numbers of the other links that matter for one link of a junction."""
 
     yields_to: frozenset[int]
     meets: frozenset[int]
 
 
 class JunctionLogic(NamedTuple):
-    """Who has to let whom go first at one junction."""
+    """The priorities at one junction."""
 
     incoming: tuple[str, ...]  # lanes that lead to it
-    inside: tuple[str, ...]  # of each link, its last lane inside the junction; or a crossing
-    requests: tuple[Request, ...]  # of each link
+    inside: tuple[str, ...]  # last lane of each link inside the junction; or a crossing
+    requests: tuple[Request, ...]  # priorities of each link
 
 
 def right_of_way(net_file: Path) -> dict[str, JunctionLogic]:
-    """The logic of each junction that has one.
+    """Return the logic of each junction that has one.
 
     Raises:
         ScenarioError: unreadable, damaged, or no SUMO network.
@@ -67,7 +67,7 @@ class _Reader:
 
 
 def _numbers(bits: str) -> frozenset[int]:
-    """The numbers of the bits that are set, counted from the right."""
+    """Return the numbers of the bits that are set, counted from the right."""
     if bits.strip("01"):
         raise ValueError(f"'{bits}' is not a row of bits, as a <request> has")
     return frozenset(number for number, bit in enumerate(reversed(bits)) if bit == "1")

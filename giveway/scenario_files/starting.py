@@ -1,4 +1,4 @@
-"""How SUMO is started with somebody's scenario: what is kept, what is replaced, and why."""
+"""The start of SUMO with a user's scenario: which settings are kept or replaced, and why."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
@@ -19,14 +19,14 @@ _SAVING_STATES: Final = ("save-state.times", "save-state.period")
 
 @dataclass(frozen=True)
 class StartOptions:
-    """What is wanted of SUMO beyond the scenario's own settings.
+    """The settings for SUMO beyond the scenario's own.
 
     Attributes:
         seed: SUMO's seed; None keeps the scenario's, or SUMO's own where it names none.
         fallback_seed: the seed of a scenario that wants a random one, where neither ``seed`` nor
             the scenario names one.
         step_length: SUMO's step [s]; None keeps the scenario's.
-        interact: whether persons or vehicles are to be moved; if not, SUMO simulates the scenario
+        interact: True if persons or vehicles are to be moved; if not, SUMO simulates the scenario
             exactly as without giveway.
         outputs: the folder for SUMO's output files; None drops them.
         fcd, tripinfo, summary, ssm: write this output even if the scenario does not.
@@ -47,11 +47,11 @@ class StartOptions:
 
 @dataclass(frozen=True)
 class Start:
-    """How to start SUMO.
+    """A command that starts SUMO, and what belongs to it.
 
     Attributes:
-        command: for ``libsumo.start``.
-        remarks: what differs from the scenario, one line each, for the user.
+        command: Command for ``libsumo.start``.
+        remarks: Differences from the scenario, one line each, for the user.
         outputs: each output file as the scenario has it, to the file written instead.
         copies: each rewritten copy of a scenario file, to its original.
         read: the scenario's network, routes and additional files, with all that they include.
@@ -66,7 +66,7 @@ class Start:
     seed: int
 
     def with_original_names(self, message: str) -> str:
-        """SUMO's ``message`` with the scenario's own files instead of our copies of them."""
+        """Return SUMO's ``message`` with the names of the scenario's files instead of copies."""
         for copy, original in self.copies.items():
             message = message.replace(str(copy), str(original))
         return message
@@ -79,11 +79,11 @@ def prepare_start(
     *,
     types: str = "<additional/>",
 ) -> Start:
-    """Everything that SUMO needs to run ``scenario`` without touching its folder.
+    """Prepare a start of SUMO that runs ``scenario`` without touching its folder.
 
     Args:
         scenario: the scenario's files.
-        options: what is wanted.
+        options: Settings for SUMO.
         scratch: a folder of the caller's own, to be kept until SUMO is closed.
         types: an additional file's text, read before the scenario's own: the types of whatever
             is going to be added.
@@ -99,7 +99,7 @@ def prepare_start(
 
 
 class _Preparation:
-    """Gathers SUMO's options, and the remarks on them for the user."""
+    """Collects SUMO's options, and the remarks on them for the user."""
 
     def __init__(self, scenario: ScenarioFiles, options: StartOptions, scratch: Path) -> None:
         self._scenario = scenario
@@ -111,7 +111,7 @@ class _Preparation:
         self._remarks: list[str] = []
 
     def start(self, types: str) -> Start:
-        """Put it all together."""
+        """Return the complete start."""
         extra = parse_options(self._wanted.extra)
         self._inputs(types, extra.pop("additional-files", ""))
         extra |= {name: self._placed_extra(extra[name]) for name in OUTPUTS if name in extra}
@@ -140,7 +140,7 @@ class _Preparation:
         )
 
     def _config_file(self) -> Path:
-        """The scenario's .sumocfg, or a copy without options that only some builds of SUMO know."""
+        """Return the .sumocfg, or a copy without options that only some builds of SUMO know."""
         own = self._scenario.options
         unknown = [name for name in _WINDOW_ONLY if name in own]
         if not unknown:
@@ -158,7 +158,7 @@ class _Preparation:
         return copy
 
     def _inputs(self, types: str, more: str) -> None:
-        """Name our types first; every file that writes is replaced by its copy."""
+        """Set the input files: our types come first, and a file that writes becomes its copy."""
         own = self._scratch / "giveway.add.xml"
         own.write_text(types, encoding="utf-8")
         # Naming additional files on the command line replaces the scenario's list.
@@ -203,7 +203,7 @@ class _Preparation:
             )
 
     def _interaction(self) -> None:
-        """The options that SUMO needs if persons and vehicles are moved."""
+        """Set the options that SUMO needs if persons and vehicles are moved."""
         model = self._scenario.pedestrian_model
         self._options["pedestrian.model"] = STRIPING
         if model != STRIPING:
@@ -222,7 +222,7 @@ class _Preparation:
             self._options["collision.check-junctions"] = "true"
 
     def _connections(self) -> None:
-        """No program or server outside is waited for; outputs to an address stay as they are."""
+        """Wait for no outside program or server; outputs to an address stay unchanged."""
         own = self._scenario.options
         for name in _VALIDATION:
             if own.get(name) in ("auto", "always"):
@@ -288,7 +288,7 @@ class _Preparation:
             self._options["device.ssm.probability"] = "1"
 
     def _placed_extra(self, value: str) -> str:
-        """An output among the user's own options; a relative name goes into the output folder."""
+        """Return the place of a user's own output; a relative name goes into the output folder."""
         return self._placed(value) if is_file(value) and not Path(value).is_absolute() else value
 
     def _say_where(self) -> None:

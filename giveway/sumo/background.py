@@ -21,12 +21,12 @@ class BackgroundVehicles:
 
     @property
     def numbers(self) -> tuple[NDArray[np.float64], ...]:
-        """All columns but ids and types."""
+        """Columns of numbers: all but ids and types."""
         return self.x, self.y, self.heading, self.speed, self.length, self.width
 
     @property
     def bodies(self) -> NDArray[np.float64]:
-        """(m, 5) their rectangles: x, y, heading, length, width."""
+        """Rectangles (m, 5) of the vehicles: x, y, heading, length, width."""
         return np.column_stack([self.x, self.y, self.heading, self.length, self.width])
 
 

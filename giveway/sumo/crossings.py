@@ -1,8 +1,8 @@
-"""The pedestrian crossings of the loaded network: where they are, and who has priority there.
+"""The pedestrian crossings of the loaded network: their places, and who has priority there.
 
-A network says of each link that leads people onto a crossing whether they have priority (state
-``M``, a zebra) or have to wait for a gap (``m``); where a traffic light governs it, its letter of
-the moment says so. What netconvert was told as a crossing's ``priority`` is not in the network.
+For each link that leads people onto a crossing, a network says whether they have priority (state
+``M``, a zebra) or have to wait for a gap (``m``). Where a traffic light governs it, the light's
+present letter says so. The ``priority`` that netconvert was given is not in the network.
 """
 
 import re
@@ -13,8 +13,8 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 
-_LANE = re.compile(r"^(:.*)_c\d+_0$")  # SUMO's names
-_PRIORITY = "MOo"  # of the link's state; where the light is out, people go first as at a zebra
+_LANE = re.compile(r"^(:.*)_c\d+_0$")  # SUMO's names of the lanes
+_PRIORITY = "MOo"  # states of the link; at a light that is out people go first as at a zebra
 
 
 class Crossing(NamedTuple):
@@ -23,8 +23,8 @@ class Crossing(NamedTuple):
     lane: str  # SUMO's id
     ends: Array  # (2, 2) [m] the middle of each kerb
     width: float  # [m]
-    zebra: bool  # people have priority wherever no light says otherwise
-    system: str  # SUMO's id of the traffic light; empty: none
+    zebra: bool  # True if people have priority wherever no light says otherwise
+    system: str  # SUMO's id of the traffic light; empty without one
     link: int  # index of the movement in the light's state
 
 
@@ -35,7 +35,7 @@ def crossings(
 
     Args:
         sumo: the libsumo module, while a simulation runs.
-        movements: the light of each link that one governs, from lane to lane: its id and the
+        movements: Traffic light of each link that one governs, from lane to lane: its id and the
             index of the movement in its state.
     """
     lanes = sumo.lane.getIDList()

@@ -1,4 +1,4 @@
-"""Which vehicles, routes and places of a scenario meet people, counted while SUMO runs it."""
+"""The vehicles, routes and places of a scenario that meet people, counted while SUMO runs it."""
 
 from collections import defaultdict
 from collections.abc import Mapping
@@ -8,16 +8,16 @@ import numpy as np
 
 from giveway.sumo.types import ROAD_CLASSES
 
-_MEETING = 10.0  # [m] between a moving vehicle's front and somebody on foot
-_MOVING = 0.5  # [m/s]
-_PERIOD = 1.0  # [s] between two looks
-_CELL = 100.0  # [m] side of the squares that are compared
+_MEETING = 10.0  # [m] largest distance between a moving vehicle's front and a pedestrian
+_MOVING = 0.5  # [m/s] speed above which a vehicle counts as moving
+_PERIOD = 1.0  # [s] between two counts
+_CELL = 100.0  # [m] side of the squares of the ranking
 _SHOWN = 3
-_EDGES = 12  # of a route
+_EDGES = 12  # largest number of edges shown of a route
 
 
 class Encounters:
-    """Counts, once a second, who on foot is within 10 m of a moving road vehicle.
+    """Counts, once a second, the pedestrians within 10 m of a moving road vehicle.
 
     Args:
         sumo: the libsumo module, while a simulation runs.
@@ -36,7 +36,7 @@ class Encounters:
             self._departures[name] = float(self._sumo.simulation.getTime()), route
 
     def look(self) -> None:
-        """Note who meets whom now; most calls return at once."""
+        """Count the present encounters; most calls return at once."""
         now = float(self._sumo.simulation.getTime())
         people = self._sumo.person.getIDList()
         if now < self._looked + _PERIOD or not people:
@@ -60,11 +60,11 @@ class Encounters:
 
     @property
     def ranking(self) -> Mapping[str, Any]:
-        """The vehicles, routes and squares that meet most, the first the most; as for JSON.
+        """Return the vehicles, routes and squares with most encounters, as JSON values.
 
-        ``egos``: id, departure [s], people. ``routes``: edges, departure of its vehicle that meets
-        most [s], people per vehicle. ``zones``: x_min, y_min, x_max, y_max [m], meetings, and the
-        vehicle that meets most people there.
+        ``egos``: id, departure [s], people. ``routes``: edges, departure [s] of its vehicle with
+        most encounters, people per vehicle. ``zones``: x_min, y_min, x_max, y_max [m], encounters,
+        and the vehicle that meets most people there.
         """
         egos = sorted(self._met, key=lambda name: (-len(self._met[name]), name))
         of_route: defaultdict[tuple[str, ...], list[str]] = defaultdict(list)

@@ -1,4 +1,4 @@
-"""SUMO reads a scenario in a process of its own before it reads it in ours.
+"""The first reading of a scenario: SUMO reads it in a child process before it reads it in ours.
 
 A few broken networks and demands kill the process that reads them. In a supervised run or a
 study's worker that costs one run; in a process that has called :func:`giveway.run` itself it would
@@ -41,13 +41,13 @@ def read_first(
     *,
     patience: float = PATIENCE,
 ) -> None:
-    """Let SUMO read a scenario where a crash costs nothing; at once if that has been done.
+    """Let SUMO read a scenario in a child process, unless that has been done before.
 
     Args:
-        config_file: the .sumocfg, for messages.
-        command: as for ``libsumo.start``.
-        files: everything that SUMO will read.
-        patience: how long to wait [s].
+        config_file: File .sumocfg, for messages.
+        command: Command as for ``libsumo.start``.
+        files: Files that SUMO will read.
+        patience: Time limit [s].
 
     Raises:
         SumoError: SUMO crashed, or was still busy.
@@ -94,7 +94,7 @@ def _try(config_file: Path, command: Sequence[str], patience: float) -> None:
 
 
 def _digest(config_file: Path, files: Sequence[Path]) -> str:
-    """Of what the files hold, and of SUMO's version."""
+    """Return a digest of the files' contents and of SUMO's version."""
     digest = hashlib.sha256(version().encode())
     for file in dict.fromkeys((config_file, *files)):
         with suppress(OSError), file.open("rb") as stream:
@@ -103,7 +103,7 @@ def _digest(config_file: Path, files: Sequence[Path]) -> str:
 
 
 def _bare_libsumo() -> Any:
-    """SUMO without what its tools import if it is there, and reading has no use for."""
+    """Return libsumo without the optional imports of its tools, which reading does not need."""
     modules: dict[str, Any] = sys.modules
     modules.update(dict.fromkeys(_SPARED))
     try:
@@ -115,7 +115,7 @@ def _bare_libsumo() -> Any:
 
 
 def main(command: Sequence[str]) -> None:
-    """Read, step once, and say so; a refusal in words is an answer too."""
+    """Read the scenario, do one step, and report it; a refusal in words is an answer, too."""
     sumo = _bare_libsumo()
     with suppress(Exception):  # libsumo's own kinds
         sumo.start(list(command))

@@ -20,19 +20,19 @@ class Foot:
 
     lane: str
     position: float  # [m] along the lane, in SUMO's metres
-    lateral: float  # [m] to the left of the centre line, at most half the usable width
-    distance: float  # [m] from the lane's centre line
+    lateral: float  # [m] offset to the left of the centre line, at most half the usable width
+    distance: float  # [m] distance from the lane's centre line
 
 
 @dataclass(frozen=True, slots=True)
 class _Lane:
-    """What is remembered of a lane."""
+    """The remembered properties of a lane."""
 
     name: str
     shape: Sequence[tuple[float, float]]
     length: float  # [m] SUMO's: nominal
-    metres: float  # [m] of the polyline
-    half_width: float  # [m] from the centre line, that a body's centre can use
+    metres: float  # [m] length of the polyline
+    half_width: float  # [m] largest distance of a body's centre from the centre line
 
 
 class FootPaths:
@@ -48,12 +48,12 @@ class FootPaths:
         self._ends: dict[str, tuple[str, str]] = {}
 
     def lane(self, edge: str) -> str | None:
-        """The lane on which SUMO lets people walk along ``edge``; None if it has none."""
+        """Return the lane on which SUMO lets people walk along ``edge``, or None."""
         lane = self._lane(edge)
         return None if lane is None else lane.name
 
     def foot(self, edge: str, x: float, y: float) -> Foot | None:
-        """The nearest point of the edge's footpath; None if it has none or does not exist."""
+        """Return the nearest point of the edge's footpath, or None without a footpath."""
         lane = self._lane(edge)
         if lane is None:
             return None
@@ -84,7 +84,7 @@ class FootPaths:
         return Foot(lane.name, _inside(lane, position), lateral, abs(lateral))
 
     def index(self, person: str, edges: Sequence[str], lane: str, arrival: float) -> int:
-        """Which of the ``edges`` of its route a person on ``lane`` is on.
+        """Return the index in ``edges`` (of its route) of the edge of a person on ``lane``.
 
         Of a person inside a junction it is the edge before the junction.
         """
@@ -103,9 +103,10 @@ class FootPaths:
     def _by_distance(
         self, person: str, edges: Sequence[str], arrival: float, candidates: Sequence[int]
     ) -> int:
-        """The edge where the rest of the route is as long as the person's; for a repeated edge.
+        """Return the edge from which the rest of the route is as long as the person's.
 
-        Where no footpaths join the edges SUMO knows no distance: then it is the nearest one.
+        This is for an edge that a route repeats. Where no footpaths join the edges, SUMO knows no
+        distance: then the nearest candidate is taken.
         """
         sumo = self._sumo
         try:
@@ -137,7 +138,7 @@ class FootPaths:
         return self._lanes[edge]
 
     def _find(self, edge: str) -> _Lane | None:
-        """SUMO's choice: a lane for pedestrians alone, else the first that admits them."""
+        """Find SUMO's choice: a lane for pedestrians alone, else the first that admits them."""
         sumo = self._sumo
         try:
             names = [f"{edge}_{i}" for i in range(sumo.edge.getLaneNumber(edge))]
@@ -155,6 +156,6 @@ class FootPaths:
 
 
 def _inside(lane: _Lane, position: float) -> float:
-    """``position`` [m], but not on the very ends of the lane."""
+    """Return ``position`` [m], moved off the very ends of the lane."""
     margin = min(_LANE_END, lane.length / 2)
     return min(max(position, margin), lane.length - margin)

@@ -1,4 +1,4 @@
-"""How SUMO is made to let go of a walking person, and to walk it on again.
+"""The handover of a walking person: SUMO lets go of it, and walks it on again later.
 
 ``person.moveTo`` ends a ``moveToXY``: the person walks on in SUMO from the lane position given,
 with its id, type, parameters and remaining stages. It takes effect at once. What SUMO 1.28 gets
@@ -21,19 +21,19 @@ from typing import Any
 from giveway.sumo.footpaths import Foot
 
 _WALKING = 2  # SUMO's stage type
-NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books
-_RUN_UP = 0.5  # [m] before the place where a person is put on its last edge
+NOWHERE = -1000.0  # [m] position on its lane of a held person in SUMO's books
+_RUN_UP = 0.5  # [m] distance before its place at which a person is put on its last edge
 
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """What is remembered of the route of a held person: the rest of its present walk in SUMO."""
+    """The remembered route of a held person: the rest of its present walk in SUMO."""
 
     edges: tuple[str, ...]  # remaining, the current one first
-    arrival_position: float  # [m] on the last edge
-    stages_left: int  # after this route
+    arrival_position: float  # [m] arrival position on the last edge
+    stages_left: int  # number of stages after this route
     type: str
-    own_speed: float | None  # [m/s] that the scenario gives to this walk alone
+    own_speed: float | None  # [m/s] speed that the scenario gives to this walk alone
     was_inside: bool  # taken over inside a junction
 
 
@@ -54,7 +54,7 @@ class Handover:
     def __init__(self, sumo: Any) -> None:
         self._simulation = sumo.simulation
         self._person = sumo.person
-        self._paced: dict[str, tuple[float, int]] = {}  # the usual speed factor, until when
+        self._paced: dict[str, tuple[float, int]] = {}  # usual speed factor, until when
         self.refusals = (sumo.TraCIException, sumo.FatalTraCIError)  # neither is the other's base
 
     def park(self, name: str, lane: str) -> None:
@@ -68,7 +68,7 @@ class Handover:
             self._approach(name, route, foot)
             return
         present = tuple(self._person.getStage(name).edges)
-        rerouted = present[-len(route.edges) :] != route.edges  # by one of SUMO's devices
+        rerouted = present[-len(route.edges) :] != route.edges  # by a device of SUMO
         if rerouted or route.was_inside or edges[0] in edges[1:] + route.edges[:step]:
             self._restart(name, route, edges)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
@@ -127,7 +127,7 @@ class Handover:
         self._paced[name] = own_factor, stages_left
 
     def end_paces(self) -> None:
-        """Give their usual speed back to those who have ended the walk with a speed of its own."""
+        """Restore the usual speed of persons whose walk with its own speed has ended."""
         for name, (factor, stages_left) in list(self._paced.items()):
             try:
                 if self._person.getRemainingStages(name) > stages_left:

@@ -1,4 +1,4 @@
-"""How high lanes lie: SUMO tells a lane's shape as x, y only, and z at a place on it."""
+"""The heights of lanes: SUMO tells a lane's shape as x, y only, and z at a place on it."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -17,17 +17,17 @@ class Height(NamedTuple):
 
 
 def heights_of(sumo: Any, lane: str, shape: Array, begin: float, length: float) -> Iterator[Height]:
-    """The heights at the vertices of a lane's centre line.
+    """Yield the heights at the vertices of a lane's centre line.
 
-    SUMO counts places on a lane along the inclined line, a path in the plane: so the vertices are
-    looked up twice, the second time by their distances in space.
+    SUMO counts places on a lane along the inclined line, but a path lies in the plane. Therefore
+    the vertices are looked up twice, the second time by their distances in space.
 
     Args:
         sumo: the libsumo module.
-        lane: its id.
-        shape: (k, 2) [m] its centre line.
-        begin: station [m] at which it begins on the path.
-        length: that it takes up there [m]; more where the path changes lanes.
+        lane: SUMO's id of the lane.
+        shape: Centre line (k, 2) [m] of the lane.
+        begin: Station [m] on the path at which the lane begins.
+        length: Length [m] that it takes up there; more where the path changes lanes.
     """
     flat = stations_of(shape)
     if flat[-1] < 1e-6:  # a lane without length, as inside a small junction
@@ -40,7 +40,7 @@ def heights_of(sumo: Any, lane: str, shape: Array, begin: float, length: float) 
 
 
 def _z(sumo: Any, lane: str, shares: Array) -> Array:
-    """(k,) [m] at shares of a lane's length."""
+    """Return the heights (k,) [m] at shares of a lane's length."""
     edge, _, index = lane.rpartition("_")
     nominal = float(sumo.lane.getLength(lane))
     at = (share * nominal for share in shares.tolist())

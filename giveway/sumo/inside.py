@@ -4,11 +4,11 @@ from typing import Any
 
 
 def lanes_inside(sumo: Any, lane: str) -> tuple[str, ...]:
-    """The lanes inside a junction from ``lane`` on, as SUMO's vehicles go on.
+    """Return the lanes inside a junction from ``lane`` on, in driving order.
 
     Args:
         sumo: the libsumo module, while a simulation runs.
-        lane: the first of them; empty where the network has none.
+        lane: First of the lanes; empty where the network has none.
     """
     lanes: list[str] = []
     while lane and lane not in lanes:

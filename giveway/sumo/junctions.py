@@ -1,4 +1,4 @@
-"""The junctions of the loaded network: which ways lead through one, and who lets whom go first."""
+"""The junctions of the loaded network: the movements through them, and their priorities."""
 
 from functools import cached_property
 from pathlib import Path
@@ -13,13 +13,13 @@ class Movement(NamedTuple):
     """A link through a junction, from one lane to another."""
 
     junction: str  # SUMO's id
-    number: int  # of the link among the junction's
+    number: int  # index of the link among the junction's
     source: str  # lane
     target: str  # lane
     inside: tuple[str, ...]  # lanes in between, in order; a vehicle may wait where one ends
     state: str  # SUMO's letter of the link where no light governs it
     direction: str  # SUMO's letter: "s" straight on, "l", "L" left, "r", "R" right, "t" turn
-    speed: float  # [m/s] that the lanes inside allow
+    speed: float  # [m/s] speed limit of the lanes inside
     system: str  # SUMO's id of the traffic light; empty: none
     link: int  # index of the movement in the light's state
     yields_to: frozenset[int]  # numbers of links whose vehicles go first
@@ -27,7 +27,7 @@ class Movement(NamedTuple):
 
     @property
     def has_stop_sign(self) -> bool:
-        """Whether one has to stand before it first; no light governs it."""
+        """True if a vehicle has to stop before the link, and no light governs it."""
         return self.state in ("s", "w") and not self.system
 
 
@@ -47,11 +47,11 @@ class Junctions:
         self._known: dict[str, dict[int, Movement]] = {}
 
     def at(self, inside: str) -> dict[int, Movement]:
-        """:meth:`of` the junction inside which a link ends with the lane ``inside``."""
+        """Return :meth:`of` the junction inside which a link ends with the lane ``inside``."""
         return self.of(self._junctions.get(inside, ""))
 
     def of(self, junction: str) -> dict[int, Movement]:
-        """All movements of vehicles through a junction, by number.
+        """Return all movements of vehicles through a junction, by number.
 
         Raises:
             ScenarioError: the network's file cannot be read (any more).

@@ -10,13 +10,13 @@ from giveway.sumo.heights import Height
 class Light(NamedTuple):
     """The traffic light at the end of a lane, for vehicles that go on to the path's next lane."""
 
-    station: float  # [m] of the stop line along the lane path
+    station: float  # [m] station of the stop line along the lane path
     system: str  # SUMO's id of the traffic light
     link: int  # index of the movement in the system's state
 
 
 class Passage(NamedTuple):
-    """A lane path's way through a junction."""
+    """The part of a lane path inside a junction."""
 
     entry: float  # [m] station of the line before it
     exit: float  # [m] station of the next edge's lane
@@ -30,7 +30,7 @@ class Passage(NamedTuple):
 
 
 class SpeedLimit(NamedTuple):
-    """From where on a lane path another lane's limit holds."""
+    """A station of a lane path from which another lane's limit holds."""
 
     station: float  # [m] along the lane path
     speed: float  # [m/s]
@@ -38,13 +38,13 @@ class SpeedLimit(NamedTuple):
 
 @dataclass(frozen=True)
 class LanePath:
-    """What lies along a route: the lanes' centre line, the traffic lights and limits on it."""
+    """The path along a route: the lanes' centre line, the traffic lights and limits on it."""
 
     points: Array  # (k, 2) [m]
     lights: tuple[Light, ...]
     first: str  # the lane that it begins on
     edges: tuple[float, ...]  # station [m] at which each edge of the route begins
-    limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
+    limits: tuple[SpeedLimit, ...]  # limits of the lanes in order; the first holds from the start
     passages: tuple[Passage, ...]  # through junctions whose lanes inside the network has
-    lanes: tuple[tuple[str, str], ...]  # on which it enters and leaves each edge
-    heights: tuple[Height, ...] = ()  # of the lanes' vertices, in order
+    lanes: tuple[tuple[str, str], ...]  # lanes on which it enters and leaves each edge
+    heights: tuple[Height, ...] = ()  # heights of the lanes' vertices, in order

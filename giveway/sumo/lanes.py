@@ -18,20 +18,20 @@ from giveway.sumo.inside import lanes_inside
 from giveway.sumo.lane_path import LanePath, Light, Passage, SpeedLimit
 from giveway.sumo.merging import Merging, mergings
 
-CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
+CHANGE_LENGTH = 30.0  # [m] length of a lane change
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
-_SAMPLE = 1.0  # [m] between the points of a lane change
+_SAMPLE = 1.0  # [m] distance between the points of a lane change
 
 
 class Link(NamedTuple):
-    """From a lane over a junction to the next edge's lane."""
+    """A link from a lane over a junction to the next edge's lane."""
 
     lane: str
     via: tuple[str, ...]  # lanes inside the junction
 
 
 class Lanes:
-    """What libsumo knows of lanes while a simulation runs.
+    """The lanes of the network, as libsumo knows them while a simulation runs.
 
     Args:
         sumo: the libsumo module, as ``SumoSession`` owns it.
@@ -55,13 +55,13 @@ class Lanes:
         start: float = 0.0,
         by: Mapping[int, int] | None = None,
     ) -> LanePath:
-        """The lane path along ``edges``, junctions included, with as few lane changes as possible.
+        """Return the path along ``edges``, junctions included, with few lane changes.
 
         Args:
             edges: the route.
             lane: index of the lane to start on; None: the best one.
             kind: SUMO's vehicle class.
-            start: where on the first lane the vehicle starts [m]; it changes lanes after that.
+            start: Station [m] on the first lane at which the vehicle starts, before lane changes.
             by: the lane on which to leave an edge, by the edge's place in the route, as far as the
                 way can go on from there.
 
@@ -124,7 +124,7 @@ class Lanes:
         return heights_of(self._sumo, lane, self.shape(lane), begin, length)
 
     def mergings(self, lane_path: LanePath) -> tuple[Merging, ...]:
-        """Where others come onto the lanes of a path, in its order."""
+        """Return the places where others come onto the lanes of a path, in its order."""
         return mergings(self._sumo, lane_path.lanes, lane_path.edges, self.shape)
 
     @cached_property
@@ -137,7 +137,7 @@ class Lanes:
         return float(self._sumo.lane.getWidth(lane))
 
     def shape(self, lane: str) -> Array:
-        """(k, 2) [m] centre line of a lane."""
+        """Return the centre line (k, 2) [m] of a lane."""
         shape = self._shapes.get(lane)
         if shape is None:
             shape = self._shapes[lane] = np.array(self._sumo.lane.getShape(lane), dtype=np.float64)
@@ -151,11 +151,11 @@ class Lanes:
         return length
 
     def speed_limit(self, lane: str) -> float:
-        """What SUMO lets vehicles drive on a lane [m/s], whatever they are."""
+        """Return the speed limit [m/s] of a lane, whatever the vehicle is."""
         return float(self._sumo.lane.getMaxSpeed(lane))
 
     def point(self, lane: str, position: float) -> tuple[float, float]:
-        """x, y [m] of SUMO's ``position`` [m] on a lane, whose nominal length may be another."""
+        """Return x, y [m] of SUMO's ``position`` [m] on a lane; its nominal length may differ."""
         share = position / max(float(self._sumo.lane.getLength(lane)), 1e-3)
         x, y = _at(self.shape(lane), np.array([share]))[0]
         return float(x), float(y)
@@ -185,7 +185,7 @@ class Lanes:
         return found
 
     def out_of_junction(self, lane: str) -> tuple[str, ...]:
-        """The lanes after one inside a junction, up to the first outside; else none."""
+        """Return the lanes after one inside a junction, up to the first outside, or no lanes."""
         lanes: list[str] = []
         while lane.startswith(":"):
             links = self._sumo.lane.getLinks(lane)
@@ -257,7 +257,7 @@ class Lanes:
         ]
 
     def _begins_inside(self, link: Link, station: float, end: Array) -> list[float]:
-        """Stations [m] of the lanes of ``link``, which begins at ``station`` at ``end`` (1, 2)."""
+        """Return the stations [m] of the lanes of ``link``, from ``station`` at ``end`` (1, 2)."""
         begins = []
         for name in link.via:
             begins.append(station)
@@ -277,7 +277,7 @@ class Lanes:
         }
 
     def _changing(self, edge: str, entry: int, leave: int, start: float) -> Array:
-        """The centre line from lane ``entry`` over to lane ``leave`` of one edge."""
+        """Return the centre line from lane ``entry`` over to lane ``leave`` of one edge."""
         before = self.shape(f"{edge}_{entry}")
         if entry == leave:
             return before
@@ -305,7 +305,7 @@ class Lanes:
 
 
 def admits(sumo: Any, lane: str, kind: str) -> bool:
-    """Whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
+    """Return whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
     allowed = sumo.lane.getAllowed(lane)
     return (not allowed or kind in allowed) and kind not in sumo.lane.getDisallowed(lane)
 
@@ -324,8 +324,8 @@ def lane_area(centre_line: Array, width: float) -> Array:
     """The closed outline (2k + 1, 2) [m] of a lane.
 
     Args:
-        centre_line: (k, 2) [m], k >= 2.
-        width: [m].
+        centre_line: Centre line (k, 2) [m], k >= 2.
+        width: Width [m].
     """
     along = np.gradient(centre_line, axis=0)
     length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-12)

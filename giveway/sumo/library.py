@@ -7,7 +7,7 @@ from giveway.errors import InstallationError
 
 
 def import_libsumo() -> Any:
-    """The module, which has no types.
+    """Import and return libsumo, which has no types.
 
     Raises:
         InstallationError: it cannot be imported.
@@ -23,19 +23,19 @@ def import_libsumo() -> Any:
 
 
 def direct(sumo: Any, domain: str, function: str) -> Any:
-    """``sumo.domain.function`` without the wrapper's own call, which takes as long as the answer.
+    """Return ``sumo.domain.function`` without its wrapper, which doubles the time of a call.
 
     Args:
         sumo: the libsumo module.
-        domain: of SUMO's interface, such as ``vehicle``.
-        function: of the domain.
+        domain: Domain of SUMO's interface, such as ``vehicle``.
+        function: Function of the domain.
     """
     native = getattr(sumo.libsumo, "_libsumo", None)
     return getattr(native, f"{domain}_{function}", getattr(getattr(sumo, domain), function))
 
 
 def is_refusal(error: BaseException) -> bool:
-    """Whether an error is SUMO's own, from a call that it could not carry out."""
+    """Return whether an error is SUMO's own, from a call that it could not carry out."""
     sumo = import_libsumo()
     return isinstance(error, (sumo.TraCIException, sumo.FatalTraCIError))  # no common base
 

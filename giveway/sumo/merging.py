@@ -1,4 +1,4 @@
-"""Where a route's lanes are joined by others: lane changes, and lanes that end in a zipper.
+"""The places where others join a route's lanes: lane changes, and lanes that end in a zipper.
 
 At both nobody has priority by a sign. At a zipper (link state ``Z``) two lanes become one and
 vehicles go in turn; a vehicle that changes lanes joins those on the other one.
@@ -11,18 +11,18 @@ from giveway.geometry.kernel import Array
 from giveway.sumo.inside import lanes_inside
 
 _ZIPPER = "Z"  # SUMO's state of a link at which lanes are joined in turn
-_NARROW = 30.0  # [m] before the junction, two roads may be close to each other already
+_NARROW = 30.0  # [m] distance before the junction at which two roads may be close
 
 
 class Merging(NamedTuple):
     """A place at which a route and others come onto one lane."""
 
-    lane: str  # that is shared
+    lane: str  # the shared lane
     origin: float  # [m] station at which that lane begins
     begin: float  # [m] station before which the ways are apart
     end: float  # [m] station beyond which they are one, or apart again
-    lines: tuple[Array, ...]  # (k, 2) [m] each: along which the others come
-    over: frozenset[str]  # lanes right before the shared one that they come over; empty: any
+    lines: tuple[Array, ...]  # (k, 2) [m] each: centre lines along which the others come
+    over: frozenset[str]  # lanes right before the shared one from which they come; empty: any
 
 
 def mergings(
@@ -31,13 +31,13 @@ def mergings(
     begins: Sequence[float],
     shape: Callable[[str], Array],
 ) -> tuple[Merging, ...]:
-    """The places along a route at which it shares a lane with those who come from another.
+    """Return the places along a route at which it shares a lane with others.
 
     Args:
         sumo: the libsumo module.
-        lanes: on which the route enters and leaves each of its edges.
-        begins: station [m] at which each edge begins.
-        shape: gives the centre line of a lane.
+        lanes: Lanes on which the route enters and leaves each of its edges.
+        begins: Station [m] at which each edge begins.
+        shape: Function that returns the centre line of a lane.
     """
     found: list[Merging] = []
     ends = [*begins[1:], float("inf")]
@@ -57,7 +57,7 @@ def mergings(
 def _zipper(
     sumo: Any, lane: str, target: str, origin: float, shape: Callable[[str], Array]
 ) -> list[Merging]:
-    """The zipper by which ``lane`` goes on to ``target``, which begins at ``origin`` [m]."""
+    """Return the zipper from ``lane`` to ``target``, which begins at ``origin`` [m]."""
     states = [link[5] for link in sumo.lane.getLinks(lane) if link[0] == target]
     if _ZIPPER not in states:
         return []

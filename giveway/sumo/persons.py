@@ -25,14 +25,14 @@ from giveway.sumo.library import direct
 from giveway.sumo.walk_speeds import WalkSpeeds
 
 _WALKING = 2  # SUMO's stage type
-_SLOWEST = 0.1  # [m/s] nobody wants to walk more slowly
-_DETOUR = 5.0  # [m] by which its own route may be farther off if a person is to go on along it
+_SLOWEST = 0.1  # [m/s] smallest desired speed
+_DETOUR = 5.0  # [m] largest extra distance to a person's own route if it is to go on along it
 
 
 class Arrival(enum.Enum):
-    """What becomes of a person that has reached the end of its route."""
+    """The outcome for a person that has reached the end of its route."""
 
-    ARRIVED = "arrived"  # nothing is left to do: it leaves SUMO with the next step
+    ARRIVED = "arrived"  # the person leaves SUMO with the next step
     CONTINUED = "continued"  # a stop, a ride or another walk follows in SUMO
 
 
@@ -49,21 +49,21 @@ class Person:
     desired_speed: float  # [m/s] > 0
     edges: tuple[str, ...]  # the present walk's remaining normal edges, the current one first
     lane: str  # SUMO's present lane, may lie inside a junction
-    arrival_position: float  # [m] on the last edge
-    stages_left: int  # after this walk
+    arrival_position: float  # [m] arrival position on the last edge
+    stages_left: int  # number of stages after this walk
 
 
 class ScenarioPersons:
-    """Who of the scenario's persons is SUMO's at present, and who is ours.
+    """The scenario's persons: which of them SUMO moves at present, and which giveway moves.
 
     Args:
         sumo: the libsumo module, with a simulation running.
-        ours: ids of persons that giveway added: never touched.
+        ours: Ids of persons that giveway added: never touched.
 
     Attributes:
-        held: the ids of those whom we move at present.
+        held: Ids of the persons that giveway moves at present.
         counts: ``taken`` = ``handed_back`` + ``arrived`` + ``continued`` + ``lost`` + those held;
-            ``lost`` are held persons whom somebody else took out of SUMO.
+            ``lost`` are held persons that something else took out of SUMO.
     """
 
     held: set[str]
@@ -77,7 +77,7 @@ class ScenarioPersons:
         self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
         self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
         self._routes: dict[str, Route] = {}
-        self._leaving: dict[str, tuple[int, float]] = {}  # at their walk's end: see `arrive`
+        self._leaving: dict[str, tuple[int, float]] = {}  # at their walks' ends: see `arrive`
         self._put_back: set[str] = set()  # since SUMO's last step
         self._paths = FootPaths(sumo)
         self._speeds = WalkSpeeds.of_running(sumo)
@@ -89,8 +89,8 @@ class ScenarioPersons:
     def positions(self) -> tuple[list[str], NDArray[np.float64]]:
         """Ids and positions (n, 2) [m] of every departed person that we do not hold.
 
-        It is to be asked once after each of SUMO's steps; if one was left out, everybody in SUMO is
-        looked at.
+        Call it once after each of SUMO's steps. After a step without a call, all persons in SUMO
+        are looked at.
         """
         self._update()
         try:
@@ -159,9 +159,9 @@ class ScenarioPersons:
     # --- taking over --------------------------------------------------------------------------
 
     def take(self, ids: Sequence[str]) -> list[Person]:
-        """Take over those of ``ids`` who walk right now; the others are passed over.
+        """Take over those of ``ids`` that walk right now, and skip the others.
 
-        Passed over, too, is a person who was handed back since SUMO's last step. From now on those
+        A person that was handed back since SUMO's last step is skipped, too. From now on those
         taken over are held: they must be moved in every step of SUMO.
         """
         return [taken for taken in map(self._take, ids) if taken is not None]
@@ -220,8 +220,8 @@ class ScenarioPersons:
 
         Args:
             name: the person's id.
-            x: where it is [m].
-            y: where it is [m].
+            x: Coordinate x of its place [m].
+            y: Coordinate y of its place [m].
             place: the nearest edge for pedestrians, and the position [m] on it. If an edge of the
                 person's route is hardly farther away, it goes on there; else it gets a new route.
 
@@ -252,7 +252,7 @@ class ScenarioPersons:
         return True
 
     def _on_route(self, route: Route, x: float, y: float) -> tuple[int, Foot | None]:
-        """The nearest place on the rest of the route, and its edge's index."""
+        """Return the nearest place on the rest of the route, and its edge's index."""
         feet = [(k, self._paths.foot(edge, x, y)) for k, edge in enumerate(route.edges)]
         return min(feet, key=lambda candidate: candidate[1].distance if candidate[1] else math.inf)
 
@@ -264,7 +264,7 @@ class ScenarioPersons:
         """
         route = self._routes[name]
         end = self._paths.lane(route.edges[-1])
-        with contextlib.suppress(*self._handover.refusals):  # else it is ended after the step
+        with contextlib.suppress(*self._handover.refusals):  # otherwise it is ended after the step
             self._handover.finish(name, end or "", route)
         self._leaving[name] = route.stages_left, self._sumo.person.getStage(name).depart
         arrival = Arrival.CONTINUED if route.stages_left else Arrival.ARRIVED

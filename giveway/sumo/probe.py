@@ -1,4 +1,4 @@
-"""SUMO tries a scenario: ``python -m giveway.sumo.probe CONFIG`` prints one line of JSON.
+"""A trial of a scenario in SUMO: ``python -m giveway.sumo.probe CONFIG`` prints a JSON line.
 
 It is a process of its own, because SUMO may crash or hang, and holds one simulation per process.
 """
@@ -17,10 +17,10 @@ from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import import_libsumo
 from giveway.sumo.types import ROAD_CLASSES
 
-_LOOK = 3.0  # [s] of wall clock: long enough to see vehicles depart, short enough to wait for
-_ENOUGH = 3  # vehicles seen
-_WATCH = 10.0  # [s] of wall clock in which meetings with people are counted
-_LONGEST_WATCH = 600.0  # [s] of the scenario
+_LOOK = 3.0  # [s] wall-clock time: enough to see vehicles depart, and short to wait for
+_ENOUGH = 3  # number of vehicles to see
+_WATCH = 10.0  # [s] wall-clock time in which encounters with people are counted
+_LONGEST_WATCH = 600.0  # [s] longest time in the scenario
 
 
 def look(config_file: Path, people: bool = False) -> dict[str, Any]:
@@ -75,7 +75,7 @@ def look(config_file: Path, people: bool = False) -> dict[str, Any]:
 
 
 def _way(lanes: Lanes, vehicles: dict[str, list[str]]) -> list[list[float]]:
-    """x, y [m] of the way of the first vehicle that has departed; empty: there is none."""
+    """Return x, y [m] of the path of the first vehicle that departed; empty without one."""
     for kind, *route in vehicles.values():
         try:
             points: list[list[float]] = lanes.along(route, None, kind=kind).points.tolist()
@@ -86,7 +86,7 @@ def _way(lanes: Lanes, vehicles: dict[str, list[str]]) -> list[list[float]]:
 
 
 def main(config_file: Path, people: bool) -> None:
-    """Print what SUMO made of the scenario, or why it refused."""
+    """Print how SUMO read the scenario, or why it refused."""
     try:
         answer = look(config_file, people)
     except Exception as error:  # libsumo's, or ours; the rest of the reason is on stderr

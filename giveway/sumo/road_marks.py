@@ -1,4 +1,4 @@
-"""The crossings of the loaded network and the stop lines of its lights, as pictures show them."""
+"""The crossings of the loaded network and the stop lines of its lights, for pictures."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from giveway.sumo.lanes import Lanes
 
 
 def road_marks(lanes: Lanes) -> RoadMarks:
-    """All crossings and stop lines, to a centimetre."""
+    """Return all crossings and stop lines, to a centimetre."""
     zebras = tuple(Zebra(_ends(*one.ends), round(one.width, 2)) for one in lanes.crossings)
     return RoadMarks(zebras, stop_lines(lanes))
 

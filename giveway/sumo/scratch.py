@@ -1,6 +1,6 @@
 """The folder for files that a session writes for SUMO: the session's own, or kept in a worker.
 
-To remove a folder takes some file systems longer than SUMO needs to load a small scenario.
+Some file systems take longer to remove a folder than SUMO takes to load a small scenario.
 """
 
 import shutil
@@ -25,7 +25,7 @@ class KeptFolder:
         self.name = tempfile.mkdtemp(prefix=PREFIX)
 
     def cleanup(self) -> None:
-        """Remove what is in it.
+        """Remove the contents of the folder.
 
         Raises:
             OSError: something cannot be removed.
@@ -38,9 +38,9 @@ class KeptFolder:
 
 
 def keep_scratch() -> None:
-    """From now on, this process's sessions share one folder, which nobody removes.
+    """Let this process's sessions share one folder from now on, which nobody removes.
 
-    For a process whose folder for temporary files is its own, and is removed with it.
+    This is for a process whose folder for temporary files is its own, and is removed with it.
 
     Raises:
         OSError: the folder cannot be made.
@@ -50,7 +50,7 @@ def keep_scratch() -> None:
 
 
 def scratch() -> "tempfile.TemporaryDirectory[str] | KeptFolder":
-    """A folder for the session that begins, empty; its ``cleanup`` ends the use.
+    """Return an empty folder for the session that begins; its ``cleanup`` ends the use.
 
     Raises:
         OSError: it cannot be made.

@@ -1,8 +1,8 @@
 """The one object that owns libsumo.
 
-SUMO is the mirror of our own state: the ego and the pedestrians are moved to where the vehicle
-FMU and the VCI model put them, and what is exported is our state. How they have to be moved was
-found by experiment on SUMO 1.28:
+SUMO is synchronised to our own state. The ego and the pedestrians are moved to where the vehicle
+FMU and the VCI model put them, and our state is exported. These rules of moving them were found by
+experiment on SUMO 1.28:
 
 * a person follows ``moveToXY(..., keepRoute=2, matchThreshold=-1)`` exactly; other arguments kill
   the process when the person is mapped onto a walkingarea (SUMO issue 17257);
@@ -38,7 +38,7 @@ from giveway.sumo.stderr import NativeStderr, of_others
 from giveway.sumo.types import PEDESTRIAN_TYPE
 from giveway.sumo.vehicles import SumoVehicles
 
-POSITION_TOLERANCE = 1e-6  # [m] between our state and SUMO's after each step
+POSITION_TOLERANCE = 1e-6  # [m] largest difference between our state and SUMO's after each step
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
 _KEEP_ROUTE = 2  # move exactly to x, y, whatever lane is there
 _NO_EDGE = itertools.repeat("")
@@ -51,9 +51,9 @@ class SumoSession:
 
     Args:
         scenario: the scenario's files; nothing is written beside them.
-        options: how SUMO is to be run.
-        types: an additional file's text with the types of whatever is going to be added.
-        native_log: file for what SUMO prints; None: a temporary one.
+        options: Options for SUMO's start.
+        types: Text of an additional file with the types of all that is going to be added.
+        native_log: File for the output of SUMO; None: a temporary one.
         careful: let a child read the scenario first if a crash of this process costs everything.
 
     Raises:
@@ -105,7 +105,7 @@ class SumoSession:
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._added: set[str] = set()
         self._just_added: dict[str, tuple[float, str | None]] = {}  # when, on which lane
-        self._host_lanes: dict[str, str | None] = {}  # by edge
+        self._host_lanes: dict[str, str | None] = {}  # host lanes by edge
 
     def _load(self) -> None:
         self._stderr = NativeStderr(self._native_log)
@@ -135,7 +135,7 @@ class SumoSession:
 
     @cached_property
     def end(self) -> float:
-        """The scenario's end [s]; infinite where it names none."""
+        """The scenario's end [s]; infinite if it names none."""
         end = float(self._sumo.simulation.getEndTime())
         return end if end >= 0.0 else math.inf
 
@@ -146,12 +146,12 @@ class SumoSession:
 
     @property
     def messages(self) -> str:
-        """What SUMO has printed on stderr so far: warnings, mostly."""
+        """Return the output of SUMO on stderr so far, mostly warnings."""
         return of_others(self._stderr.text(), self._added)
 
     @property
     def expects_more(self) -> bool:
-        """Whether anybody is on the way or yet to depart."""
+        """Return whether vehicles or persons are on the way or yet to depart."""
         return bool(self._sumo.simulation.getMinExpectedNumber() > 0)
 
     def light_state(self, system: str) -> str:
@@ -178,7 +178,7 @@ class SumoSession:
     # --- adding and removing ------------------------------------------------------------------
 
     def add_persons(self, ids: Sequence[str], host_edge: str) -> None:
-        """Add persons who live on ``host_edge``; they appear with the next :meth:`mirror`."""
+        """Add persons on ``host_edge``. They appear with the next :meth:`mirror`."""
         if host_edge not in self._host_lanes:
             self._host_lanes[host_edge] = self._host_lane(host_edge)
         taken = set(self._sumo.person.getIDList()).intersection(ids)
@@ -199,15 +199,15 @@ class SumoSession:
         return FootPaths(self._sumo).lane(host_edge)
 
     def remove_persons(self, ids: Sequence[str]) -> None:
-        """Let persons arrive; they are gone with the next step."""
+        """Let persons arrive. They are gone with the next step."""
         for name in ids:
             self._just_added.pop(name, None)
             self.call(self._sumo.person.removeStages, name)  # unlike remove: counts as arrival
 
     def _clear_host_edges(self) -> None:
-        """Move added persons, once departed, away from a host edge's beginning in SUMO's books.
+        """Move departed persons away from the beginning of their host edge in SUMO's books.
 
-        SUMO's own pedestrians would swerve round those who seem to stand there.
+        SUMO's own pedestrians would swerve round persons that seem to stand there.
         """
         now = self.time
         for name, (added_at, lane) in list(self._just_added.items()):
@@ -229,11 +229,11 @@ class SumoSession:
         """Move egos and persons, make one SUMO step, and check that SUMO stands where we do.
 
         Args:
-            egos: id and front bumper's pose after the step, of each ego.
-            ids: the persons' ids.
-            x: of each person [m], finite.
-            y: of each person [m], finite.
-            angles: of each person [deg, 0 = north, clockwise], finite.
+            egos: Id of each ego, and pose of its front bumper after the step.
+            ids: Ids of the persons.
+            x: Coordinate x of each person [m], finite.
+            y: Coordinate y of each person [m], finite.
+            angles: Angles of each person [deg, 0 = north, clockwise], finite.
 
         Raises:
             SumoError: SUMO failed, or disagrees by more than 1e-6 m.
@@ -268,7 +268,7 @@ class SumoSession:
                 there = self._vehicle_position(name)
                 if there != pose[:2]:
                     _compare("vehicle", name, there, pose, self.time)
-            # As a rule they are the same to the bit; nothing is kept of those who are.
+            # As a rule they are equal to the bit, and the differing ones are found in one pass.
             if any(map(operator.ne, map(self._person_position, ids), zip(x, y, strict=True))):
                 for name, here in zip(ids, zip(x, y, strict=True), strict=True):
                     _compare("person", name, self._person_position(name), here, self.time)
@@ -280,7 +280,7 @@ class SumoSession:
         self.call(self._step)
 
     def call(self, function: Any, *arguments: Any, **keywords: Any) -> Any:
-        """A libsumo call whose failure becomes a :class:`SumoError` with SUMO's own reason."""
+        """Call libsumo; its failure becomes a :class:`SumoError` with SUMO's own reason."""
         try:
             with self._stderr:
                 return function(*arguments, **keywords)
@@ -298,7 +298,7 @@ class SumoSession:
         return " ".join(self.start.with_original_names(reason).split())
 
     def close(self) -> None:
-        """End the simulation; harmless when repeated."""
+        """End the simulation; a second call does nothing."""
         if not SumoSession._running:
             return
         SumoSession._running = False
@@ -324,6 +324,6 @@ def _compare(
 
 
 def _calls_somebody(scenario: ScenarioFiles) -> bool:
-    """Whether an output goes to a network address, where a child would be taken for the run."""
+    """Return whether an output goes to a network address; a child would be taken for the run."""
     names = [name for files in scenario.outputs.values() for name in files]
     return any(":" in name and not is_file(name) for name in names)

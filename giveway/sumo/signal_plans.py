@@ -1,4 +1,4 @@
-"""What a traffic light shows next, and when: its plan, as a signal tells it to a connected vehicle.
+"""The plans of traffic lights: what they show next, and when, as told to connected vehicles.
 
 SAE J2735 calls it *signal phase and timing* (SPaT), ISO/TS 19091 says what it is for.
 """
@@ -6,14 +6,14 @@ SAE J2735 calls it *signal phase and timing* (SPaT), ISO/TS 19091 says what it i
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-_GOES = tuple("gGoO")  # green, blinking yellow and off stop nobody
+_GOES = tuple("gGoO")  # states that let vehicles go: green, blinking yellow and off
 
 
 class SignalChange(NamedTuple):
     """The next change of a traffic light."""
 
-    time: float  # [s] until then; an actuated light may go on for longer
-    state: str  # from then on, one letter per movement
+    time: float  # [s] until then; an actuated light may extend its phase
+    state: str  # state after the change, one letter per movement
 
 
 ChangeOf = Callable[[str], SignalChange | None]
@@ -32,11 +32,11 @@ class _Phase(NamedTuple):
 
     state: str
     duration: float  # [s]
-    follows: int  # the number of the phase after it; -1: one of several, or none
+    follows: int  # number of the next phase; -1: several are possible, or there is none
 
 
 def untold(_: str) -> SignalChange | None:
-    """Of no light anybody can tell what comes."""
+    """Return None: the next signal change is unknown for every traffic light."""
     return None
 
 
@@ -52,7 +52,7 @@ class SignalPlans:
         self._plans: dict[tuple[str, str], tuple[_Phase, ...]] = {}
 
     def change(self, system: str) -> SignalChange | None:
-        """The next change; None: nobody can tell what comes.
+        """Return the next change, or None if it is unknown.
 
         Args:
             system: SUMO's id of the traffic light.
@@ -63,11 +63,11 @@ class SignalPlans:
         return SignalChange(self._left(system), plan[plan[phase].follows].state)
 
     def greens(self, system: str, link: int) -> Greens:
-        """When a movement may go within one round of the plan; none: nobody can tell.
+        """Return the times at which a movement may go in one round of the plan; empty if unknown.
 
         Args:
             system: SUMO's id of the traffic light.
-            link: the movement's number.
+            link: Number of the movement.
         """
         plan, phase = self._now(system)
         if phase < 0 or plan[phase].follows < 0:
@@ -86,7 +86,7 @@ class SignalPlans:
         return tuple(found)
 
     def _now(self, system: str) -> tuple[tuple[_Phase, ...], int]:
-        """The program that runs, and the number of its phase; -1: of no phase of it."""
+        """Return the running program and the number of its phase, or -1 for an unknown phase."""
         lights = self._sumo.trafficlight
         program = str(lights.getProgram(system))
         plan = self._plans.get((system, program))
@@ -96,7 +96,7 @@ class SignalPlans:
         return plan, phase if phase < len(plan) else -1
 
     def _left(self, system: str) -> float:
-        """[s] until the present phase ends."""
+        """Return the time [s] until the present phase ends."""
         switches = float(self._sumo.trafficlight.getNextSwitch(system))
         return max(switches - float(self._sumo.simulation.getTime()), 0.0)
 
@@ -117,5 +117,5 @@ class SignalPlans:
 
 
 def _only(follows: list[int], count: int) -> int:
-    """The only phase of ``count`` that may follow; -1: there are several, or it is none."""
+    """Return the only phase of ``count`` that may follow, or -1."""
     return int(follows[0]) if len(follows) == 1 and 0 <= follows[0] < count else -1

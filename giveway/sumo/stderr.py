@@ -1,4 +1,4 @@
-"""What SUMO prints on the process's own stderr: kept, and read back."""
+"""The output of SUMO on the process's own stderr: kept, and read back."""
 
 import os
 import re
@@ -11,13 +11,13 @@ _MET = re.compile(r"^Warning: Collision of person '([^']*)' and person '([^']*)'
 
 
 def of_others(text: str, ours: Container[str]) -> str:
-    """What SUMO has printed, without collisions among people who are where we move them.
+    """Return the output of SUMO without collisions among the people that giveway moves.
 
-    Its books have all of them on one lane, whose beginning is where somebody new appears.
+    In its books all of them are on one lane, at whose beginning new persons appear.
 
     Args:
-        text: that was printed.
-        ours: ids of the persons whom giveway added.
+        text: Output of SUMO.
+        ours: Ids of the persons that giveway added.
     """
 
     def is_news(line: str) -> bool:
@@ -30,11 +30,11 @@ def of_others(text: str, ours: Container[str]) -> str:
 class NativeStderr:
     """Redirects file descriptor 2 into a file while a native call runs.
 
-    Use the object itself as the context manager, round one call at a time; ``close`` at the end.
+    Use the object itself as the context manager, round one call at a time; ``close`` it at the end.
 
     Args:
-        path: of the file, for whoever wants to read it after this process has died; None: a
-            temporary file without a name.
+        path: Path of the file, to be read after this process has died; None: a temporary file
+            without a name.
     """
 
     def __init__(self, path: Path | None = None) -> None:
@@ -46,7 +46,7 @@ class NativeStderr:
         self._file_descriptor = self._log.fileno()
         try:
             self._saved = os.dup(2)
-        except OSError:  # closed by whoever started us: what is printed there goes nowhere
+        except OSError:  # stderr is closed: its output goes nowhere
             self._saved = os.open(os.devnull, os.O_WRONLY)
 
     def __enter__(self) -> None:
@@ -61,7 +61,7 @@ class NativeStderr:
         return self._log.read().decode("utf-8", "replace")
 
     def errors(self) -> str:
-        """The reasons in what was printed, on one line."""
+        """Return the reasons in the output, on one line."""
         lines = [line.strip() for line in self.text().splitlines()]
         reasons = [
             line.removeprefix("Error:").strip()
@@ -71,6 +71,6 @@ class NativeStderr:
         return "; ".join(dict.fromkeys(reasons))
 
     def close(self) -> None:
-        """Forget what was printed."""
+        """Forget the output."""
         os.close(self._saved)
         self._log.close()

@@ -1,4 +1,4 @@
-"""What giveway adds to a scenario: the types of its egos and pedestrians."""
+"""The types of egos and pedestrians that giveway adds to a scenario."""
 
 from collections.abc import Mapping
 from typing import Final

@@ -35,26 +35,26 @@ class VehicleState:
     speed: float  # [m/s]
     length: float  # [m]
     width: float  # [m]
-    fastest: float  # [m/s] that its type is capable of
+    fastest: float  # [m/s] largest speed of its type
 
 
 class PlannedStop(NamedTuple):
     """A stop of one of SUMO's vehicles."""
 
     lane: str
-    start: float  # [m] on the lane
-    end: float  # [m] where the front bumper is to be
+    start: float  # [m] begin on the lane
+    end: float  # [m] place of the front bumper at the stop
     duration: float  # [s]; at most 0: not given
-    until: float  # [s] on SUMO's clock; negative: not given
-    beside: bool  # in a parking area, off the lane
+    until: float  # [s] end of the stop on SUMO's clock; negative: not given
+    beside: bool  # True in a parking area, off the lane
 
 
 class SumoVehicles:
-    """What giveway reads of SUMO's vehicles, and what it does to them.
+    """The access to SUMO's vehicles: reading them, and acting on them.
 
     Args:
         sumo: the libsumo module.
-        call: calls a function of it and explains its failure.
+        call: Function that calls a function of it and explains its failure.
         lanes: the network's lanes.
     """
 
@@ -72,7 +72,7 @@ class SumoVehicles:
         self._lane_position = direct(sumo, "vehicle", "getLanePosition")
         self._route_id = direct(sumo, "vehicle", "getRouteID")
         self._time_loss = direct(sumo, "vehicle", "getTimeLoss")
-        self.egos: set[str] = set()  # driven by giveway
+        self.egos: set[str] = set()  # ids of the vehicles that giveway drives
 
     # --- reading ------------------------------------------------------------------------------
 
@@ -97,7 +97,7 @@ class SumoVehicles:
         return self._bodies(others) if others else NO_VEHICLES
 
     def _bodies(self, names: Sequence[str]) -> BackgroundVehicles:
-        """Where the vehicles are, at least one, and what they are like."""
+        """Return the places and shapes of at least one vehicle."""
         vehicle, ids = self._vehicle, tuple(names)
         for name in ids:
             if name not in self._shapes:
@@ -137,7 +137,7 @@ class SumoVehicles:
         )
 
     def on_a_road(self, name: str) -> bool:
-        """Whether the vehicle is on a lane outside of junctions."""
+        """Return whether the vehicle is on a lane outside of junctions."""
         road = self._vehicle.getRoadID(name)
         return bool(road) and not road.startswith(":")
 
@@ -156,11 +156,11 @@ class SumoVehicles:
         ]
 
     def parked(self, name: str) -> bool:
-        """Whether the vehicle stands beside the road."""
+        """Return whether the vehicle stands beside the road."""
         return bool(self._vehicle.isStoppedParking(name))
 
     def edges_of_entry(self, but: Collection[str]) -> set[str]:
-        """Where SUMO's next step may insert a vehicle that it knows of, ``but`` for these."""
+        """Return the edges where SUMO's next step may insert a known vehicle, except ``but``."""
         vehicle = self._vehicle
         return {
             vehicle.getRoute(name)[0]
@@ -169,20 +169,20 @@ class SumoVehicles:
         }
 
     def first_edge(self, route: str) -> str:
-        """The first edge of a route that the scenario names; empty: it names none of this id."""
+        """Return the first edge of a route that the scenario names; empty for an unknown route."""
         known = route in self._sumo.route.getIDList()
         return str(self._sumo.route.getEdges(route)[0]) if known else ""
 
     def whereabouts(self, name: str) -> tuple[str, str, float]:
-        """The vehicle's lane (empty: none), its route's id, and its position [m] on the lane."""
+        """Return the vehicle's lane (or an empty text), its route's id, and its position [m]."""
         return self._lane_id(name), self._route_id(name), self._lane_position(name)
 
     def lanes_ahead(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
-        """Its own ``lane`` and those that it comes to within at least ``distance`` [m]."""
+        """Return the vehicle's ``lane`` and those that it reaches within ``distance`` [m]."""
         return self._by_its_route(name, lane, distance) or self._by_its_plan(name, lane, distance)
 
     def _by_its_route(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
-        """The lanes ahead if its route leaves no choice, which is cheaper to find; else none."""
+        """Return the lanes ahead if its route leaves no choice (quick to find), otherwise none."""
         vehicle = self._vehicle
         if vehicle.getStops(name, 1):
             return ()  # SUMO's plans end at a stop
@@ -198,7 +198,7 @@ class SumoVehicles:
         return tuple(lanes)
 
     def _by_its_plan(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
-        """The lanes ahead as SUMO's driver plans them, those inside junctions filled in."""
+        """Return the lanes ahead as SUMO's driver plans them, with those inside junctions."""
         lanes = [lane, *self._lanes.out_of_junction(lane)]
         known = sum(map(self._lanes.length, lanes[1:]))
         for link in self._vehicle.getNextLinks(name):
@@ -211,24 +211,24 @@ class SumoVehicles:
         return tuple(lanes)
 
     def shape(self, lane: str) -> Array:
-        """(k, 2) [m] centre line of a lane."""
+        """Return the centre line (k, 2) [m] of a lane."""
         return self._lanes.shape(lane)
 
     def lane_length(self, lane: str) -> float:
-        """SUMO's length of a lane [m], which need not be its centre line's."""
+        """Return SUMO's length [m] of a lane, which may differ from its centre line's."""
         return float(self._sumo.lane.getLength(lane))
 
     def leader(self, name: str, distance: float) -> str:
-        """Whom the vehicle's driver follows within ``distance`` [m]; empty: nobody."""
+        """Return the id of the vehicle's leader within ``distance`` [m]; empty without one."""
         found = self._vehicle.getLeader(name, distance)
         return str(found[0]) if found else ""
 
     def deceleration(self, name: str) -> float:
-        """How hard the vehicle's driver brakes [m/s^2]."""
+        """Return the deceleration [m/s^2] of the vehicle's driver."""
         return float(self._vehicle.getDecel(name))
 
     def time_loss(self, name: str) -> float:
-        """[s] that the vehicle has lost since its departure by driving slower than it would."""
+        """Return the time [s] that the vehicle has lost since departure by driving slowly."""
         return float(self._time_loss(name))
 
     # --- doing --------------------------------------------------------------------------------
@@ -236,9 +236,9 @@ class SumoVehicles:
     def insert(
         self, ego_id: str, edges: Sequence[str], *, lane: int, position: float, speed: float
     ) -> None:
-        """Insert an ego; it appears with the next mirrored step.
+        """Insert an ego. It appears with the next mirrored step.
 
-        The speed is the FMU's business: SUMO is told at most what the lane permits.
+        The FMU determines the speed; SUMO is told at most the lane's limit.
         """
         permitted = min(speed, self._sumo.lane.getMaxSpeed(f"{edges[0]}_{lane}"))
         self._add(ego_id, edges, departPos=f"{position:.3f}", departSpeed=f"{permitted:.3f}")
@@ -250,11 +250,11 @@ class SumoVehicles:
         """Let SUMO insert an ego as soon as its own check finds room there; see :meth:`claim`.
 
         Args:
-            ego_id: of the ego.
-            edges: its route.
+            ego_id: Id of the ego.
+            edges: Edges of its route.
             lane: SUMO's id of the lane.
-            position: [m] of the front bumper along the lane's centre line.
-            speed: [m/s], of which no more is taken than the lane permits.
+            position: Station [m] of the front bumper on the lane's centre line.
+            speed: Speed [m/s], reduced to the lane's limit.
         """
         nominal = self.lane_length(lane)
         there = min(position * nominal / self._lanes.length(lane), nominal)
@@ -305,10 +305,10 @@ class SumoVehicles:
         self.egos.add(name)
 
     def _drop_stops(self, name: str) -> None:
-        """Remove its stops: SUMO would park it beside the road while the FMU drives on.
+        """Remove a vehicle's stops: SUMO would park it beside the road while the FMU drives on.
 
         SUMO would also look for them anew, and fail, where the ego drives a step beyond the end of
-        its route; so the route goes on there.
+        its route; therefore the route is extended there.
         """
         if self._vehicle.isStopped(name):
             self._call(self._vehicle.resume, name)
@@ -330,7 +330,7 @@ class SumoVehicles:
         self._call(self._vehicle.setSpeed, name, speed)
 
     def pull_away(self, name: str, speed: float) -> None:
-        """Let SUMO's driver go at ``speed`` [m/s], whoever it takes for its leader."""
+        """Let SUMO's driver go at ``speed`` [m/s] despite its leader."""
         self._call(self._vehicle.setSpeedMode, name, _WITHOUT_SAFE_SPEED)
         self._call(self._vehicle.setSpeed, name, speed)
 

@@ -21,10 +21,10 @@ _PLAN = frozenset({"walk", "personTrip", "ride", "stop", "tranship", "access"})
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """One element of a person's plan; without speed and duration the person's own speed counts."""
+    """An element of a person's plan. Without speed and duration the own speed counts."""
 
     speed: float | None = None  # [m/s]
-    duration: float | None = None  # [s] for the whole walk
+    duration: float | None = None  # [s] duration of the whole walk
     end: str = ""  # the edge or stopping place to which it leads; empty if not known
 
 
@@ -53,12 +53,12 @@ class WalkSpeeds:
         return cls(Path(name.strip()) for name in names if name.strip())
 
     def speed(self, person: str, stage: Any, remaining: int) -> float | None:
-        """The speed [m/s] that the scenario gives to a walk; None if it gives none.
+        """Return the speed [m/s] that the scenario gives to a walk, or None.
 
         Args:
             person: the person's id.
             stage: the walk, as libsumo's ``person.getStage`` tells it.
-            remaining: how many stages the person has left, this one included.
+            remaining: Number of the person's remaining stages, this one included.
         """
         if not self._plans:
             return None

@@ -1,4 +1,4 @@
-"""The pedestrian model against recorded trajectories: ADE, FDE, contacts, calibration."""
+"""Validation of the pedestrian model with recorded tracks: ADE, FDE, contacts, calibration."""
 
 from giveway.validation.calibrating import Calibration, calibrate
 from giveway.validation.clips import Clip, read_clip, read_clips

@@ -1,4 +1,4 @@
-"""``giveway calibrate``: some of the model's parameters, fitted to recorded trajectories."""
+"""The command ``giveway calibrate`` fits parameters of the model to recorded trajectories."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -30,11 +30,11 @@ DEFAULT = (
 
 @dataclass(frozen=True)
 class Fit:
-    """An error [m] before and after, and the difference with its interval.
+    """An error [m] before and after the fit, and the difference with its interval.
 
     Attributes:
-        difference: after minus before; negative where the fit is better.
-        low, high: its clip-bootstrap interval; nan with fewer than two clips.
+        difference: Difference after minus before; negative where the fit is better.
+        low, high: Clip-bootstrap interval of the difference; nan with fewer than two clips.
     """
 
     before: float
@@ -45,24 +45,25 @@ class Fit:
 
     @property
     def improves(self) -> bool:
-        """Whether it is better by more than the choice of clips explains."""
+        """True if the fit is better by more than the choice of clips explains."""
         return self.high < 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """A fit.
+    """The result of a fit.
 
     Attributes:
-        fitted: the names of the parameters that were free.
-        training, held_out: the clips' names.
-        train, test: the objective on each; ``test`` is nan throughout without held-out clips.
-        touching: (before, after) pedestrians that touch a vehicle in replays of all clips.
-        apart: [m] the smallest distance between two people's centres, in the data and in replays
+        fitted: Names of the parameters that were free.
+        training, held_out: Names of the clips.
+        train, test: Objective on each; ``test`` is nan throughout without held-out clips.
+        touching: Numbers (before, after) of pedestrians that touch a vehicle in replays of all
+            clips.
+        apart: Smallest distance [m] between two people's centres, in the data and in replays
             of all clips (before, after).
-        at_bound: the parameters that ended at the end of their range.
-        evaluations: of the objective.
-        converged: whether the optimiser arrived before it ran out of evaluations.
+        at_bound: Parameters that ended at the end of their range.
+        evaluations: Evaluations of the objective.
+        converged: True if the optimiser converged within the evaluations.
     """
 
     start: VciParameters
@@ -94,15 +95,16 @@ def calibrate(
     """Fit the parameters ``names`` to some of the clips, and judge them on the others.
 
     Args:
-        clips: as :func:`giveway.validation.read_clips` reads them.
-        start: where the search starts; parameters that are not named stay.
-        names: fields of :class:`VciParameters`.
-        held_out: share of the clips that the fit does not see, in each kind of clip alike.
-        seed: of the choice of these clips.
-        own_pace: each pedestrian's desired speed is its present speed; else the parameters'.
-        evaluations: of the objective, at most.
-        protocol: how the clips are cut and judged; None: as :func:`protocol_of` has it.
-        progress: called with evaluations done, at most, and the least error so far.
+        clips: Clips from :func:`giveway.validation.read_clips`.
+        start: Start of the search; parameters that are not named stay.
+        names: Fields of :class:`VciParameters`.
+        held_out: Share of the clips that the fit does not use, equal in each kind of clip.
+        seed: Seed of the choice of these clips.
+        own_pace: True: each pedestrian's desired speed is the present speed; False: the
+            parameters'.
+        evaluations: Evaluations of the objective, at most.
+        protocol: Rules for cutting and judging clips; None: those of :func:`protocol_of`.
+        progress: Function of evaluations done, their limit, and the least error so far.
 
     Raises:
         ConfigError: a name is no parameter's or cannot be fitted, or people would tremble by the
@@ -140,7 +142,7 @@ def calibrate(
 def split(
     clips: Sequence[Clip], held_out: float, seed: int
 ) -> tuple[tuple[Clip, ...], tuple[Clip, ...]]:
-    """The clips to train with, and the clips held out: one of each kind before a second of any.
+    """Return the training clips and the held-out clips, one of each kind before a second of any.
 
     A clip's kind is its name without the number at its end.
 
@@ -190,7 +192,7 @@ def _judged(
     protocol: Protocol,
     own_pace: bool,
 ) -> Fit:
-    """Both errors, and the interval of their difference over the same draws of clips."""
+    """Return both errors, and the interval of their difference for the same draws of clips."""
     if not clips:
         return Fit(math.nan, math.nan, math.nan, math.nan, math.nan)
     cut = cut_windows(clips, protocol)
@@ -208,6 +210,6 @@ def _judged(
 
 
 def _touching(clips: Sequence[Clip], parameters: VciParameters, protocol: Protocol) -> int:
-    """How many touch a vehicle in replays of whole clips by the model."""
+    """Count the pedestrians that touch a vehicle when the model replays whole clips."""
     table = contact_table(clips, parameters, protocol)
     return int(table.loc[table["predictor"] == VCI, "touching"].sum())

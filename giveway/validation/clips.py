@@ -21,10 +21,10 @@ PEDESTRIANS: Final = "_traj_ped_filtered.csv"
 VEHICLES: Final = "_traj_veh_filtered.csv"
 _PEDESTRIAN_COLUMNS: Final = ("x_est", "y_est", "vx_est", "vy_est")
 _VEHICLE_COLUMNS: Final = ("x_est", "y_est", "psi_est", "vel_est")
-_FARTHEST = 1e5  # [m] no camera sees so far
+_FARTHEST = 1e5  # [m] largest coordinate that a camera can see
 _LONGEST = 200_000  # frames: nearly two hours
-_WALKING = 0.5  # [m/s] who is slower says little of the frame rate
-_RATES_APART = 0.1  # share by which the frame rate may differ from what the speeds say
+_WALKING = 0.5  # [m/s] speed below which a pedestrian tells little of the frame rate
+_RATES_APART = 0.1  # largest relative difference of the frame rate and the rate by the speeds
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,13 +32,14 @@ class Clip:
     """One recording, in a right-handed frame: x as in the image, y up.
 
     Attributes:
-        name: of its files, like ``front_interaction_01``.
-        dataset: what its files do not say.
-        first_frame: the dataset's number of frame 0 here.
-        ids: (n,) of the pedestrians.
-        position: (T, n, 2) [m]; nan where somebody is not seen.
-        velocity: (T, n, 2) [m/s]; likewise.
-        poses: (T, m, 4) of the vehicles: x, y [m], heading [rad], speed [m/s]; nan likewise.
+        name: Name of its files, like ``front_interaction_01``.
+        dataset: Description of the data set, which its files lack.
+        first_frame: Data set's number of frame 0 here.
+        ids: Ids (n,) of the pedestrians.
+        position: Positions (T, n, 2) [m]; nan where a pedestrian is not seen.
+        velocity: Velocities (T, n, 2) [m/s]; nan as for positions.
+        poses: Poses (T, m, 4) of the vehicles: x, y [m], heading [rad], speed [m/s]; nan where not
+            seen.
     """
 
     name: str
@@ -51,32 +52,32 @@ class Clip:
 
     @property
     def frames(self) -> int:
-        """T, how many frames it has."""
+        """Number T of its frames."""
         return int(self.position.shape[0])
 
     @property
     def seen(self) -> NDArray[np.bool_]:
-        """(T, n) whether each pedestrian is seen."""
+        """Mask (T, n) of the pedestrians that are seen."""
         return ~np.isnan(self.position[:, :, 0])
 
     @property
     def last_seen(self) -> NDArray[np.int64]:
-        """(n,) the last frame in which each pedestrian is seen."""
+        """Last frame (n,) in which each pedestrian is seen."""
         last: NDArray[np.int64] = self.frames - 1 - self.seen[::-1].argmax(axis=0)
         return last
 
     @property
     def destination(self) -> Array:
-        """(n, 2) [m] the last observed place of each pedestrian."""
+        """Last observed place (n, 2) [m] of each pedestrian."""
         return self.position[self.last_seen, np.arange(len(self.ids))]
 
 
 def read_clips(folder: Path, dataset: Dataset) -> tuple[Clip, ...]:
-    """Every clip below ``folder``, in the order of their paths.
+    """Read all clips below ``folder``, in the order of their paths.
 
     Args:
-        folder: the dataset's, or any part of it; clips are known by the names of their files.
-        dataset: what the files do not say.
+        folder: Folder of the data set, or any part of it; clips are recognised by file name.
+        dataset: Description of the data set, which its files lack.
 
     Raises:
         DatasetError: there is no such folder, no clip in it, a file cannot be used, or people's
@@ -107,7 +108,7 @@ def read_clips(folder: Path, dataset: Dataset) -> tuple[Clip, ...]:
 
 
 def _require_rate(folder: Path, clips: list[Clip], dataset: Dataset) -> None:
-    """Make sure that people go from frame to frame as far as their speeds say.
+    """Make sure that people's steps from frame to frame agree with their speeds.
 
     Raises:
         DatasetError: the frame rate is another one.
@@ -125,7 +126,7 @@ def _require_rate(folder: Path, clips: list[Clip], dataset: Dataset) -> None:
 
 
 def _rate_of(clip: Clip) -> float | None:
-    """The frame rate [1/s] that the walkers' speeds and steps amount to; None without walkers."""
+    """Return the frame rate [1/s] by the walkers' speeds and steps, or None without walkers."""
     step = np.linalg.norm(np.diff(clip.position, axis=0), axis=2)
     speed = np.linalg.norm(clip.velocity, axis=2)
     speed = 0.5 * (speed[1:] + speed[:-1])
@@ -135,7 +136,7 @@ def _rate_of(clip: Clip) -> float | None:
 
 
 def read_clip(file: Path, dataset: Dataset) -> Clip:
-    """The clip of a file of pedestrians, with the vehicles' file in its folder if there is one.
+    """Read the clip of a file of pedestrians, and the vehicles' file in its folder if any.
 
     Raises:
         DatasetError: a file cannot be read, or a column, row or number is not as it should be.
@@ -163,7 +164,7 @@ def read_clip(file: Path, dataset: Dataset) -> Clip:
 def _spread(
     table: pd.DataFrame, columns: tuple[str, ...], first: int, last: int
 ) -> tuple[NDArray[np.int64], Array]:
-    """(k,) the ids, and (T, k, c) their values in each frame, nan where there is no row."""
+    """Return the ids (k,), and their values (T, k, c) in each frame, nan without a row."""
     table = table[table["frame"].between(first, last)]
     ids, who = np.unique(table["id"].to_numpy(), return_inverse=True)
     values = np.full((last - first + 1, len(ids), len(columns)), np.nan)
@@ -200,7 +201,7 @@ def _read(file: Path, columns: tuple[str, ...]) -> pd.DataFrame:
 
 
 def _numbers(file: Path, table: pd.DataFrame, name: str) -> NDArray[np.float64]:
-    """A column as finite numbers."""
+    """Return a column as finite numbers."""
     values = pd.to_numeric(table[name], errors="coerce").to_numpy(dtype=np.float64)
     whole = name in {"id", "frame"}
     with np.errstate(invalid="ignore"):

@@ -1,4 +1,4 @@
-"""Whole clips played again, and how many pedestrians touch the vehicle in them."""
+"""Replays of whole clips, and the number of pedestrians that touch the vehicle in them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ORDER = (DATA, CV, GOAL_CV, NO_VEHICLE, VCI)
 
 @dataclass(frozen=True, eq=False)
 class _Presence:
-    """The frames, ``first`` to ``last``, from which to which each pedestrian is in a clip."""
+    """The frames from ``first`` to ``last`` in which each pedestrian is in a clip."""
 
     who: NDArray[np.int64]
     first: NDArray[np.int64]
@@ -43,9 +43,9 @@ class _Presence:
 
 
 def replay(clip: Clip, parameters: VciParameters, protocol: Protocol) -> dict[str, Array]:
-    """(T, n, 2) [m] the tracks of the data and of each predictor, from the first frame used on.
+    """Return the tracks (T, n, 2) [m] of the data and of each predictor, from the first frame on.
 
-    All pedestrians enter where and with the velocity that the data say, and leave at their end.
+    All pedestrians enter at the place and with the velocity of the data, and leave at their end.
     """
     presence = _Presence.of(clip, protocol.skip)
     bodies = vehicle_rows(clip, protocol)
@@ -62,7 +62,7 @@ def replay(clip: Clip, parameters: VciParameters, protocol: Protocol) -> dict[st
 
 
 def _alone(clip: Clip, presence: _Presence, time_step: float, *, towards: bool) -> Array:
-    """Each pedestrian at constant velocity, or at constant speed to its destination."""
+    """Move each pedestrian at constant velocity, or at constant speed to the destination."""
     out = np.full_like(clip.position, np.nan)
     for i, first, last in zip(presence.who, presence.first, presence.last, strict=True):
         x, v = clip.position[first, i][None], clip.velocity[first, i][None]
@@ -78,7 +78,7 @@ def _alone(clip: Clip, presence: _Presence, time_step: float, *, towards: bool) 
 def _jointly(
     clip: Clip, presence: _Presence, bodies: Array, parameters: VciParameters, time_step: float
 ) -> Array:
-    """All pedestrians by the model; they enter and leave as in the data."""
+    """Move all pedestrians by the model; they enter and leave as in the data."""
     model = CrowdModel(parameters, time_step)
     out, velocity = np.full_like(clip.position, np.nan), clip.velocity.copy()
     out[presence.first, presence.who] = clip.position[presence.first, presence.who]
@@ -103,10 +103,11 @@ def contact_table(
     protocol: Protocol,
     advance: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """How many touch a vehicle in each clip that has one, in the data and for each predictor.
+    """Count pedestrians that touch a vehicle in each clip with one, for data and predictors.
 
-    Columns: clip, predictor, pedestrians, touching, closest [m], the least distance from a
-    pedestrian's skin to the body, negative in touch. A pedestrian is a disc of the model's radius.
+    Columns: clip, predictor, pedestrians, touching, closest [m]. ``closest`` is the least distance
+    from a pedestrian's skin to the body, negative at a contact. A pedestrian is a disc of the
+    model's radius.
     """
     rows = []
     for clip in clips:
@@ -126,10 +127,10 @@ def contact_table(
 def people_apart(
     clips: Sequence[Clip], parameters: VciParameters, protocol: Protocol
 ) -> dict[str, float]:
-    """The smallest distance [m] between two people's centres, in the data and by the model.
+    """Return the smallest distance [m] between two people's centres, in data and model.
 
-    Whole clips are played again, as for the contacts. A fit can lessen the mean error by letting
-    people walk through each other; this is where it shows. Infinite if nobody meets anybody.
+    Whole clips are replayed, as for the contacts. A fit can lessen the mean error by letting people
+    walk through each other, which this distance shows. It is infinite if nobody meets anybody.
     """
     apart = {DATA: np.inf, VCI: np.inf}
     for clip in clips:
@@ -145,7 +146,7 @@ def people_apart(
 
 
 def _least_apart(track: Array) -> float:
-    """[m] between any two of the n people (T, n, 2) at any of the T instants."""
+    """Return the least distance [m] between any two of n people (T, n, 2) at any instant."""
     least = np.inf
     for i in range(track.shape[1] - 1):
         away = track[:, i + 1 :] - track[:, i : i + 1]

@@ -1,4 +1,4 @@
-"""What a data set's files do not say of themselves: the camera's rate, the vehicle's body."""
+"""The description of a data set that its files lack: the camera's rate, the vehicle's body."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -51,7 +51,7 @@ DATASETS: Mapping[str, Dataset] = MappingProxyType({"citr": CITR, "dut": DUT})
 
 
 def dataset_of(wanted: str | None) -> Dataset:
-    """The description that ``--dataset`` names: one that is known, or a file (TOML).
+    """Return the description that ``--dataset`` names: a known one, or that of a TOML file.
 
     Raises:
         ConfigError: nothing is named, or it cannot be used.

@@ -1,4 +1,4 @@
-"""How far predictions are from what happened: one row per window, pedestrian and horizon."""
+"""The errors of predictions: one row per window, pedestrian and horizon."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,18 +20,18 @@ METRICS = ("ADE", "FDE")
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """The errors of each predictor; rows are pedestrians of windows.
+    """The errors of each predictor; a row is a pedestrian of a window.
 
     Attributes:
-        names: (P,) of the predictors.
-        horizons: (K,) [frames].
-        clip: (R,) the clip of each row.
-        valid: (R, K) whether the pedestrian is seen for that long.
-        near: (R, K) whether it comes near the vehicle within that time.
-        ade, fde: (P, R, K) [m]; nan where not valid.
-        error: (P, R, H) [m] the displacement at each frame; nan where not seen.
-        place: (R, 2) [m] at the start, before and left of the vehicle; nan without one.
-        clips: C, the number of clips.
+        names: Names (P,) of the predictors.
+        horizons: Horizons (K,) [frames].
+        clip: Clip (R,) of each row.
+        valid: Mask (R, K): the pedestrian is seen for that long.
+        near: Mask (R, K): the pedestrian comes near the vehicle within that time.
+        ade, fde: Errors (P, R, K) [m]; nan where not valid.
+        error: Displacement (P, R, H) [m] at each frame; nan where not seen.
+        place: Place (R, 2) [m] at the start, before and left of the vehicle; nan without one.
+        clips: Number C of clips.
     """
 
     names: tuple[str, ...]
@@ -46,12 +46,12 @@ class Evaluation:
     clips: int
 
     def chosen(self, subset: str, horizon: int) -> NDArray[np.bool_]:
-        """(R,) the rows of a subset at the horizon of this number."""
+        """Return a mask (R,) of a subset at the horizon of this number."""
         everybody = self.valid[:, horizon]
         return everybody if subset == EVERYWHERE else everybody & self.near[:, horizon]
 
     def per_clip(self, values: Array, mask: NDArray[np.bool_]) -> tuple[Array, Array]:
-        """(C,) each the sum and the number of the ``values`` (R,) in each clip where ``mask``."""
+        """Return sum and number (C,) of the ``values`` (R,) in each clip where ``mask``."""
         clip = self.clip[mask]
         total = np.bincount(clip, values[mask], self.clips).astype(np.float64)
         return total, np.bincount(clip, minlength=self.clips).astype(np.float64)
@@ -64,14 +64,14 @@ def evaluate(
     clips: int,
     advance: Callable[[], None] = lambda: None,
 ) -> Evaluation:
-    """Predict every window by each predictor, and compare.
+    """Predict every window by each predictor, and compare with the data.
 
     Args:
-        cut: the windows, at least one.
-        by: the predictors by name.
-        protocol: by which the windows were cut.
-        clips: how many clips there are, those without a window included.
-        advance: called after each window.
+        cut: Windows, at least one.
+        by: Predictors by name.
+        protocol: Protocol by which the windows were cut.
+        clips: Number of clips, those without a window included.
+        advance: Function that is called after each window.
     """
     steps = np.array(protocol.horizons) - 1
     error, near, place = [], [], []
@@ -99,14 +99,14 @@ def evaluate(
 
 
 def displacement(predicted: Array, window: Window) -> Array:
-    """(H, n) [m] from each predicted to the observed position; nan where nobody is seen."""
+    """Return the distance (H, n) [m] of predicted and observed positions; nan if not seen."""
     apart = predicted - window.observed
     length: Array = np.hypot(apart[:, :, 0], apart[:, :, 1])
     return length
 
 
 def error_table(found: Evaluation, protocol: Protocol, draws: ClipBootstrap) -> pd.DataFrame:
-    """Means, their intervals, and paired differences to constant velocity.
+    """Return means, their intervals, and paired differences to constant velocity.
 
     One row per subset, horizon [s], metric [m] and predictor; ``count`` is the number of
     pedestrians in windows, ``clips`` the number of clips that have any.
@@ -147,7 +147,7 @@ def _ratio(total: float, count: float) -> float:
 
 
 def _place(window: Window) -> Array:
-    """(n, 2) [m] the places at the start, before and to the left of the first vehicle."""
+    """Return the places (n, 2) [m] at the start, before and to the left of the first vehicle."""
     if not window.vehicles.shape[1]:
         return np.full((len(window.who), 2), np.nan)
     start = to_vehicle_frame(window.position[None], *window.vehicles[:1, 0, :3].T)

@@ -1,11 +1,11 @@
-"""The least displacement error over some of the parameters.
+"""The fit: the least displacement error over some of the parameters.
 
 The objective is the ADE [m] at each horizon, averaged over all pedestrians who are seen for that
 long, and then over the horizons. It is minimised by Nelder & Mead's simplex (The Computer Journal
-1965) as scipy has it, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012), over the
-logarithm of each parameter's ratio to its start. Parameters by which people would tremble at the
-crowd's longest step are refused. It is a descent that needs no derivatives, since
-contacts and limits make the objective rough, and that stays near published numbers.
+1965) as in scipy, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012), over the
+logarithm of each parameter's ratio to its start. Parameters with which people would tremble at the
+crowd's longest step are refused. The method needs no derivatives, since contacts and limits make
+the objective rough, and it stays near published numbers.
 """
 
 import math
@@ -27,21 +27,21 @@ from pedestrian_model import (
     require_steady,
 )
 
-FACTOR = 10.0  # a parameter stays between start / 10 and 10 start
-_SPREAD = 0.2  # in the logarithm: the size of the first simplex
-_SMALL = 0.02  # in the logarithm: the size of the simplex at which the search ends,
+FACTOR = 10.0  # parameters stay between start / 10 and 10 start
+_SPREAD = 0.2  # size of the first simplex, in the logarithm
+_SMALL = 0.02  # size of the simplex at which the search ends, in the logarithm,
 _FLAT = 5e-5  # [m] if the errors at its corners differ by less than this
-_AT_BOUND = 1e-3  # in the logarithm: nearer to its bound a parameter is at it
+_AT_BOUND = 1e-3  # distance to its bound below which a parameter is at it, in the logarithm
 
 
 class Objective:
     """The mean displacement error [m] of parameters over windows.
 
     Args:
-        cut: the windows, at least one.
-        protocol: they were cut by.
-        clips: how many clips there are.
-        own_pace: see :class:`VciPredictor`.
+        cut: Windows, at least one.
+        protocol: Protocol by which they were cut.
+        clips: Number of clips.
+        own_pace: Flag, see :class:`VciPredictor`.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Objective:
         self._steps = np.array(protocol.horizons) - 1
 
     def __call__(self, parameters: VciParameters) -> float:
-        """The error; infinite if the model fails with these parameters."""
+        """Return the error; infinite if the model fails with these parameters."""
         try:
             total, count = self.per_clip(parameters)
         except PedestrianModelError:
@@ -60,7 +60,7 @@ class Objective:
         return average(total, count)
 
     def per_clip(self, parameters: VciParameters) -> tuple[Array, Array]:
-        """(C, K) each the sums of the ADE in each clip at each horizon, and their numbers."""
+        """Return sums and numbers (C, K) of the ADE in each clip at each horizon."""
         shape = self._clips, len(self._steps)
         total, count = np.zeros(shape), np.zeros(shape)
         predict = VciPredictor(
@@ -75,20 +75,20 @@ class Objective:
 
 
 def average(total: Array, count: Array) -> float:
-    """The objective of sums and counts (C, K): the mean of the means at each horizon."""
+    """Return the objective of sums and counts (C, K): the mean of the means at each horizon."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.nanmean(total.sum(axis=0) / count.sum(axis=0)))
 
 
 class Search:
-    """One descent from ``start``.
+    """A descent from ``start``.
 
     Args:
-        objective: to minimise.
-        start: of the search; parameters that are not named stay.
-        names: of the free parameters; none may start at 0.
-        evaluations: of the objective, at most.
-        progress: called with evaluations done, at most, and the least error so far.
+        objective: Objective to minimise.
+        start: Start of the search; parameters that are not named stay.
+        names: Names of the free parameters; none may start at 0.
+        evaluations: Evaluations of the objective, at most.
+        progress: Function of evaluations done, their limit, and the least error so far.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Search:
         self.at_bound: tuple[str, ...] = ()
 
     def run(self) -> VciParameters:
-        """The best parameters found; never worse than the start."""
+        """Return the best parameters found, which are never worse than the start."""
         n, bound = len(self._names), math.log(FACTOR)
         simplex = np.vstack([np.zeros(n), _SPREAD * np.eye(n)])
         found = scipy.optimize.minimize(
@@ -141,7 +141,7 @@ class Search:
             parameters = self._parameters(x)
             require_steady(parameters, LONGEST_STEP)  # a camera's frames are shorter than that
             error = self._objective(parameters)
-        except ParameterError:  # beyond the model's own bounds
+        except ParameterError:  # the parameters are beyond the model's own bounds
             error = math.inf
         self.done += 1
         self._least = min(self._least, error)

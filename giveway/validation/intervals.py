@@ -1,7 +1,8 @@
 """Intervals of means over people who share clips: the bootstrap over clips.
 
-Pedestrians of one clip, and the windows of one pedestrian, are not independent; clips are. So whole
-clips are drawn (Davison & Hinkley 1997, "Bootstrap Methods and their Application", section 3.8).
+Pedestrians of one clip, and the windows of one pedestrian, are not independent, but clips are.
+Therefore whole clips are drawn (Davison & Hinkley 1997, "Bootstrap Methods and their Application",
+section 3.8).
 """
 
 from __future__ import annotations
@@ -19,22 +20,22 @@ RESAMPLES = 5000
 
 @dataclass(frozen=True, eq=False)
 class ClipBootstrap:
-    """The same draws of clips for every number, so that differences are paired.
+    """The draws of clips, equal for every number, so that differences are paired.
 
     Attributes:
-        weights: (B, C) how often each clip is drawn.
+        weights: Number (B, C) of draws of each clip.
     """
 
     weights: Array
 
     @classmethod
     def of(cls, clips: int, seed: int = 0, resamples: int = RESAMPLES) -> ClipBootstrap:
-        """Draws, with replacement, of as many clips as there are."""
+        """Draw as many clips as there are, with replacement."""
         rng = np.random.default_rng(seed)
         return cls(rng.multinomial(clips, np.full(clips, 1.0 / clips), resamples).astype(float))
 
     def interval(self, total: Array, count: Array) -> tuple[float, float]:
-        """The percentile interval of ``sum(total) / sum(count)``, both (C,).
+        """Return the percentile interval of ``sum(total) / sum(count)``, both (C,).
 
         It is nan, nan if fewer than two clips have a count.
         """

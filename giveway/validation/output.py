@@ -1,4 +1,4 @@
-"""What ``giveway validate`` leaves in its folder: tables and pictures."""
+"""The files of ``giveway validate``: tables and pictures."""
 
 from pathlib import Path
 
@@ -54,7 +54,7 @@ def _pictures(found: Validation, parameters: VciParameters) -> tuple[Figure, Fig
 
 
 def _curves(found: Validation) -> dict[str, dict[str, Curve]]:
-    """The curves of all, and of those who come near the vehicle within the longest horizon."""
+    """Return the curves of all people, and of those near the vehicle in the longest horizon."""
     rows = found.found
     near = rows.near[:, int(np.argmax(rows.horizons))]
     groups = {EVERYWHERE: np.ones(len(near), dtype=bool), NEAR: near}
@@ -81,7 +81,7 @@ def _curve(found: Validation, predictor: int, mask: NDArray[np.bool_]) -> Curve:
 
 
 def _tracks(found: Validation, parameters: VciParameters) -> Figure:
-    """The picture of the window in which most pedestrians come near a vehicle."""
+    """Draw the window in which most pedestrians come near a vehicle."""
     window = max(found.cut, key=lambda w: _interest(w, found.protocol.near))
     steps, longest = found.protocol.time_step, found.protocol.longest
     by = predictors(parameters, steps, longest)
@@ -102,14 +102,14 @@ def _tracks(found: Validation, parameters: VciParameters) -> Figure:
 
 
 def _interest(window: Window, near: float) -> tuple[int, int, float]:
-    """How many come near, how many are seen to the end, and how near one comes: more is better."""
+    """Rate a window: pedestrians near the vehicle, those seen to the end, and least distance."""
     distance = np.nan_to_num(window.distance, nan=np.inf)
     whole = int((~np.isnan(window.observed[-1, :, 0])).sum())
     return int((distance.min(axis=0) <= near).sum()), whole, -float(distance.min())
 
 
 def _places(found: Validation) -> Figure:
-    """The picture for the horizon in the middle, which is 2 s of 0.75, 2 and 4 s."""
+    """Draw the places for the middle horizon, which is 2 s of 0.75, 2 and 4 s."""
     rows, protocol = found.found, found.protocol
     k = len(rows.horizons) // 2
     errors = {name: rows.fde[rows.names.index(name), :, k] for name in (VCI, OWN_PACE, CV)}

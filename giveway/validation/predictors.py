@@ -16,20 +16,20 @@ NO_VEHICLE = "VCI without f_v"
 OWN_PACE = "VCI at own pace"
 NAMES = (VCI, OWN_PACE, NO_VEHICLE, CV, GOAL_CV)
 
-SLOWEST_PACE = 0.3  # [m/s] of a pedestrian that stands at the start and will walk on (ours)
+SLOWEST_PACE = 0.3  # [m/s] desired speed of a pedestrian that stands at the start (ours)
 
 
 class TrackPredictor(Protocol):
     """Predicts the tracks in a window."""
 
     def __call__(self, window: Window) -> Array:
-        """(H, n, 2) [m] at 1 ... H frames ahead."""
+        """Return the positions (H, n, 2) [m] at 1 ... H frames ahead."""
 
 
 def predictors(
     parameters: VciParameters, time_step: float, frames: int
 ) -> dict[str, TrackPredictor]:
-    """All of ``NAMES``, for windows of so many ``frames`` of ``time_step`` [s]."""
+    """Return all predictors of ``NAMES``, for windows of ``frames`` of ``time_step`` [s]."""
     without = replace(parameters, vehicle_strength=0.0)
     return {
         VCI: VciPredictor(parameters, time_step, frames),
@@ -43,14 +43,14 @@ def predictors(
 
 
 class VciPredictor:
-    """The pedestrian model: all pedestrians jointly, under the vehicles as they drove.
+    """The pedestrian model: all pedestrians jointly, with the vehicles as they drove.
 
     Args:
-        parameters: of the model.
-        time_step: from frame to frame [s].
-        frames: H, of a window.
-        own_pace: each pedestrian's desired speed is its present speed and not the parameters'; in
-            a run it is known of each pedestrian, too.
+        parameters: Parameters of the model.
+        time_step: Time step from frame to frame [s].
+        frames: Number H of frames of a window.
+        own_pace: True: each pedestrian's desired speed is the present speed, not the parameters'.
+            In a run it is known of each pedestrian, too.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class VciPredictor:
         self._predictor = Predictor(parameters, time_step, frames)
 
     def __call__(self, window: Window) -> Array:
-        """(H, n, 2) [m] at 1 ... H frames ahead; a buffer that the next call overwrites."""
+        """Return positions (H, n, 2) [m] at 1 ... H frames ahead, overwritten by the next call."""
         desired: Array | float = self._desired_speed
         if self._own_pace:
             speed = np.hypot(window.velocity[:, 0], window.velocity[:, 1])
@@ -78,12 +78,12 @@ class VciPredictor:
 def crowd_of(
     position: Array, velocity: Array, destination: Array, desired_speed: Array | float
 ) -> Crowd:
-    """A crowd in which every pedestrian walks straight to its destination."""
+    """Return a crowd in which every pedestrian walks straight to the destination."""
     return Crowd.create(position, velocity, desired_speed, list(destination[:, None, :]))
 
 
 def straight_on(position: Array, velocity: Array, time_step: float, frames: int) -> Array:
-    """(H, n, 2) [m] at constant velocity."""
+    """Return positions (H, n, 2) [m] at constant velocity."""
     time = time_step * np.arange(1, frames + 1)
     return position + time[:, None, None] * velocity
 
@@ -91,7 +91,7 @@ def straight_on(position: Array, velocity: Array, time_step: float, frames: int)
 def straight_to(
     position: Array, velocity: Array, destination: Array, time_step: float, frames: int
 ) -> Array:
-    """(H, n, 2) [m] at the present speed straight to the destination, where they stay."""
+    """Return positions (H, n, 2) [m] at the present speed straight to the destination."""
     course = destination - position
     length = np.hypot(course[:, 0], course[:, 1])
     speed = np.hypot(velocity[:, 0], velocity[:, 1])

@@ -17,25 +17,25 @@ from giveway.validation.dataset import CITR, Dataset
 
 _PAUSE = 0.5  # [s] skipped at the start, and from window to window
 _HORIZONS = (0.75, 2.0, 4.0)  # [s]
-_NOWHERE = 1e6  # [m] where a vehicle stands in frames in which it is not seen
+_NOWHERE = 1e6  # [m] place of a vehicle in frames in which it is not seen
 
 
 @dataclass(frozen=True)
 class Protocol:
-    """How clips are cut and judged; without arguments, those of CITR."""
+    """The rules for cutting and judging clips; by default those of CITR."""
 
     frame_rate: float = CITR.frame_rate  # [1/s]
     skip: int = 15  # frames at the start, in which the dataset's filter settles
     stride: int = 15  # frames from window to window
     horizons: tuple[int, ...] = (22, 60, 120)  # frames ahead: 0.75, 2 and 4 s
-    near: float = 2.0  # [m] from a pedestrian's centre to the vehicle's body
-    front: float = CITR.vehicle.front  # [m] from the tracked point to the front
-    rear: float = CITR.vehicle.rear  # [m] from the tracked point to the rear
+    near: float = 2.0  # [m] largest distance of a near pedestrian from the vehicle's body
+    front: float = CITR.vehicle.front  # [m] front of the body, from the tracked point
+    rear: float = CITR.vehicle.rear  # [m] rear of the body, from the tracked point
     width: float = CITR.vehicle.width  # [m]
 
     @classmethod
     def of(cls, dataset: Dataset) -> "Protocol":
-        """The same times [s] in this data set's frames, and its vehicle's body."""
+        """Return the same times [s] in this data set's frames, and its vehicle's body."""
         rate, body = dataset.frame_rate, dataset.vehicle
         pause = max(1, round(_PAUSE * rate))
         horizons = tuple(max(1, round(seconds * rate)) for seconds in _HORIZONS)
@@ -51,28 +51,30 @@ class Protocol:
 
     @property
     def time_step(self) -> float:
-        """From frame to frame [s]."""
+        """Time [s] from frame to frame."""
         return 1.0 / self.frame_rate
 
     @property
     def longest(self) -> int:
-        """The last frame of a window."""
+        """Last frame of a window."""
         return max(self.horizons)
 
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """What a predictor is given, and what was observed.
+    """The input of a predictor, and the observed positions.
 
     Attributes:
-        clip: its place among the clips.
-        frame: of the clip, at which the prediction begins.
-        who: (n,) the pedestrians seen there, by their place in the clip.
-        position, velocity, destination: (n, 2) [m], [m/s], [m].
-        vehicles: (H, m, 7) at 0 ... H - 1 frames ahead, as the pedestrian model takes them.
-        observed: (H, n, 2) [m] at 1 ... H frames ahead; nan from the first frame on in which a
-            pedestrian is not seen.
-        distance: (H + 1, n) [m] observed, from centre to the nearest body; inf without vehicles.
+        clip: Index of its clip.
+        frame: Frame of the clip, at which the prediction begins.
+        who: Indices (n,) in the clip of the pedestrians seen there.
+        position, velocity, destination: Arrays (n, 2) [m], [m/s], [m].
+        vehicles: Vehicles (H, m, 7) at 0 ... H - 1 frames ahead, as the pedestrian model takes
+            them.
+        observed: Positions (H, n, 2) [m] at 1 ... H frames ahead; nan from the first frame on in
+            which a pedestrian is not seen.
+        distance: Observed distance (H + 1, n) [m] from centre to the nearest body; inf without
+            vehicles.
     """
 
     clip: int
@@ -87,7 +89,7 @@ class Window:
 
 
 def windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ...]:
-    """Every window of the clips in which somebody is seen for the shortest horizon."""
+    """Return all windows of the clips with somebody seen for the shortest horizon."""
     return tuple(w for number, clip in enumerate(clips) for w in _of_clip(number, clip, protocol))
 
 
@@ -118,7 +120,7 @@ def _of_clip(number: int, clip: Clip, protocol: Protocol) -> Iterator[Window]:
 
 
 def vehicle_rows(clip: Clip, protocol: Protocol) -> Array:
-    """(T, m, 7) the clip's vehicles as the pedestrian model takes them."""
+    """Return the clip's vehicles (T, m, 7) as the pedestrian model takes them."""
     rows = np.empty((*clip.poses.shape[:2], 7))
     rows[:, :, :4] = clip.poses
     rows[:, :, 4:] = protocol.front, protocol.rear, protocol.width
@@ -128,7 +130,7 @@ def vehicle_rows(clip: Clip, protocol: Protocol) -> Array:
 
 
 def distance_to_bodies(position: Array, rows: Array) -> Array:
-    """(T, n) [m] from each centre (T, n, 2) to the nearest of the bodies (T, m, 7); 0 inside."""
+    """Return the distance (T, n) [m] from each centre to the nearest body; 0 inside."""
     nearest = np.full(position.shape[:2], np.inf)
     for x, y, heading, _, front, rear, width in np.moveaxis(rows, 0, 2):
         forward, left = to_vehicle_frame(position, x, y, heading)
@@ -140,14 +142,14 @@ def distance_to_bodies(position: Array, rows: Array) -> Array:
 
 
 def to_vehicle_frame(position: Array, x: Array, y: Array, heading: Array) -> tuple[Array, Array]:
-    """(T, n) [m] how far positions (T, n, 2) are before, and to the left of, a vehicle (T,)."""
+    """Return how far (T, n) [m] positions are before, and to the left of, a vehicle (T,)."""
     dx, dy = position[:, :, 0] - x[:, None], position[:, :, 1] - y[:, None]
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
     return cos * dx + sin * dy, cos * dy - sin * dx
 
 
 def _padded(values: Array, length: int, fill: float = np.nan) -> Array:
-    """The ``values`` extended along the first axis to ``length`` by ``fill``."""
+    """Extend the ``values`` along the first axis to ``length`` by ``fill``."""
     out = np.full((length, *values.shape[1:]), fill)
     out[: len(values)] = values
     return out

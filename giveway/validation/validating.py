@@ -1,4 +1,4 @@
-"""``giveway validate``: the pedestrian model against recorded trajectories."""
+"""The command ``giveway validate`` compares the pedestrian model with trajectories."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from pedestrian_model import VciParameters
 
 Progress = Callable[[int, int], None]  # done, in all
 
-SEED = 0  # of the bootstrap's draws
+SEED = 0  # seed of the bootstrap's draws
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,9 +24,9 @@ class Validation:
     """The results of a validation.
 
     Attributes:
-        errors: see :func:`giveway.validation.evaluation.error_table`.
-        contacts: see :func:`giveway.validation.contacts.contact_table`.
-        apart: see :func:`giveway.validation.contacts.people_apart`.
+        errors: Table, see :func:`giveway.validation.evaluation.error_table`.
+        contacts: Table, see :func:`giveway.validation.contacts.contact_table`.
+        apart: Distances, see :func:`giveway.validation.contacts.people_apart`.
     """
 
     clips: tuple[Clip, ...]
@@ -40,7 +40,7 @@ class Validation:
 
     @property
     def pedestrians(self) -> int:
-        """How many were recorded, in all clips."""
+        """Number of recorded pedestrians in all clips."""
         return sum(len(clip.ids) for clip in self.clips)
 
 
@@ -51,13 +51,13 @@ def validate(
     protocol: Protocol | None = None,
     progress: Progress = lambda _done, _all: None,
 ) -> Validation:
-    """Predict all windows of the clips, and play whole clips again.
+    """Predict all windows of the clips, and replay whole clips.
 
     Args:
-        clips: as :func:`giveway.validation.read_clips` reads them.
-        parameters: of the pedestrian model.
-        protocol: how the clips are cut and judged; None: as :func:`protocol_of` has it.
-        progress: called with how much is done, and of how much.
+        clips: Clips from :func:`giveway.validation.read_clips`.
+        parameters: Parameters of the pedestrian model.
+        protocol: Rules for cutting and judging clips; None: those of :func:`protocol_of`.
+        progress: Function of the amounts done and in all.
 
     Raises:
         DatasetError: no clip is long enough.
@@ -83,7 +83,7 @@ def validate(
 
 
 def protocol_of(clips: Sequence[Clip]) -> Protocol:
-    """The protocol of the data set that the clips are from.
+    """Return the protocol of the data set that the clips belong to.
 
     Raises:
         DatasetError: they are from several, or there is none.
@@ -96,7 +96,7 @@ def protocol_of(clips: Sequence[Clip]) -> Protocol:
 
 
 def cut_windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ...]:
-    """The windows of the clips.
+    """Return the windows of the clips.
 
     Raises:
         DatasetError: there is none.

@@ -1,4 +1,4 @@
-"""Where people can walk: routes along sidewalks, walkingareas and crossings, and their walls."""
+"""The places where people can walk: routes, walkingareas, crossings, and their walls."""
 
 from giveway.walkways.beside import SpawnPlace, beside
 from giveway.walkways.network import NearestLane, WalkNetwork

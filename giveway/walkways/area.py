@@ -9,15 +9,15 @@ from giveway.walkways.gates import Array
 from giveway.walkways.inside import polygon_of, rings
 from giveway.walkways.reading import PedLane, Survey
 
-_GAP = 0.15  # [m] half the width of a gap between neighbours that is closed
-_SLIVER = 0.1  # [m] half the width of a spit that is cut off
-_SMALLEST = 0.5  # [m2] a smaller hole is not walled
-_SIMPLE = 0.02  # [m] to which the outline is simplified
-_OVERLAP = 0.6  # [m] by which a crossing reaches into the walkingareas at its ends
+_GAP = 0.15  # [m] half the width of gaps between neighbours that are closed
+_SLIVER = 0.1  # [m] half the width of spits that are cut off
+_SMALLEST = 0.5  # [m2] size below which a hole gets no wall
+_SIMPLE = 0.02  # [m] tolerance of the simplified outline
+_OVERLAP = 0.6  # [m] length by which a crossing reaches into the walkingareas at its ends
 
 
 def walkable_area(survey: Survey) -> shapely.MultiPolygon:
-    """Lanes, walkingareas and crossings; junctions as well where lanes meet without them."""
+    """Return the area of lanes, walkingareas, crossings, and junctions without these."""
     parts = [_lane(edge.lane) for edge in survey.edges.values()]
     parts += [_lane(lane, _OVERLAP) for lane in survey.crossings.values()]
     parts += [polygon_of(area) for area in survey.walkingareas.values()]
@@ -33,7 +33,7 @@ def sidewalk_area(survey: Survey, place: shapely.Geometry) -> shapely.MultiPolyg
 
 
 def _joined(parts: list[shapely.Geometry]) -> shapely.MultiPolygon:
-    """What parts come to together: gaps closed, spits cut off."""
+    """Return the union of parts, with gaps closed and spits cut off."""
     closed = shapely.union_all(parts).buffer(_GAP, join_style="mitre")
     opened = closed.buffer(-_GAP - _SLIVER, join_style="mitre")
     area = opened.buffer(_SLIVER, join_style="mitre").simplify(_SIMPLE)
@@ -54,7 +54,7 @@ def walls(area: shapely.MultiPolygon) -> Array:
 
 
 def _lane(lane: PedLane, extension: float = 0.0) -> shapely.Geometry:
-    """The area of a lane, cut off straight at its ends, ``extension`` [m] beyond them."""
+    """Return the area of a lane, cut off straight ``extension`` [m] beyond its ends."""
     points = lane.shape
     if extension:
         first, last = points[0] - points[1], points[-1] - points[-2]

@@ -1,4 +1,4 @@
-"""Where people could start who are to cross a vehicle's way."""
+"""Places for people to start from if they are to cross a vehicle's path."""
 
 from typing import NamedTuple
 
@@ -9,32 +9,32 @@ from giveway.walkways.gates import Array
 from giveway.walkways.network import WalkNetwork
 
 _HALF = 3.0  # [m] half the side of the square in which they start
-_BESIDE = 7.0  # [m] from the way, where no walkway is beside it
-_NEAREST, _FARTHEST = 2.0, 25.0  # [m] from the way, where a walkway is beside it
-_HEAD_START = 20.0  # [m] that the vehicle drives before it comes by
-_PREFERRED = 0.4  # of the way
+_BESIDE = 7.0  # [m] distance from the path if there is no walkway beside it
+_NEAREST, _FARTHEST = 2.0, 25.0  # [m] distances from the path if there is a walkway beside it
+_HEAD_START = 20.0  # [m] distance that the vehicle drives before it comes by
+_PREFERRED = 0.4  # share of the path at which they preferably cross
 
 
 class SpawnPlace(NamedTuple):
-    """Where people start, and how they walk."""
+    """A place where people start, and their walk."""
 
     area: tuple[float, float, float, float]  # [m] x_min, y_min, x_max, y_max
     walk: tuple[float, float]  # [m]
 
     @property
     def flags(self) -> str:
-        """The command line's words for it."""
+        """Flags of the command line for it."""
         area, walk = (",".join(f"{number:.1f}" for number in part) for part in self)
         return f"--spawn-area={area} --walk={walk}"
 
 
 def beside(way: Array, network: WalkNetwork, near: tuple[float, float] | None = None) -> SpawnPlace:
-    """A place beside a way from which people walk straight across it.
+    """Return a place beside a path from which people walk straight across it.
 
     Args:
-        way: (k, 2) [m] from where the vehicle departs to where it is done, k >= 2.
-        network: where people walk.
-        near: [m] the place is to be as near to this as the way allows; None: anywhere.
+        way: Path (k, 2) [m] of the vehicle from departure to goal, k >= 2.
+        network: Network in which people walk.
+        near: Point [m] to which the place is to be as near as the path allows; None: any.
     """
     line = shapely.LineString(way)
     wanted = _PREFERRED * line.length if near is None else line.project(shapely.Point(near))

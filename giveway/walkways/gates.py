@@ -1,9 +1,9 @@
-"""Gates: the lines across a route, one after the other, that people walk through side by side.
+"""Gates: lines across a route, one after the other, through which people walk side by side.
 
-A gate spans the usable width of the walkway at one place. All people cross it where they come to
-it, so that a crowd uses the whole width and does not queue for one point. People who walk on the
-same side, a number from -1 (right end) to +1 (left end of the usable width, seen in walking
-direction), go round the same corners.
+A gate spans the usable width of the walkway at one place. People cross it anywhere on its width, so
+that a crowd uses the whole width and does not queue for one point. A person's side is a number from
+-1 (right end) to +1 (left end of the usable width, in walking direction). People of the same side
+go round the same corners.
 
 Gates are rows of one array, so that the route of one person is a single concatenation of pieces
 that many share. The columns are the middle x, y [m]; the spread x, y [m] from the middle to the
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Place = tuple[float, float]
 
-BODY_RADIUS = 0.27  # [m] of a pedestrian: half of a shoulder breadth of 0.54 m
-TRACKS = 2  # to either side of the middle: people on one track go round the same corners
+BODY_RADIUS = 0.27  # [m] body radius of a pedestrian: half of a shoulder breadth of 0.54 m
+TRACKS = 2  # tracks to either side of the middle: people on one track go round the same corners
 NO_GATES: Array = np.empty((0, 7))
 _NO_SIGNAL = -1
 _ASKEW = 0.2  # cosine of route to gate's direction; below it people come from beside the gate
@@ -51,7 +51,7 @@ def track_of(side: float) -> int:
 
 
 def places(gates: Array, side: float) -> Array:
-    """Where (k, 2) [m] somebody on ``side`` [-1, 1] walks through each gate."""
+    """Return the places (k, 2) [m] of a person on ``side`` [-1, 1] in each gate."""
     return gates[:, 0:2] + side * gates[:, 2:4]
 
 
@@ -66,8 +66,8 @@ def passages(gates: Array, start: tuple[float, float]) -> Array:
     them along it.
 
     Args:
-        gates: (k, 7).
-        start: where the person comes from [m].
+        gates: Gates (k, 7).
+        start: Place [m] that the person comes from.
     """
     rows = np.empty((len(gates), 3))
     rows[:, :2] = gates[:, 4:6]

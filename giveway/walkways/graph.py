@@ -1,4 +1,4 @@
-"""How the lanes around a junction hang together: the graph of its walkingareas and crossings.
+"""The connections of the lanes around a junction: the graph of its walkingareas and crossings.
 
 A *portal* is where a lane or a crossing meets a walkingarea. People go from portal to portal
 inside a walkingarea, and along a crossing from its one portal to the other. Lanes outside of
@@ -18,19 +18,19 @@ from giveway.walkways.inside import Interior
 from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Link, PedLane, Signal, Survey
 
-_KERB = 0.4  # [m] from the roadway, where people wait for green
+_KERB = 0.4  # [m] distance from the roadway at which people wait for green
 
 
 class End(NamedTuple):
     """One end of a lane or crossing, given by its edge."""
 
     edge: str
-    last: bool  # where its shape ends, not where it begins
+    last: bool  # True for the end of its shape, False for its beginning
 
 
 @dataclass(frozen=True)
 class Portal:
-    """Where an end of a lane or crossing meets a walkingarea."""
+    """A place where an end of a lane or crossing meets a walkingarea."""
 
     end: End
     area: str
@@ -38,7 +38,7 @@ class Portal:
 
 
 class Step(NamedTuple):
-    """What is left to go from a portal, and the portal that comes next."""
+    """The remaining distance from a portal, and the portal that comes next."""
 
     distance: float  # [m]
     portal: int  # index; -1: none, this is the target
@@ -52,15 +52,15 @@ class Tree:
     or leave it.
     """
 
-    coming: dict[int, Step]  # by portal; next is the portal at which the area is left
-    leaving: dict[int, Step]  # by portal; next is the portal at the crossing's other end
+    coming: dict[int, Step]  # steps by portal; next is the portal at which the area is left
+    leaving: dict[int, Step]  # steps by portal; next is the portal at the crossing's other end
 
 
 class WalkGraph:
     """Portals, and the gates of the routes between them; built when asked for, and kept.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
     """
 
     def __init__(self, survey: Survey) -> None:

@@ -35,7 +35,7 @@ class Stretch(NamedTuple):
 class Hop(NamedTuple):
     """The route over a junction from one lane's end to another's."""
 
-    portal: int | None  # where it begins; None if it goes straight across
+    portal: int | None  # portal at its beginning; None if it goes straight across
     length: float  # [m]
     connected: bool
 
@@ -44,7 +44,7 @@ class Pieces:
     """Pieces of routes, each built when first asked for, and kept.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
         graph: its walkingareas and crossings.
     """
 
@@ -75,7 +75,7 @@ class Pieces:
         return [stretches for meets, stretches in routes if meets == most]
 
     def _nearer_end(self, exit_: End, edge: str) -> bool:
-        """Whether the beginning of an edge is nearer than its end."""
+        """Return whether the beginning of an edge is nearer than its end."""
         here = self._graph.lane_end(exit_)[0, :2]
         line = self._graph.lines[edge].points
         return math.dist(here, line[0]) <= math.dist(here, line[-1])
@@ -147,7 +147,7 @@ class Pieces:
         return self._edges[end.edge].junctions[end.last]
 
     def station(self, end: End) -> float:
-        """Where [m] on its edge's centre line an end is."""
+        """Return the station [m] of an end on its edge's centre line."""
         return self._graph.lines[end.edge].length if end.last else 0.0
 
     def bends(self, stretch: Stretch) -> Array:

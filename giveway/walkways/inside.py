@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from giveway.walkways.gates import BODY_RADIUS, NO_GATES, Array, places
 from giveway.walkways.reading import PedLane
 
-_TOLERANCE = 0.05  # [m] that a route may lie outside of the area
+_TOLERANCE = 0.05  # [m] largest distance of a route outside of the area
 _SLIGHT = math.sin(math.radians(0.5))  # a corner that juts in by less is none
-_INSET = 0.02  # [m] from a corner to the place through which routes round it are sought
+_INSET = 0.02  # [m] distance of a route's corner from the area's corner
 
 
 def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
@@ -105,7 +105,7 @@ class Interior:
         return self._round(order, start[0, :2], end[0, :2], width)
 
     def _sees(self, a: Array, b: Array) -> bool:
-        """Whether the straight line between two points is inside."""
+        """Return whether the straight line between two points is inside."""
         return bool(self._room.covers(shapely.LineString([a, b])))
 
     def _inside(self, place: Array) -> Array:
@@ -145,7 +145,7 @@ class Interior:
 
     @cached_property
     def _visible(self) -> NDArray[np.bool_]:
-        """(k, k) whether two corners see each other."""
+        """Return a matrix (k, k): whether two corners see each other."""
         near = self._near_corners
         k = len(near)
         ends = np.stack([np.repeat(near, k, axis=0), np.tile(near, (k, 1))], axis=1)

@@ -23,16 +23,16 @@ class NearestLane(NamedTuple):
     edge: str
     lane: str
     position: float  # [m] along the lane, as SUMO counts
-    distance: float  # [m] from the lane's centre line
+    distance: float  # [m] distance from the lane's centre line
 
 
 class WalkNetwork:
-    """Where people can walk in a SUMO network.
+    """The places where people can walk in a SUMO network.
 
     Attributes:
         signals: the traffic-light links that govern crossings.
-        has_walkingareas: whether the network has any.
-        has_sidewalks: whether there is a lane that pedestrians may use and cars may not.
+        has_walkingareas: True if the network has any.
+        has_sidewalks: True if there is a lane that pedestrians may use and cars may not.
         boundary: x_min, y_min, x_max, y_max [m] of the network.
     """
 
@@ -73,7 +73,7 @@ class WalkNetwork:
         Args:
             edges: the remaining edges, the present one first; for somebody in a walkingarea or on
                 a crossing the first is the edge that was left, as SUMO lists them.
-            position: where the person is [m].
+            position: Place of the person [m].
             lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
             arrival_position: the end of the walk on the last edge, in SUMO's metres; a negative
                 one counts from the edge's end.
@@ -96,7 +96,7 @@ class WalkNetwork:
         return NearestLane(edge, lane.id, position, float(distance))
 
     def nearest_place(self, x: float, y: float) -> tuple[float, float] | None:
-        """x, y [m] of the nearest place on the centre line of a lane for people; None: none is."""
+        """Return x, y [m] of the nearest point on the centre line of a lane for people, or None."""
         edges, tree = self._index
         if not edges:
             return None
@@ -111,7 +111,7 @@ class WalkNetwork:
         return list(lines), shapely.STRtree(shapes)
 
     def walkable(self) -> shapely.MultiPolygon:
-        """Where people may walk: lanes, walkingareas, crossings, and junctions without them."""
+        """Area where people may walk: lanes, walkingareas, crossings, other junctions."""
         return self._walkable
 
     @cached_property
@@ -119,7 +119,7 @@ class WalkNetwork:
         return walkable_area(self._survey)
 
     def sidewalks(self, place: shapely.Geometry) -> shapely.MultiPolygon:
-        """The sidewalks and walkingareas that reach into a place: no roads, no crossings."""
+        """Return the sidewalks and walkingareas that reach into a place, without roads."""
         return sidewalk_area(self._survey, place)
 
     def wall_segments(self) -> Array:
@@ -135,7 +135,7 @@ class WalkNetwork:
 
 
 def _extent(found: Survey) -> tuple[float, float, float, float]:
-    """The extent of all that is walkable [m], for a file that does not say its own."""
+    """Return the extent [m] of the walkable area, for a file that does not tell its own."""
     shapes = [edge.lane.shape for edge in found.edges.values()]
     points = np.vstack([*shapes, *found.junctions.values()] or [np.zeros((1, 2))])
     (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from giveway.walkways.gates import BODY_RADIUS, Array
 
-_STRAIGHT = 0.05  # [m] a vertex nearer to its neighbours' line is no bend
+_STRAIGHT = 0.05  # [m] distance from its neighbours' line up to which a vertex is no bend
 _SHARPEST = 0.5  # cosine of half the sharpest bend at which a walkway keeps its full width
 
 
 def usable_half_width(width: float) -> float:
-    """How far [m] a body's centre can be from the centre line of a walkway of ``width`` [m]."""
+    """Return the largest distance [m] of a body's centre from the middle of a walkway."""
     return max(0.0, width / 2 - BODY_RADIUS)
 
 
@@ -25,7 +25,7 @@ class Polyline:
     """A centre line in the direction of its lane.
 
     Attributes:
-        points: (k, 2) [m], k >= 2.
+        points: Points (k, 2) [m], k >= 2.
         stations: arc length [m] at each point, from 0; plain numbers, since every person asks.
     """
 
@@ -46,7 +46,7 @@ class Polyline:
 
     @cached_property
     def directions(self) -> Array:
-        """(k - 1, 2) unit direction of each segment."""
+        """Unit direction (k - 1, 2) of each segment."""
         steps = np.diff(self.points, axis=0)
         lengths: Array = np.hypot(*steps.T)
         return np.asarray(steps / np.maximum(lengths, 1e-12)[:, None])
@@ -61,7 +61,7 @@ class Polyline:
         ]
 
     def project(self, x: float, y: float) -> tuple[float, float]:
-        """The station [m] nearest to a point, and the point's distance to the left of it [m]."""
+        """Return the nearest station [m] to a point, and the point's distance to the left [m]."""
         best = math.inf, 0.0, 0.0
         for i, (x_0, y_0, d_x, d_y, length) in enumerate(self._segments):
             along = (x - x_0) * d_x + (y - y_0) * d_y
@@ -73,7 +73,7 @@ class Polyline:
         return best[1], best[2]
 
     def gates(self, half_width: float) -> Array:
-        """A gate (k, 7) across every vertex, ends included, ``half_width`` [m] to either side.
+        """Return a gate (k, 7) across every vertex and end, ``half_width`` [m] to both sides.
 
         In a bend the gate lies on the bisector and is longer there, so that people keep their
         distance to the centre line.

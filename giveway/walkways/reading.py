@@ -44,7 +44,7 @@ class WalkEdge:
     """An edge between two junctions and the lane people walk on."""
 
     id: str
-    junctions: tuple[str, str]  # where its lane begins and where it ends
+    junctions: tuple[str, str]  # junctions at the beginning and the end of its lane
     lane: PedLane
     sidewalk: bool = False  # nothing that has an engine uses the lane
 
@@ -63,7 +63,7 @@ class Link:
 
 @dataclass
 class Survey:
-    """What the network file says of walking; edges by id.
+    """The part of a network file that concerns walking; edges are listed by id.
 
     Attributes:
         edges: normal edges with a lane for pedestrians.
@@ -162,7 +162,7 @@ class _Reader:
 
 
 def _admits(lane: dict[str, str], vehicle_class: str) -> bool:
-    """Whether a lane's ``allow`` or ``disallow`` lets a class use it, as SUMO reads them."""
+    """Return whether a lane's ``allow`` or ``disallow`` lets a class use it, as SUMO reads them."""
     allow = lane.get("allow")
     if allow:
         return allow == "all" or vehicle_class in allow.split()

@@ -1,4 +1,4 @@
-"""The route of one person: way-points from where the person is to where its walk ends."""
+"""The route of one person: way-points from its present place to the end of its walk."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -15,19 +15,19 @@ from giveway.walkways.polyline import usable_half_width
 from giveway.walkways.reading import Survey
 from giveway.walkways.starts import Starts
 
-_TOGETHER = 0.05  # [m] way-points nearer to each other than this are one
+_TOGETHER = 0.05  # [m] distance below which two way-points are one
 
 
 @dataclass(frozen=True)
 class WalkRoute:
-    """The route ahead of one person; at least one way-point, the last is the walk's end.
+    """The route ahead of one person; the last of its way-points is the walk's end.
 
     Attributes:
-        waypoints: (k, 2) [m] in the middle of the walkway, without the present place.
-        passages: (k, 3) unit direction in which a way-point's line is crossed, and how far [m]
+        waypoints: Way-points (k, 2) [m] in the middle of the walkway, without the present place.
+        passages: Unit direction (k, 3) in which a way-point's line is crossed, and how far [m]
             beside the way-point a crossing of the line still counts as a passage.
-        signals: (k,) index into ``WalkNetwork.signals`` where people wait for green, else -1.
-        gaps: how often the network shows no connection and the route goes straight on.
+        signals: Index (k,) into ``WalkNetwork.signals`` where people wait for green, else -1.
+        gaps: number of missing connections and the route goes straight on.
     """
 
     waypoints: Array
@@ -41,15 +41,15 @@ class _Candidate(NamedTuple):
 
     gaps: int
     length: float  # [m]
-    side: float  # [-1, 1] on which the person is now, seen in walking direction
-    gates: Callable[[float], list[Array]]  # by the side that the person keeps to
+    side: float  # [-1, 1] present side of the person, seen in walking direction
+    gates: Callable[[float], list[Array]]  # function of the side that the person keeps to
 
 
 class Router:
     """Puts routes together from pieces that it builds once.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
         graph: its walkingareas and crossings.
     """
 
@@ -67,7 +67,7 @@ class Router:
         arrival_position: float,
         side: float | None,
     ) -> WalkRoute:
-        """See :meth:`giveway.walkways.WalkNetwork.route`."""
+        """Return the route; see :meth:`giveway.walkways.WalkNetwork.route`."""
         known, gaps = self._known(edges)
         if not known:
             return _stay(position, max(gaps, 1))
@@ -80,7 +80,7 @@ class Router:
         return _finished(np.concatenate(best.gates(side)), position, gaps + best.gaps)
 
     def _known(self, edges: Iterable[str]) -> tuple[list[str], int]:
-        """The edges that can be walked, without repetitions, and how many others there were."""
+        """Return the edges that can be walked, without repetitions, and the number of others."""
         known: list[str] = []
         gaps = 0
         for edge in edges:
@@ -93,7 +93,7 @@ class Router:
         return known, gaps
 
     def _arrival(self, edge: str, position: float) -> float:
-        """The station [m] on the centre line of a position in SUMO's metres."""
+        """Return the station [m] on the centre line of a position in SUMO's metres."""
         length = self._edges[edge].lane.length
         if position < 0.0:
             position += length
@@ -168,6 +168,6 @@ def _finished(rows: Array, position: Place, gaps: int) -> WalkRoute:
 
 
 def _stay(position: Place, gaps: int) -> WalkRoute:
-    """The route to where the person is already: the network knows none of the edges."""
+    """Return the route to the present place, as the network knows none of the edges."""
     place = np.array([position], dtype=np.float64)
     return WalkRoute(place, np.zeros((1, 3)), np.array([-1], dtype=np.int64), gaps)

@@ -1,7 +1,7 @@
 """The beginning of the route of a person who is inside a junction.
 
-The person goes on from there: nobody is sent back to a kerb, and whoever is on a crossing already
-does not wait for its light.
+The person goes on from there. Nobody is sent back to a kerb, and a person on a crossing does not
+wait for its light.
 """
 
 import math
@@ -22,15 +22,15 @@ class Start(NamedTuple):
 
     length: float  # [m]
     connected: bool
-    side: float  # [-1, 1] on which the person is now, seen in walking direction
-    gates: Callable[[float], Array]  # by the side that the person keeps to
+    side: float  # [-1, 1] present side of the person, seen in walking direction
+    gates: Callable[[float], Array]  # function of the side that the person keeps to
 
 
 class Starts:
     """Finds routes out of junctions.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
         graph: its walkingareas and crossings.
     """
 
@@ -39,7 +39,7 @@ class Starts:
         self._graph = graph
 
     def into(self, place: str, position: Place, entry: End) -> Start:
-        """From a place inside a junction, given by its edge and position [m], to a lane's end."""
+        """Return the route from a place [m] inside a junction, on an edge, to a lane's end."""
         graph = self._graph
         tree = graph.towards(entry)
         paved = True
@@ -57,7 +57,7 @@ class Starts:
         return Start(length, not paved, g.side_at(straight, position), lambda _: straight)
 
     def _out_of_area(self, area: str, position: Place, tree: Tree) -> Start | None:
-        """From the middle of a walkingarea through the portal that makes the route shortest."""
+        """Go from the middle of a walkingarea through the portal that makes the route shortest."""
         graph = self._graph
         exits = [
             (tree.leaving[i].distance + math.dist(position, graph.portal(i).gate[0, :2]), i)
@@ -77,7 +77,7 @@ class Starts:
         return Start(length, True, g.side_at(way_out, position), gates)
 
     def _off_crossing(self, crossing: str, position: Place, tree: Tree) -> Start | None:
-        """From the middle of a crossing on in the direction of the route, without waiting."""
+        """Go on from the middle of a crossing in the direction of the route, without waiting."""
         graph = self._graph
         line = graph.line(crossing)
         station, left = line.project(*position)

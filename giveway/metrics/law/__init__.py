@@ -1,6 +1,6 @@
-"""How an ego kept to the law of the road: an independent pass over the tables of a drive.
+"""The judge of the law of the road: an independent pass over the tables of a drive.
 
-Nothing here knows what the ego took for a reason to give way; see docs/law.md for definitions.
+The judge does not know the ego's own reasons for giving way. Definitions are in docs/law.md.
 """
 
 from giveway.metrics.law.drive import Drive, Undisturbed

@@ -1,4 +1,4 @@
-"""Where the ego's body sweeps over crossings: the areas that it shares with people."""
+"""The areas of crossings over which the ego's body sweeps, and which it shares with people."""
 
 from typing import NamedTuple
 
@@ -11,8 +11,8 @@ from giveway.geometry.path import fine_near, points_at
 from giveway.metrics.law.drive import Drive, runs
 from giveway.run_data.way import CrossingOnWay
 
-_STEP = 0.05  # [m] between two places of the body
-_GRAIN = 0.25  # [m] between two points of its outline, at most
+_STEP = 0.05  # [m] distance between two places of the body
+_GRAIN = 0.25  # [m] largest distance between two points of its outline
 
 
 class Area(NamedTuple):
@@ -22,23 +22,23 @@ class Area(NamedTuple):
     """
 
     crossing: CrossingOnWay
-    kerb: Array  # (2,) [m] the first end
-    along: Array  # (2,) unit vector to the second
+    kerb: Array  # (2,) [m] first end
+    along: Array  # (2,) unit vector to the second end
     length: float  # [m] between the ends
-    entry: float  # [m] station of the front bumper from which on the body is on the crossing
-    leave: float  # [m] and up to which it is
-    low: float  # [m] along the crossing, where the body's way over it begins
-    high: float  # [m] and ends
+    entry: float  # [m] station of the front bumper at which the body reaches the crossing
+    leave: float  # [m] station at which it has left it
+    low: float  # [m] begin of the swept part along the crossing
+    high: float  # [m] end of that part
 
     def place(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Lengths along the crossing and to the side of its middle line [m] of points."""
+        """Return lengths along the crossing and to the side of its middle line [m] of points."""
         d_x, d_y = x - self.kerb[0], y - self.kerb[1]
         c, s = self.along
         return d_x * c + d_y * s, d_y * c - d_x * s
 
 
 def areas_of(drive: Drive) -> tuple[Area, ...]:
-    """The areas on a drive's way, in its order; those beyond its end are left out."""
+    """Return the areas on a drive's path, in order, without those beyond its end."""
     if not drive.way.crossings:
         return ()
     line = _Line(drive)
@@ -50,10 +50,10 @@ def areas_of(drive: Drive) -> tuple[Area, ...]:
 
 
 class _Line:
-    """The path, which goes on straight before its beginning and beyond its end.
+    """The path, with straight extensions before its beginning and beyond its end.
 
     Args:
-        drive: whose path it is.
+        drive: Drive along the path.
     """
 
     def __init__(self, drive: Drive) -> None:
@@ -65,7 +65,7 @@ class _Line:
         self.stations = np.concatenate([[-more], path.stations, [path.length + more]])
 
     def at(self, station: Array) -> Array:
-        """(n, 2) [m] the points at ``station`` (n,) [m]."""
+        """Return the points (n, 2) [m] at ``station`` (n,) [m]."""
         return points_at(self.vertices, self.stations, station)
 
 
@@ -93,7 +93,7 @@ def _visits(line: _Line, shape: VehicleShape, crossing: CrossingOnWay) -> list[A
 
 
 def _outline(line: _Line, shape: VehicleShape, stations: Array) -> tuple[Array, Array]:
-    """X and y (n, p) [m] of points of the body with its front at each of the stations (n,)."""
+    """Return x and y (n, p) [m] of points of the body, for each station (n,) of its front."""
     front, rear = line.at(stations), line.at(stations - shape.length)
     heading = np.arctan2(front[:, 1] - rear[:, 1], front[:, 0] - rear[:, 0])[:, None]
     back = np.linspace(0.0, shape.length, 1 + int(np.ceil(shape.length / _GRAIN)))

@@ -1,6 +1,6 @@
-"""Stops of the ego for which the road shows no cause.
+"""Stops of the ego without a cause on the road.
 
-A cause is looked for in where everybody was, not in what the ego took for one.
+A cause is searched in the positions of all road users, not in the ego's own reasons.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,16 +24,16 @@ AFTER = 2.0
 SIGHT = 10.0
 """[m] A cause counts this far in front of the ego."""
 
-_ASIDE = 0.5  # [m] beside the ego's way people are on it as well
-_FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and time to start
-_ROOM = 3.5  # [m] that the ego wants behind a crossing or a junction, besides its own length
-_BEHIND = 40.0  # [m] from which on who follows it is no foe
-_ABOUT, _SHORTEST = 20.0, 0.01  # [m] of path beyond what is looked at; a segment
-_APART = 0.5  # [m] between points of its way
-_STARTING = 3.0  # [s] in which an ego drives off that departs standing
-_HALT = 1.0  # [m] about a scheduled stop
-_AT_LINE, _OVER_LINE = 4.0, 0.5  # [m] before and beyond a stop sign's line, one stands at it
-_POINTS = 5  # of a vehicle's middle line, front to rear
+_ASIDE = 0.5  # [m] distance beside the ego's path within which people block it
+_FOE = 9.0  # [s] time to another vehicle: largest critical headway and time to start
+_ROOM = 3.5  # [m] space that the ego wants behind a crossing or junction, besides its length
+_BEHIND = 40.0  # [m] distance behind the ego from which a follower is no conflicting vehicle
+_ABOUT, _SHORTEST = 20.0, 0.01  # [m] path beyond the examined part; shortest segment
+_APART = 0.5  # [m] distance between points of its path
+_STARTING = 3.0  # [s] time in which an ego drives off that departs standing
+_HALT = 1.0  # [m] tolerance around a scheduled stop
+_AT_LINE, _OVER_LINE = 4.0, 0.5  # [m] range about a stop sign's line in which it stands there
+_POINTS = 5  # number of points of a vehicle's middle line, front to rear
 _GO = np.array(list("GgOo"))
 
 Mask = NDArray[np.bool_]
@@ -42,29 +42,29 @@ Mask = NDArray[np.bool_]
 class Uncaused(NamedTuple):
     """A stop without a cause."""
 
-    first: int  # the first control instant without one
-    duration: float  # [s] for which there was none
+    first: int  # first control instant without a cause
+    duration: float  # [s] duration without a cause
 
 
 class _Stand(NamedTuple):
-    """Where the ego stands, and when."""
+    """A stand of the ego: its place and its time."""
 
-    front: float  # [m] station
-    sight: float  # [m] how far ahead a vehicle keeps it from driving on
-    foes: float  # [m] how far ahead those pass for whom it waits
-    begin: int  # the first control instant
-    end: int  # and the one after the last
+    front: float  # [m] station of the front
+    sight: float  # [m] distance ahead within which a vehicle keeps it from driving on
+    foes: float  # [m] distance ahead within which vehicles pass for which it waits
+    begin: int  # first control instant
+    end: int  # control instant after the last one
 
 
 def stops_without_cause(
     drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]
 ) -> list[Uncaused]:
-    """The stops in which the ego stood while there was no cause, nor had been just before.
+    """Return the stops during which the ego stood without a cause, present or just before.
 
     Args:
-        drive: the ego's.
-        areas: on its way.
-        owed: when it owed somebody the way at which of them.
+        drive: Drive of the ego.
+        areas: Areas on its way.
+        owed: Times at which it had to let people pass at each of them.
     """
     time, found = drive.ego.time, []
     lasting = np.append(np.diff(time), 0.0)
@@ -84,11 +84,11 @@ def stops_without_cause(
 
 
 def owed_to(drive: Drive, encounters: Sequence[Encounter]) -> list[Owed]:
-    """Where and when the ego owed somebody the way.
+    """Return where and when the ego had to let people pass.
 
     Args:
-        drive: the ego's.
-        encounters: of the drive.
+        drive: Drive of the ego.
+        encounters: Encounters of the drive.
     """
     found: dict[float, Mask] = {}
     for met in encounters:
@@ -98,7 +98,7 @@ def owed_to(drive: Drive, encounters: Sequence[Encounter]) -> list[Owed]:
 
 
 def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
-    """How far ahead a vehicle keeps the ego from leaving what it has to keep free [m]."""
+    """Return the distance [m] ahead within which a vehicle keeps the ego on a keep-clear area."""
     length = drive.shape.length
     kept_free = [(area.entry, area.leave) for area in areas]
     kept_free += [(place.entry, place.exit + length) for place in drive.way.junctions]
@@ -107,22 +107,22 @@ def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
 
 
 def _foes(drive: Drive, front: float) -> float:
-    """How far ahead of its ``front`` [m] foes pass for whom the ego waits [m].
+    """Return the distance [m] ahead of its ``front`` within which vehicles pass that it waits for.
 
-    As far as the junction goes in which or before which it stands: from where a network lets
-    vehicles wait inside, it may be 17 m to where ways cross.
+    The distance reaches to the end of the junction in which or before which the ego stands. From a
+    waiting place inside a junction it may be 17 m to the crossing of the paths.
     """
     ends = [place.exit - front for place in drive.way.junctions if _at(place, front)]
     return max([SIGHT, *ends])
 
 
 def _at(place: JunctionOnWay, front: float) -> bool:
-    """Whether the front is in a junction, or right before it."""
+    """Return whether the front is in a junction, or right before it."""
     return place.entry - SIGHT <= front < place.exit
 
 
 def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple[Mask, float]]:
-    """When (T,) there was a cause of a stand, and how long [s] before that it counts."""
+    """Yield the times (T,) with a cause of a stand, and how long [s] before that it counts."""
     time, front = drive.ego.time, stand.front
     for entry, there in owed:
         if front <= entry <= front + SIGHT:
@@ -132,7 +132,7 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
             yield ~np.isin(drive.letters(line.system, line.link, time), _GO), 0.0
     for place in drive.way.junctions:
         if place.stop_sign and place.entry - _AT_LINE <= front <= place.entry + _OVER_LINE:
-            yield np.arange(len(time)) == stand.begin, 0.0  # then it has stood there
+            yield np.arange(len(time)) == stand.begin, 0.0  # the ego has stood there then
     if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
         yield np.ones(len(time), dtype=np.bool_), 0.0
     yield _people_ahead(drive, stand), AHEAD
@@ -141,7 +141,7 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
 
 
 def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
-    """(T,) when somebody was on the ego's way in front of it."""
+    """Return when (T,) a person was on the ego's path in front of it."""
     crowd, front = drive.crowd, stand.front
     x, y, _ = drive.path.pose(front)
     rows = _during(drive, stand, drive.ego.time[crowd.step])
@@ -156,16 +156,16 @@ def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
 
 
 def _vehicles_ahead(drive: Drive, stand: _Stand) -> Mask:
-    """(T,) when another vehicle was on the ego's way as far ahead of it as it looks."""
+    """Return when (T,) another vehicle was on the ego's path within its sight."""
     rows = _during(drive, stand, drive.vehicles.time)
     ahead, _ = _on_way(drive, stand, rows, stand.sight)
     return _at_instants(drive, rows[ahead])
 
 
 def _foes_ahead(drive: Drive, stand: _Stand) -> Mask:
-    """(T,) when another vehicle was about to come onto the ego's way ahead, not from behind it.
+    """Return when (T,) another vehicle was about to enter the ego's path ahead, not from behind.
 
-    It did so within ``_FOE``, or would have if it had driven straight on at its speed.
+    It did so within ``_FOE``, or would have done so straight on at its speed.
     """
     others = drive.vehicles
     rows = _during(drive, stand, others.time)
@@ -178,14 +178,14 @@ def _foes_ahead(drive: Drive, stand: _Stand) -> Mask:
 
 
 def _at_instants(drive: Drive, rows: NDArray[np.intp]) -> Mask:
-    """(T,) the instants of some rows of other vehicles."""
+    """Return the instants (T,) of some rows of other vehicles."""
     there = np.zeros(len(drive.ego.time), dtype=np.bool_)
     there[drive.instants(drive.vehicles.time[rows])] = True
     return there
 
 
 def _on_way(drive: Drive, stand: _Stand, rows: NDArray[np.intp], sight: float) -> tuple[Mask, Mask]:
-    """(n,) which vehicles are on the ego's way up to ``sight`` [m] ahead; (n,) behind its front."""
+    """Return which vehicles (n,) are on the ego's path ahead, and which are behind its front."""
     others, front = drive.vehicles, stand.front
     ahead, behind = np.zeros((2, len(rows)), dtype=np.bool_)
     x, y, _ = drive.path.pose(front)
@@ -203,7 +203,7 @@ def _on_way(drive: Drive, stand: _Stand, rows: NDArray[np.intp], sight: float) -
 
 
 def _straight_on(drive: Drive, stand: _Stand, rows: NDArray[np.intp]) -> Mask:
-    """(n,) which vehicles would come onto the ego's way ahead, driving straight on for a while."""
+    """Return which vehicles (n,) would enter the ego's path ahead, straight on for a while."""
     others, front = drive.vehicles, stand.front
     at = np.arange(front, front + stand.foes + _APART, _APART)
     way = shapely.LineString(drive.path.points(at)).buffer(drive.shape.width / 2, cap_style="flat")
@@ -216,16 +216,16 @@ def _straight_on(drive: Drive, stand: _Stand, rows: NDArray[np.intp]) -> Mask:
 
 
 def _during(drive: Drive, stand: _Stand, time: Array) -> NDArray[np.intp]:
-    """The rows (of ascending ``time`` [s]) that may be the cause of a stand."""
+    """Return the rows (in order of ``time`` [s]) that may be the cause of a stand."""
     own = drive.ego.time
     since, until = own[stand.begin] - AFTER, own[stand.end - 1] + _FOE + BEFORE
     return np.arange(*np.searchsorted(time, (since, until)))
 
 
 def _on_path(drive: Drive, stand: _Stand, x: Array, y: Array) -> tuple[Array, Array]:
-    """Stations and distances (n,) [m] of points beside the ego's path about where it stands.
+    """Return stations and distances (n,) [m] of points beside the ego's path near its stand.
 
-    A way may come by twice: the rest of it is not looked at.
+    A path may pass a place twice. Therefore only its part near the stand counts.
     """
     stations = drive.path.stations
     begin = max(stand.front - _BEHIND, 0.0)

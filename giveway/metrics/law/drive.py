@@ -1,4 +1,4 @@
-"""What the law of the road is judged by: one ego's tables, and what stood on its way."""
+"""The input of the judge: one ego's tables, and the rules along its path."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,10 +19,10 @@ _SAME = 1e-6  # [s]
 
 
 class Undisturbed(NamedTuple):
-    """Where people were in the run's twin, in which they did not feel the ego; R records."""
+    """The positions of the people in the run's twin, in which they did not feel the ego."""
 
     step: NDArray[np.int64]  # (R,) control instants, counted from the ego's first one
-    pedestrian: NDArray[np.int64]  # (R,) as in the run's crowd
+    pedestrian: NDArray[np.int64]  # (R,) index of the person, as in the run's crowd
     x: Array  # (R,) [m]
     y: Array  # (R,) [m]
 
@@ -32,18 +32,18 @@ class Drive:
     """One ego's drive.
 
     Attributes:
-        ego: its track, T instants.
-        shape: of its body.
-        body_radius: of a pedestrian [m].
-        way: with all that stood on it.
-        crowd: everybody on foot, counted from the ego's first instant.
-        people: where they mean to walk and how fast, counted likewise.
-        signals: the traffic lights' changes.
-        vehicles: all other vehicles.
-        comfortable: deceleration [m/s^2] that a yellow light asks of it.
-        goal: position [m] at which it leaves the road.
-        stop_speed: it stands below it [m/s].
-        undisturbed: the people of the run's twin; None: there is no twin.
+        ego: Track of the ego, T instants.
+        shape: Shape of its body.
+        body_radius: Body radius of a pedestrian [m].
+        way: Way with all that stood on it.
+        crowd: People on foot, counted from the ego's first instant.
+        people: Routes and desired speeds of the people, from the same instant.
+        signals: Changes of Changes of the traffic lights.
+        vehicles: All other vehicles.
+        comfortable: Deceleration [m/s^2] that a yellow light asks of it.
+        goal: Position [m] at which it leaves the road.
+        stop_speed: Speed [m/s] below which it stands.
+        undisturbed: People of the run's twin; None without a twin.
     """
 
     ego: EgoTrack
@@ -61,12 +61,12 @@ class Drive:
 
     @cached_property
     def path(self) -> EgoPath:
-        """The way's polyline."""
+        """Polyline of the path."""
         return EgoPath.through(self.way.points)
 
     @cached_property
     def front(self) -> Array:
-        """(T,) [m] station of the front bumper."""
+        """Station (T,) [m] of the front bumper."""
         return self.ego.position + self.way.departure
 
     @property
@@ -75,9 +75,9 @@ class Drive:
         return self.way.departure + self.goal
 
     def time_at(self, station: float) -> float:
-        """When [s] the front bumper reaches ``station`` [m]; inf: never, -inf: before it departs.
+        """Return when [s] the front reaches ``station`` [m]; inf if never, -inf before departure.
 
-        Straight between control instants.
+        Between control instants it is interpolated linearly.
         """
         beyond = np.flatnonzero(self.front >= station)
         if not len(beyond):
@@ -89,14 +89,14 @@ class Drive:
         return float(self.ego.time[k - 1] + share * (self.ego.time[k] - self.ego.time[k - 1]))
 
     def instants(self, time: Array) -> NDArray[np.int64]:
-        """(n,) the latest control instant up to each ``time`` (n,) [s]; else the first."""
+        """Return the latest control instant (n,) up to each ``time`` (n,) [s], or the first one."""
         found = np.searchsorted(self.ego.time, time + _SAME, side="right") - 1
         return np.asarray(np.maximum(found, 0), dtype=np.int64)
 
     def letters(self, system: str, link: int, time: Array) -> NDArray[np.str_]:
-        """(n,) the letter of a light's movement at each ``time`` (n,) [s], ascending or not.
+        """Return the letter (n,) of a light's movement at each ``time`` (n,) [s], in any order.
 
-        Before the first record it is that of the first; a light without records is out.
+        Before the first record the first one counts. A light without records is out.
         """
         mine = np.flatnonzero(self.signals.system == system)
         if not len(mine) or link < 0:
@@ -108,14 +108,14 @@ class Drive:
 
 
 def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """The stretches in which ``mask`` (n,) is true: first place, and the one after the last."""
+    """Return the stretches in which ``mask`` (n,) is true: first index, and one after the last."""
     edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
     begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return list(zip(begins.tolist(), ends.tolist(), strict=True))
 
 
 def spread(time: Array, there: NDArray[np.bool_], before: float, after: float) -> NDArray[np.bool_]:
-    """(T,) ``there`` from so long [s] before until so long [s] after."""
+    """Extend ``there`` (T,) by the times ``before`` and ``after`` [s]."""
     hits = time[there]
     if not len(hits):
         return there

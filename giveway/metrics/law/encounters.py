@@ -1,4 +1,4 @@
-"""Encounters at crossings: who had priority there, and whether the ego let them pass.
+"""Encounters at crossings: people's priority, and whether the ego let them pass.
 
 The definitions, and the reason for each number, stand in docs/law.md.
 """
@@ -39,36 +39,36 @@ BY = 20.0
 
 
 class Encounter(NamedTuple):
-    """Somebody with priority whom the ego meets at a crossing."""
+    """An encounter of the ego with a person with priority at a crossing."""
 
     area: Area
     walk: Walk
-    first: int  # the control instant at which it begins
-    owed: NDArray[np.bool_]  # (m,) at which of the walk's records the ego has to let them pass
-    too_early: float  # [s] the ego entered before the person had left; 0: it let them pass
+    first: int  # first control instant
+    owed: NDArray[np.bool_]  # (m,) records of the walk at which the ego has to let the person pass
+    too_early: float  # [s] time by which the ego entered before the person left; 0 if it waited
 
     @property
     def failed(self) -> bool:
-        """Whether the ego failed to yield."""
+        """Return whether the ego failed to yield."""
         return self.too_early > 0.0
 
 
 class PushedBack(NamedTuple):
-    """Somebody with priority who went back on a crossing."""
+    """A person with priority who went back on a crossing."""
 
     area: Area
     walk: Walk
-    farthest: int  # the record of the walk from which on they went back
+    farthest: int  # record of the walk from which on the person went back
     distance: float  # [m]
 
 
 def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
-    """The encounter of one walk with the ego, if it is one.
+    """Return the encounter of one walk with the ego, or none.
 
     Args:
-        drive: the ego's.
-        area: of the crossing.
-        walk: over it.
+        drive: Drive of the ego.
+        area: Area of the crossing.
+        walk: Walk over the crossing.
     """
     to_go, to_leave = walk.reach - walk.progress, walk.clear - walk.progress
     speed, room = drive.ego.speed[walk.steps], area.entry - drive.front[walk.steps]
@@ -90,13 +90,13 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
 
 
 def _comes(speed: Array, fastest: float, time: Array) -> Array:
-    """How far [m] an ego comes within ``time`` [s] that speeds up to its ``fastest`` [m/s]."""
+    """Return the distance [m] of an ego within ``time`` [s] that accelerates to ``fastest``."""
     faster = np.clip((fastest - speed) / PULL_AWAY, 0.0, np.maximum(time, 0.0))
     return speed * faster + PULL_AWAY / 2.0 * faster**2 + fastest * (time - faster)
 
 
 def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
-    """When [s] a person whose record ``end`` is the first without a claim gave it up."""
+    """Return when [s] a person lost priority; record ``end`` is the first one without it."""
     time = drive.ego.time[walk.steps]
     if end == len(time):
         return float(time[-1])
@@ -106,15 +106,15 @@ def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
 
 
 def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
-    """How far somebody with priority went back where the ego may have pushed them, if at all.
+    """Return how far a person with priority went back where the ego may have pushed them.
 
-    What others on foot or SUMO's vehicles do to them while the ego is far does not
-    count, nor what happens to them in the run's twin as well.
+    Pushes by other people or by SUMO's vehicles do not count while the ego is far, nor does what
+    happens to the person in the run's twin as well.
 
     Args:
-        drive: the ego's.
-        area: of the crossing.
-        walk: over it.
+        drive: Drive of the ego.
+        area: Area of the crossing.
+        walk: Walk over the crossing.
     """
     front = drive.front[walk.steps]
     counts = walk.priority & (front >= area.entry - BY) & (front <= area.leave)
@@ -135,7 +135,7 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
 
 
 def _goes_back_anyway(drive: Drive, area: Area, walk: Walk, first: int, last: int) -> float:
-    """How far [m] a person goes back in the twin about the records ``first`` to ``last``."""
+    """Return how far [m] a person goes back in the twin about the records ``first`` to ``last``."""
     twin = drive.undisturbed
     if twin is None:
         return 0.0
@@ -151,7 +151,7 @@ def _goes_back_anyway(drive: Drive, area: Area, walk: Walk, first: int, last: in
 
 
 def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
-    """(m,) whether the ego is near enough to a person."""
+    """Return whether (m,) the ego is near enough to push a person."""
     ego, k = drive.ego, walk.steps
     c, s = np.cos(ego.heading[k]), np.sin(ego.heading[k])
     d_x, d_y = walk.x - ego.front_x[k], walk.y - ego.front_y[k]
@@ -163,7 +163,7 @@ def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
 
 
 def waiting_time(drive: Drive, found: Encounter) -> float:
-    """How long [s] somebody stood although the ego had to let them pass."""
+    """Return how long [s] a person stood although the ego had to let them pass."""
     steps = found.walk.steps
     lasting = np.append(np.diff(drive.ego.time), 0.0)[steps]
     return float(lasting[found.owed & (found.walk.speed < drive.stop_speed)].sum())

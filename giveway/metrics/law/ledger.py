@@ -45,7 +45,7 @@ class Event(NamedTuple):
 
 @dataclass(frozen=True)
 class LawSummary:
-    """The summary's columns in a run in which the law of the road has a say on the ego's way."""
+    """The summary's columns in a run in which the law of the road applies on the ego's path."""
 
     encounters: Annotated[
         int, Quantity(None, "people with priority whom the ego met at a crossing")
@@ -79,11 +79,11 @@ LAW_FIELDS = columns_of(LawSummary)
 
 @dataclass(frozen=True)
 class Ledger:
-    """How an ego kept to the law of the road.
+    """The judgement on an ego by the law of the road.
 
     Attributes:
-        summary: in numbers.
-        events: all encounters and violations, in order of time.
+        summary: Summary in numbers.
+        events: All encounters and violations, in order of time.
     """
 
     summary: LawSummary
@@ -91,16 +91,16 @@ class Ledger:
 
     @property
     def violations(self) -> tuple[Event, ...]:
-        """The events for which the ego is answerable."""
+        """Events for which the ego is responsible."""
         return tuple(event for event in self.events if event.violation)
 
 
 def ledger(drive: Drive, vehicles: Sequence[VehicleContact] = ()) -> Ledger:
-    """Judge a drive by the law of the road; definitions in docs/law.md.
+    """Judge a drive by the law of the road; definitions are in docs/law.md.
 
     Args:
-        drive: the ego's.
-        vehicles: that it came into contact with.
+        drive: Drive of the ego.
+        vehicles: Vehicles that it came into contact with.
     """
     areas = areas_of(drive)
     walks = [(area, walk) for area in areas for walk in walks_over(drive, area)]
@@ -145,7 +145,7 @@ def ledger(drive: Drive, vehicles: Sequence[VehicleContact] = ()) -> Ledger:
 
 
 def count(events: Iterable[Event]) -> dict[str, int]:
-    """How many events there are of each kind, in the order of their first."""
+    """Count the events of each kind, in the order of their first."""
     found: dict[str, int] = {}
     for event in events:
         found[event.kind] = found.get(event.kind, 0) + 1
@@ -217,7 +217,7 @@ def _of_contact(drive: Drive, contact: VehicleContact) -> Event:
 
 
 def _at(drive: Drive, k: int, kind: str, value: float, unit: str, words: str) -> Event:
-    """A violation where the ego's front bumper was at instant ``k``."""
+    """Return a violation at the place of the ego's front bumper at instant ``k``."""
     ego = drive.ego
     place = float(ego.front_x[k]), float(ego.front_y[k])
     return Event(float(ego.time[k]), kind, True, "", "", *place, value, unit, words)

@@ -12,7 +12,7 @@ YELLOW = frozenset("yY")
 ARROW = "s"
 """A green arrow beside red: one may turn after a stop."""
 
-_STOPPED = 3.0  # [m] before the line is near enough for that stop
+_STOPPED = 3.0  # [m] distance before the line within which a stop counts
 
 
 class RedLight(NamedTuple):
@@ -21,14 +21,14 @@ class RedLight(NamedTuple):
     line: StopLine
     time: float  # [s]
     letter: str
-    value: float  # [s] since it was red, or [m/s^2] of braking that would have done at yellow
+    value: float  # [s] time since red, or [m/s^2] deceleration that would have sufficed at yellow
 
 
 def red_lights(drive: Drive) -> list[RedLight]:
-    """The red lights that the ego ran, in the order of its way.
+    """Return the red lights that the ego ran, in the order of its path.
 
     Args:
-        drive: the ego's.
+        drive: Drive of the ego.
     """
     found = []
     for line in drive.way.lines:
@@ -49,7 +49,7 @@ def red_lights(drive: Drive) -> list[RedLight]:
 
 
 def _since(drive: Drive, line: StopLine, time: float) -> float:
-    """When [s] the line's light got the colour that it has at ``time`` [s]."""
+    """Return when [s] the line's light changed to the colour that it has at ``time`` [s]."""
     mine = drive.signals.system == line.system
     changes = drive.signals.time[mine]
     changes = changes[changes <= time + 1e-6]

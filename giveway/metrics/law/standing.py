@@ -1,4 +1,4 @@
-"""Where the ego came to a stand: on crossings and in junctions that it has to keep free."""
+"""Stands of the ego on crossings and in junctions that it has to keep clear."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -20,7 +20,7 @@ NEAR = 3.0
 """[m] Somebody who is this near in front keeps the ego from driving on."""
 
 _SAME = 1e-6  # [s]
-_WAITING = (-3.0, 0.5)  # [m] behind and beyond a line or a waiting place the ego waits at it
+_WAITING = (-3.0, 0.5)  # [m] range about a line or a waiting place in which the ego waits
 
 
 Owed = tuple[float, NDArray[np.bool_]]
@@ -38,15 +38,15 @@ class Blocked(NamedTuple):
 def blocked_crossings(
     drive: Drive, areas: tuple[Area, ...], owed: Sequence[Owed] = ()
 ) -> list[Blocked]:
-    """The crossings on which the ego stood without having to, stand by stand.
+    """Return the crossings on which the ego stood without having to, stand by stand.
 
-    A crossing that is closed to people, and on which nobody is, is not blocked; nor is one that
-    lies beside a place inside a junction where the ego may wait for vehicles to pass.
+    A crossing that is closed to people and empty is not blocked. Neither is one beside a place
+    inside a junction where the ego may wait for vehicles to pass.
 
     Args:
-        drive: the ego's.
-        areas: on its way.
-        owed: when it owed somebody the way at which of them.
+        drive: Drive of the ego.
+        areas: Areas on its way.
+        owed: Times at which it had to let people pass at each of them.
     """
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
     for junction in drive.way.junctions:
@@ -65,12 +65,12 @@ def blocked_crossings(
 def blocked_junctions(
     drive: Drive, areas: tuple[Area, ...] = (), owed: Sequence[Owed] = ()
 ) -> list[Blocked]:
-    """The junctions in which the ego stood without having to, elsewhere than it may wait.
+    """Return the junctions in which the ego stood without having to, outside waiting places.
 
     Args:
-        drive: the ego's.
-        areas: on its way.
-        owed: when it owed somebody the way at a crossing.
+        drive: Drive of the ego.
+        areas: Areas on its way.
+        owed: Times at which it had to let people pass at a crossing.
     """
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
     found = list[Blocked]()
@@ -84,13 +84,13 @@ def blocked_junctions(
 
 
 def _waits_at(drive: Drive, place: float) -> NDArray[np.bool_]:
-    """(T,) whether the ego's front is at a waiting place [m]."""
+    """Return whether (T,) the ego's front is at a waiting place [m]."""
     off = drive.front - place
     return np.asarray((off >= _WAITING[0]) & (off <= _WAITING[1]))
 
 
 def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDArray[np.bool_]:
-    """(T,) whether people are to pass right in front of the ego, by right or not."""
+    """Return whether (T,) people are to pass right in front of the ego, by right or not."""
     passing = np.zeros(len(drive.ego.time), dtype=np.bool_)
     on_it = [(area.entry, _used(drive, area)) for area in areas]
     for entry, there in (*owed, *on_it):
@@ -101,7 +101,7 @@ def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDA
 
 
 def _used(drive: Drive, area: Area) -> NDArray[np.bool_]:
-    """(T,) whether anybody is on a crossing."""
+    """Return whether (T,) people are on a crossing."""
     crowd = drive.crowd
     u, w = area.place(crowd.x, crowd.y)
     on = (u >= 0.0) & (u <= area.length) & (np.abs(w) <= area.crossing.width / 2)
@@ -115,7 +115,7 @@ def _stands(drive: Drive) -> NDArray[np.bool_]:
 
 
 def _longest(drive: Drive, wrong: NDArray[np.bool_]) -> list[tuple[int, float]]:
-    """Of each stand its longest uninterrupted wrong part: first instant, duration [s]."""
+    """Return the longest uninterrupted wrong part of each stand: first instant, duration [s]."""
     time, found = drive.ego.time, []
     for begin, end in runs(_stands(drive)):
         parts = [
@@ -129,11 +129,11 @@ def _longest(drive: Drive, wrong: NDArray[np.bool_]) -> list[tuple[int, float]]:
 
 
 def somebody_in_front(drive: Drive, within: float = NEAR) -> NDArray[np.bool_]:
-    """(T,) whether a body reaches into the ego's straight way ahead within some distance [m].
+    """Return whether (T,) a body reaches into the ego's straight path within a distance [m].
 
     Args:
-        drive: the ego's.
-        within: the distance from the front bumper.
+        drive: Drive of the ego.
+        within: Distance [m] from the front bumper.
     """
     ego, crowd = drive.ego, drive.crowd
     k = crowd.step

@@ -1,4 +1,4 @@
-"""People at a crossing: how far over it they are, and when they have priority there."""
+"""People at a crossing: their progress over it, and their priority."""
 
 from typing import NamedTuple
 
@@ -12,34 +12,34 @@ from giveway.metrics.law.drive import Drive
 KERB = 1.0
 """[m] Who is this near to a crossing's kerb and heads for it is about to use it."""
 
-_OVER = 0.5  # [m] along a crossing; whose way leads less far over it does not cross there
-_ON = 1.0  # [m] beyond the kerb; who is first seen there has entered by right
+_OVER = 0.5  # [m] length along a crossing below which a route does not cross there
+_ON = 1.0  # [m] distance beyond the kerb at which a person first seen has entered by right
 _GREEN = np.array(["G", "g"])
 _OUT = np.array(["O", "o"])
-_SLOWEST = 0.1  # [m/s] of desired speeds, which may be zero
+_SLOWEST = 0.1  # [m/s] smallest desired speed here, as it may be zero
 
 
 class Walk(NamedTuple):
-    """One person's records near a crossing, on one of their ways over it, in order of time."""
+    """The records of one person near a crossing, on one of their ways over it, in order of time."""
 
     pedestrian: int
     steps: NDArray[np.int64]  # (m,) control instants
-    progress: Array  # (m,) [m] in the person's own direction, from the kerb they come from
+    progress: Array  # (m,) [m] in the person's own direction, from the kerb of entry
     priority: NDArray[np.bool_]  # (m,)
     x: Array  # (m,) [m]
     y: Array  # (m,) [m]
     speed: Array  # (m,) [m/s]
     desired_speed: float  # [m/s]
-    reach: float  # [m] progress at which the body reaches the ego's way
-    clear: float  # [m] and at which it has left it
+    reach: float  # [m] progress at which the body reaches the ego's path
+    clear: float  # [m] progress at which it has left it
 
 
 def walks_over(drive: Drive, area: Area) -> list[Walk]:
-    """Everybody's walks over an area's crossing.
+    """Return the walks of all people over an area's crossing.
 
     Args:
-        drive: whose crowd it is.
-        area: on its way.
+        drive: Drive with its crowd.
+        area: Area on its way.
     """
     crowd, people = drive.crowd, drive.people
     if not len(crowd.step) or not len(people.step):
@@ -78,11 +78,11 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
 
 
 def is_open(drive: Drive, area: Area) -> NDArray[np.bool_]:
-    """(T,) whether people who are about to enter the crossing have priority.
+    """Return whether (T,) people who are about to enter the crossing have priority.
 
     Args:
-        drive: the ego's.
-        area: on its way.
+        drive: Drive of the ego.
+        area: Area on its way.
     """
     crossing = area.crossing
     if not crossing.system:
@@ -94,9 +94,9 @@ def is_open(drive: Drive, area: Area) -> NDArray[np.bool_]:
 def _priority(
     drive: Drive, area: Area, progress: Array, aside: Array, open_at: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """(m,) whether a person has priority, record by record.
+    """Return whether (m,) a person has priority, record by record.
 
-    At the kerb whoever finds the crossing open has it, and on the crossing whoever had it there.
+    At the kerb a person has it if the crossing is open, and on the crossing if they had it there.
     """
     half = area.crossing.width / 2
     on = (progress >= 0.0) & (progress <= area.length)
@@ -116,17 +116,17 @@ def _priority(
 
 
 class _Route(NamedTuple):
-    """A way of one person that leads over a crossing."""
+    """A route of one person that leads over a crossing."""
 
     pedestrian: int
-    begin: int  # the control instant from which on it holds
-    end: int  # and the one from which on the next one does
-    onwards: bool  # from the crossing's first end to its second
+    begin: int  # first control instant at which it holds
+    end: int  # first control instant at which the next one holds
+    onwards: bool  # True from the crossing's first end to its second
     desired_speed: float  # [m/s]
 
 
 def _routes(drive: Drive, area: Area) -> list[_Route]:
-    """The ways that lead over the crossing."""
+    """Return the routes that lead over the crossing."""
     people = drive.people
     u, w = area.place(people.x, people.y)
     another = np.diff(people.pedestrian, prepend=-1) != 0
@@ -151,7 +151,7 @@ def _routes(drive: Drive, area: Area) -> list[_Route]:
 
 
 def _along(u: Array, w: Array, length: float, half: float) -> Array:
-    """(n,) [m] how far the leg to each place from the one before leads along the crossing.
+    """Return how far (n,) [m] the leg to each place leads along the crossing.
 
     Only its part on the crossing counts: |w| at most ``half``, u from 0 to ``length``.
     """

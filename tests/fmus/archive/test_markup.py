@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fmus.archive.gate import open_archive
+from fmus.archive.archive_check import open_archive
 from fmus.errors import FmuArchiveError, FmuFileError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'

@@ -13,7 +13,7 @@ OPEN, CLOSE = b"<fmiModelDescription>", b"</fmiModelDescription>"
 HUGE = """
 import sys
 from pathlib import Path
-from fmus.archive.gate import open_archive
+from fmus.archive.archive_check import open_archive
 from fmus.errors import FmuFileError
 try:
     open_archive(Path(sys.argv[1]))

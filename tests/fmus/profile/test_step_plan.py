@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmus import FmuProfileError
-from fmus.profile.pace import Pace, between, make_pace, step_to_run_with
+from fmus.profile.step_plan import StepPlan, between, make_step_plan, step_to_run_with
 
 H = 0.05  # [s]
 
@@ -32,9 +32,9 @@ H = 0.05  # [s]
     ],
 )
 def test_steps_that_fit(fmu_step, substeps, stretch):
-    pace = make_pace(H, fmu_step)
-    assert (pace.substeps, pace.stretch) == (substeps, stretch)
-    assert pace.step == pytest.approx(H if fmu_step is None else fmu_step, rel=1e-9)
+    step_plan = make_step_plan(H, fmu_step)
+    assert (step_plan.substeps, step_plan.stretch) == (substeps, stretch)
+    assert step_plan.step == pytest.approx(H if fmu_step is None else fmu_step, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -43,24 +43,24 @@ def test_steps_that_fit(fmu_step, substeps, stretch):
 )
 def test_steps_that_do_not_fit_are_refused_with_one_that_does(fmu_step, advice):
     with pytest.raises(FmuProfileError, match=advice) as caught:
-        make_pace(H, fmu_step)
+        make_step_plan(H, fmu_step)
     assert f"{fmu_step:g} s" in str(caught.value)
     assert "--time-step" in str(caught.value)
-    make_pace(H, float(advice.removeprefix("step = ")))
+    make_step_plan(H, float(advice.removeprefix("step = ")))
 
 
 @pytest.mark.parametrize("fmu_step", [1e-9, 1e-300, 5e-324])
 def test_steps_beyond_all_measure_are_refused(fmu_step):
     with pytest.raises(FmuProfileError, match="times smaller"):
-        make_pace(H, fmu_step)
+        make_step_plan(H, fmu_step)
 
 
 @given(st.integers(1, 1000), st.floats(0.001, 0.5))
 def test_every_whole_part_and_multiple_fits(number, control_step):
-    parts, multiple = (make_pace(control_step, control_step / number),
-                       make_pace(control_step, control_step * number))  # fmt: skip
-    assert parts == Pace(control_step / number, substeps=number)
-    assert multiple == Pace(control_step * number, stretch=number)
+    parts, multiple = (make_step_plan(control_step, control_step / number),
+                       make_step_plan(control_step, control_step * number))  # fmt: skip
+    assert parts == StepPlan(control_step / number, substeps=number)
+    assert multiple == StepPlan(control_step * number, stretch=number)
 
 
 # ---- within a step that is longer than the controller's ----
@@ -201,7 +201,7 @@ def test_a_profile_without_a_step_has_that_of_the_default_experiment(
     if fmi == "3.0":
         plain = redescribed(path, f'fixedInternalStepSize="{only!r}"', "")
     car = open_car(plain, like=path, fmu={"step": None})
-    assert car.prepared.pace.step == pytest.approx(only)
+    assert car.prepared.step_plan.step == pytest.approx(only)
     car.start()
     for _ in range(4):
         car.step(1000.0)
@@ -216,12 +216,12 @@ def test_a_default_step_that_does_not_fit_is_refused_at_set_up(zoo, open_car):
 
 
 def test_the_default_step_of_an_fmu_that_can_do_any_is_none(zoo, open_car):
-    assert open_car(zoo.car(step=0.03)).prepared.pace.step == H
+    assert open_car(zoo.car(step=0.03)).prepared.step_plan.step == H
 
 
 def test_a_step_of_the_profile_comes_first(zoo, open_car):
     car = open_car(zoo.car(only_step=0.03), fmu={"step": 0.025})
-    assert car.prepared.pace.step == 0.025
+    assert car.prepared.step_plan.step == 0.025
 
 
 @pytest.mark.parametrize(

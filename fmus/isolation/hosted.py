@@ -1,4 +1,4 @@
-"""What an FMU's process runs: a vehicle or a controller, told and asked in plain numbers."""
+"""The adapters hosted in an FMU's process: a vehicle or a controller, as plain numbers."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from fmus.profile.controller_preparation import PreparedController
 from fmus.profile.preparation import Prepared
 
 
-class Rider(Protocol):
-    """One FMU for one episode.
+class Hosted(Protocol):
+    """The adapter of one FMU for one episode.
 
     Attributes:
-        warnings: what the user should know.
-        time: as of the last step [s].
+        warnings: Warnings for the user.
+        time: Time [s] at the end of the last step.
     """
 
     def __init__(self, prepared: Any, folder: Path) -> None: ...
 
     @property
     def warnings(self) -> list[str]:
-        """What the user should know of the FMU."""
+        """Warnings for the user."""
 
     @property
     def time(self) -> float:
-        """As of the last step [s]."""
+        """Time [s] at the end of the last step."""
 
     @staticmethod
     def numbers(prepared: Any, /) -> tuple[int, int]:
-        """How many numbers each request and each reply has."""
+        """Return the numbers of values in each request and in each reply."""
 
     def start(self, numbers: Sequence[float]) -> None:
         """Begin at time 0."""
@@ -47,12 +47,12 @@ class Rider(Protocol):
         """End the FMU."""
 
 
-class VehicleRider:
-    """A vehicle: START position [m], speed [m/s]; STEP force [N], grade [rad].
+class HostedVehicle:
+    """Adapter of a vehicle: START position [m], speed [m/s]; STEP force [N], grade [rad].
 
     Args:
         prepared: the vehicle.
-        folder: of its unpacked FMU.
+        folder: Folder of its unpacked FMU.
     """
 
     def __init__(self, prepared: Prepared, folder: Path) -> None:
@@ -61,29 +61,29 @@ class VehicleRider:
 
     @staticmethod
     def numbers(prepared: Prepared) -> tuple[int, int]:
-        """Of requests and of replies."""
+        """Return the numbers of values in requests and in replies."""
         return 3, 3 + len(prepared.wiring.recorded)
 
     @property
     def warnings(self) -> list[str]:
-        """Of the vehicle."""
+        """Warnings of the vehicle."""
         return self._vehicle.warnings
 
     @property
     def time(self) -> float:
-        """Of the vehicle [s]."""
+        """Time [s] of the vehicle."""
         return self._vehicle.time
 
     def start(self, numbers: Sequence[float]) -> None:
-        """At a position and a speed."""
+        """Start the vehicle at a position and a speed."""
         self._vehicle.start(position=numbers[0], speed=numbers[1])
 
     def step(self, numbers: Sequence[float]) -> None:
-        """Under a force, on a grade."""
+        """Do one step under a force, on a grade."""
         self._vehicle.step(numbers[1], numbers[2])
 
     def state(self) -> Sequence[float]:
-        """Position, speed, acceleration and what is recorded."""
+        """Return position, speed, acceleration and the recorded values."""
         vehicle = self._vehicle
         state = vehicle.position, vehicle.speed, vehicle.acceleration
         return (*state, *vehicle.recorded) if self._has_records else state
@@ -93,12 +93,12 @@ class VehicleRider:
         self._vehicle.close()
 
 
-class ControllerRider:
-    """A controller: START nothing; STEP its inputs, in its own units; answers its output.
+class HostedController:
+    """Adapter of a controller: START nothing; STEP its inputs, in its own units.
 
     Args:
         prepared: the controller.
-        folder: of its unpacked FMU.
+        folder: Folder of its unpacked FMU.
     """
 
     def __init__(self, prepared: PreparedController, folder: Path) -> None:
@@ -106,29 +106,29 @@ class ControllerRider:
 
     @staticmethod
     def numbers(prepared: PreparedController) -> tuple[int, int]:
-        """Of requests and of replies."""
+        """Return the numbers of values in requests and in replies."""
         return 1 + len(prepared.wiring.inputs), 1
 
     @property
     def warnings(self) -> list[str]:
-        """None so far: what it is told is looked at by who tells it."""
+        """Empty: the client checks the inputs, and warns."""
         return []
 
     @property
     def time(self) -> float:
-        """Of the controller [s]."""
+        """Time [s] of the controller."""
         return self._controller.time
 
     def start(self, _numbers: Sequence[float]) -> None:
-        """With the start values of its profile."""
+        """Start the controller with the start values of its profile."""
         self._controller.start()
 
     def step(self, numbers: Sequence[float]) -> None:
-        """Told its inputs."""
+        """Do one step with these inputs."""
         self._controller.step(numbers[1:])
 
     def state(self) -> Sequence[float]:
-        """What it answers."""
+        """Return the controller's answer."""
         return (self._controller.answer,)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""How the controller's steps and an FMU's own steps fit together."""
+"""The communication step plan: the relation of the controller's steps to an FMU's own steps."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +11,13 @@ _MOST = 1_000_000  # substeps: more would take minutes
 
 
 @dataclass(frozen=True)
-class Pace:
-    """``substeps`` steps of the FMU per control step, or ``stretch`` control steps per FMU step.
+class StepPlan:
+    """The plan: ``substeps`` FMU steps per control step, or ``stretch`` control steps per FMU step.
 
     Attributes:
-        step: of the FMU [s].
+        step: Step of the FMU [s].
         substeps: 1 unless the FMU's step is the shorter one.
-        stretch: 1 unless the FMU's step is the longer one: the force is then held over it.
+        stretch: 1 unless the FMU's step is the longer one; the force is held over it.
     """
 
     step: float
@@ -25,14 +25,14 @@ class Pace:
     stretch: int = 1
 
 
-def make_pace(control_step: float, fmu_step: float | None) -> Pace:
-    """The pace for a control step [s] and the FMU's own step [s], None: the same.
+def make_step_plan(control_step: float, fmu_step: float | None) -> StepPlan:
+    """Return the plan for a control step [s] and the FMU's own step [s], by default the same.
 
     Raises:
         FmuProfileError: neither is a whole multiple of the other, or there are too many substeps.
     """
     if fmu_step is None:
-        return Pace(control_step)
+        return StepPlan(control_step)
     if fmu_step * _MOST < control_step:
         raise FmuProfileError(
             f"an FMU step of {fmu_step:g} s is more than {_MOST} times smaller than the control "
@@ -40,10 +40,10 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
         )
     substeps = max(1, round(control_step / fmu_step))
     if abs(substeps * fmu_step - control_step) <= _FIT * control_step:
-        return Pace(control_step / substeps, substeps=substeps)
+        return StepPlan(control_step / substeps, substeps=substeps)
     stretch = max(1, round(fmu_step / control_step))
     if abs(stretch * control_step - fmu_step) <= _FIT * fmu_step:
-        return Pace(stretch * control_step, stretch=stretch)
+        return StepPlan(stretch * control_step, stretch=stretch)
     near = control_step / max(1, round(control_step / fmu_step))
     raise FmuProfileError(
         f"an FMU step of {fmu_step:g} s does not fit the control step of {control_step:g} s; "
@@ -52,21 +52,21 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
     )
 
 
-def pace_of(
+def step_plan_of(
     path: Path,
     wanted: float | None,
     interface: Interface,
     default: float | None,
     step_size: float,
-) -> Pace:
-    """The pace of the profile's step, else of the one that the FMU can do.
+) -> StepPlan:
+    """Return the plan for the profile's step, or else for a step that the FMU can do.
 
     Args:
-        path: of the FMU, for messages.
-        wanted: the step that the profile names [s].
-        interface: of the FMU.
-        default: the step of its default experiment [s].
-        step_size: of the controller [s].
+        path: Path of the FMU, for messages.
+        wanted: Step that the profile names [s].
+        interface: Interface of the FMU.
+        default: Step of the FMU's default experiment [s].
+        step_size: Step size of the controller [s].
 
     Raises:
         FmuProfileError: they do not fit each other.
@@ -91,22 +91,22 @@ def pace_of(
                 "write the length that it does as step in [fmu] of the profile"
             )
     try:
-        return make_pace(step_size, wanted)
+        return make_step_plan(step_size, wanted)
     except FmuProfileError as error:
         raise FmuProfileError(f"{path}: {error}") from None
 
 
 def divides(part: float, whole: float) -> bool:
-    """Whether ``whole`` is a multiple of ``part``, up to rounding."""
+    """Return whether ``whole`` is a multiple of ``part``, up to rounding."""
     if part < 1e-9 * whole:
         return True  # finer than floating-point numbers can tell
     return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
 
 
 def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
-    """The flag that a run needs for an FMU's own step [s]; empty if the usual step fits."""
+    """Return the flag that a run needs for an FMU's step [s]; empty if the usual one fits."""
     try:
-        make_pace(usual, fmu_step)
+        make_step_plan(usual, fmu_step)
     except FmuProfileError:
         return f" and run with --time-step {fmu_step:g}"
     return ""
@@ -120,8 +120,8 @@ def between(
     Args:
         start: position and speed.
         end: position and speed.
-        duration: of the step [s].
-        share: of the step that has passed, 0 to 1.
+        duration: Duration of the step [s].
+        share: Share of the step that has passed, 0 to 1.
     """
     (s_0, v_0), (s_1, v_1) = start, end
     r, h = share, duration

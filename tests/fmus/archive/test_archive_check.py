@@ -1,4 +1,4 @@
-"""The gate: what could do harm is refused with its reason, before anything is unpacked."""
+"""The archive check: what could do harm is refused with its reason, before anything is unpacked."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import zipfile
 import pytest
 
 from fmus import bundled_fmu
-from fmus.archive.gate import extract, open_archive
+from fmus.archive.archive_check import extract, open_archive
 from fmus.errors import FmuArchiveError, FmuFileError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'

@@ -1,4 +1,4 @@
-"""The gate again: archives that say one thing in their list of members and are another."""
+"""The archive check again: archives that say one thing in their list of members and are another."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from fmus.archive.gate import open_archive
+from fmus.archive.archive_check import open_archive
 from fmus.errors import FmuArchiveError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zipfile
 
-from fmus.archive.gate import extract, open_archive
+from fmus.archive.archive_check import extract, open_archive
 from fmus.errors import FmuArchiveError, FmuFileError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'
@@ -47,7 +47,7 @@ def test_a_file_that_changed_since_it_was_examined(archive, tmp_path, refused):
 def test_damage_in_a_large_archive_shows_when_it_is_unpacked(
     archive, tmp_path, monkeypatch, refused
 ):
-    monkeypatch.setattr("fmus.archive.gate.CHECKED_AT_ONCE", 0)
+    monkeypatch.setattr("fmus.archive.archive_check.CHECKED_AT_ONCE", 0)
     info = zipfile.ZipInfo("resources/a.txt")
     path = archive((info, b"good " * 20))
     data = path.read_bytes()

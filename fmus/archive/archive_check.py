@@ -1,4 +1,4 @@
-"""The gate: an FMU's archive is examined as a whole before anything of it is unpacked or loaded.
+"""The archive check: an FMU's archive is examined before anything is unpacked or loaded.
 
 An FMU is a zip file from somebody else. It is refused if unpacking it could write outside its
 folder, fill the memory or the disk, or read other files. Everything else passes, including FMUs of
@@ -31,32 +31,32 @@ from fmus.text import printable
 DESCRIPTION: Final = "modelDescription.xml"
 ROOT: Final = "fmiModelDescription"
 MAX_MEMBERS: Final = 50_000
-MAX_DIRECTORY: Final = 5 << 20  # [bytes] of the archive's own list of members
-MAX_TOTAL: Final = 4 << 30  # [bytes] unpacked
-MAX_DESCRIPTION: Final = 64 << 20  # [bytes]; 50,000 variables take about 15 MB
-MAX_RATIO: Final = 100  # unpacked to packed; tables of numbers reach 10, program text 5
-RATIO_COUNTS_FROM: Final = 16 << 20  # [bytes] unpacked; small members do no harm
-CHECKED_AT_ONCE: Final = 64 << 20  # [bytes] unpacked: up to this size check sums are compared
+MAX_DIRECTORY: Final = 5 << 20  # [bytes] largest list of members of an archive
+MAX_TOTAL: Final = 4 << 30  # [bytes] largest sum of unpacked sizes
+MAX_DESCRIPTION: Final = 64 << 20  # [bytes] largest description; 50,000 variables take 15 MB
+MAX_RATIO: Final = 100  # largest size ratio unpacked to packed; tables reach 10, program text 5
+RATIO_COUNTS_FROM: Final = 16 << 20  # [bytes] unpacked size from which the ratio counts
+CHECKED_AT_ONCE: Final = 64 << 20  # [bytes] unpacked size up to which check sums are compared
 MAX_NAME: Final = 1024
-CHUNK: Final = 1 << 20  # [bytes]
+CHUNK: Final = 1 << 20  # [bytes] size of one read
 READABLE: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
 DRIVE: Final = re.compile(r"[A-Za-z]:")
 TWICE: Final = "twice in the archive (capitals and how accents are coded do not count)"
-LOCAL_HEADER: Final = 30  # [bytes] before the name of a member in the archive
+LOCAL_HEADER: Final = 30  # [bytes] size of the header before the name of a member
 
 
 @dataclass(frozen=True, eq=False)
 class Archive:
-    """An FMU's archive that has passed the gate; the same file gives the same one, for a while."""
+    """An FMU's archive that has passed the check; an unchanged file may yield the same object."""
 
     path: Path
     members: Mapping[str, zipfile.ZipInfo]  # files only, by their name
     description: bytes = field(repr=False)  # modelDescription.xml
-    sha256: str  # of the whole file
+    sha256: str  # SHA-256 of the whole file
 
 
 def open_archive(path: Path) -> Archive:
-    """Examine an FMU's archive; only its model description is read into memory.
+    """Examine an FMU's archive, and read its model description into memory.
 
     Recent results are kept until the file changes, because preparing a vehicle asks repeatedly.
 
@@ -93,9 +93,9 @@ def extract(archive: Archive, folder: Path, prefixes: Sequence[str]) -> None:
     """Unpack the members whose names begin with one of the prefixes.
 
     Args:
-        archive: from :func:`open_archive`.
-        folder: exists; nothing is written outside it, and nothing in it replaced.
-        prefixes: such as ``"binaries/linux64/"``, ``"resources/"``.
+        archive: Archive from :func:`open_archive`.
+        folder: Existing folder. Nothing is written outside it, and nothing in it is replaced.
+        prefixes: Beginnings of names, such as ``"binaries/linux64/"``, ``"resources/"``.
 
     Raises:
         FmuArchiveError: a member is damaged.
@@ -145,7 +145,7 @@ class _CautiousFile(io.FileIO):
 
 @contextmanager
 def _reading(path: Path) -> Iterator[zipfile.ZipFile]:
-    """Open the zip file; whatever zipfile raises becomes one of our errors."""
+    """Open the zip file, and turn the exceptions of zipfile into this package's errors."""
     try:
         with _CautiousFile(path) as file, zipfile.ZipFile(file) as archive:
             yield archive
@@ -191,7 +191,7 @@ def _require_file(path: Path) -> os.stat_result:
 def _examined(
     path: Path, infos: Sequence[zipfile.ZipInfo]
 ) -> tuple[dict[str, zipfile.ZipInfo], list[zipfile.ZipInfo]]:
-    """The members that are files, by name, and further ones of the same names.
+    """Return the members that are files, by name, and further members of the same names.
 
     Raises:
         FmuArchiveError: for the first bad member.
@@ -228,7 +228,7 @@ def _require_same(
     members: Mapping[str, zipfile.ZipInfo],
     copies: Sequence[zipfile.ZipInfo],
 ) -> None:
-    """Refuse a name that stands for two contents; some tools write the same file twice.
+    """Refuse a name that stands for two contents (some tools write the same file twice).
 
     Raises:
         FmuArchiveError: which of them counts would depend on who reads the archive.
@@ -240,7 +240,7 @@ def _require_same(
 
 
 def _fault(info: zipfile.ZipInfo) -> str:
-    """What is wrong with a member; empty if nothing is."""
+    """Return the fault of a member, as a phrase; empty if there is none."""
     name = info.orig_filename  # zipfile cuts it at a NUL
     file_type = stat.S_IFMT(info.external_attr >> 16)
     parts = name.removesuffix("/").split("/")
