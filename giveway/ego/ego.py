@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 
 from controller import Decision, Observation
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
-from giveway.crowd.perception import Perception
-from giveway.ego.corridor import Corridor
 from giveway.ego.foresight.building import foresight_of
 from giveway.ego.foresight.relevance import Nearby, Relevance
-from giveway.ego.kerbs import NO_KERBS
-from giveway.ego.path_view import PathView
 from giveway.ego.percept import NOBODY, Seen
+from giveway.ego.perception.corridor import Corridor
+from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.ego.perception.leader import NO_LEADER, NOBODY_BESIDE, Following
+from giveway.ego.perception.path_ahead import PathView
+from giveway.ego.perception.sensing import Perception
+from giveway.ego.perception.sudden_starts import SettingOut
 from giveway.ego.safety_layer import Guard
-from giveway.ego.setting_out import SettingOut
 from giveway.ego.speed_profile import SpeedProfile
 from giveway.ego.stop_cause import waits_for
 from giveway.ego.waiting_ego import WaitingEgo

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.foresight.crowd_foresight import CrowdForesight
-from giveway.ego.kerbs import NO_KERBS
+from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.ego.perception.leader import Leader
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd

@@ -14,9 +14,9 @@ from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
 from giveway.ego.junctions import PathJunction, junctions_on
-from giveway.ego.kerbs import Kerbs
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges, places_of
+from giveway.ego.perception.kerbs import Kerbs
 from giveway.ego.perception.leader import CLOSEST
 from giveway.ego.right_of_way import RightOfWay
 from giveway.ego.speed_profile import SpeedProfile, profile_of

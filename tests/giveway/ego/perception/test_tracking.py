@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.crowd.motion.noise import BOUND, planar_noise
-from giveway.crowd.tracking import Tracker
+from giveway.ego.perception.tracking import Tracker
 from pedestrian_model import Crowd
 
 DT, NOISE, HARDEST = 0.05, 0.1, 3.0

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig
 from giveway.crowd.motion.noise import BOUND, planar_noise
-from giveway.crowd.pace import Pace
-from giveway.crowd.tracking import Tracker
+from giveway.ego.perception.desired_speeds import Pace
+from giveway.ego.perception.tracking import Tracker
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 

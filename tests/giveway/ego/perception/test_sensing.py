@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from giveway.config import EgoRunConfig
-from giveway.crowd.perception import Perception
+from giveway.ego.perception.sensing import Perception
 from pedestrian_model import Crowd, CrowdModel, Vehicles
 
 
