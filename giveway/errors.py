@@ -46,6 +46,10 @@ class ControlError(GivewayError):
     """The controller cannot be set up as asked, or produced an unusable command."""
 
 
+class SensorError(GivewayError):
+    """A sensor cannot be made, or its answer cannot be used."""
+
+
 class CrowdError(GivewayError):
     """The pedestrians cannot be placed or moved as asked."""
 

@@ -54,4 +54,15 @@ MODEL = Socket(
     "--set-model",
     "step",
 )
-SOCKETS = (CONTROLLER, MODEL)
+SENSOR = Socket(
+    "sensor",
+    "[perception] sensor",
+    ("perception", "sensor"),
+    "sensor_options",
+    "sensors",
+    "giveway.sensors",
+    "--perception-sensor",
+    "--set-sensor",
+    "observe",
+)
+SOCKETS = (CONTROLLER, MODEL, SENSOR)

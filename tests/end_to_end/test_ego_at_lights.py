@@ -15,6 +15,7 @@ from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
+from giveway.ego.perception.truth import Truth
 from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
@@ -70,7 +71,9 @@ def drive(
                 lights.update({"tls": colour}, ego.front, ego.vehicle.speed)
             rows.append((ego.front, ego.vehicle.speed, colour))
             ego.corridor.fill_poses(poses, 0, ego.front, ego.vehicle.speed)
-            ego.decide(k, time, ego.look(0, poses, nobody, OPEN_GROUND, np.arange(0)))
+            ego.decide(
+                k, time, ego.look(0, poses, Truth.of_people(nobody), OPEN_GROUND, np.arange(0))
+            )
             ego.advance()
     return rows
 

@@ -3,12 +3,23 @@
 from typing import Literal
 
 from giveway.config.option import Preset, Section, option
-from giveway.config.plug_in_names import BUNDLED_MODELS, ModelName
+from giveway.config.plug_in_names import (
+    BUNDLED_MODELS,
+    BUNDLED_SENSORS,
+    ModelName,
+    SensorName,
+)
 
 
 class PerceptionConfig(Section):
     """What the controllers know of the pedestrians, as far as it is not the truth."""
 
+    sensor: SensorName = option(
+        "all",
+        None,
+        "what perceives the people: all (everybody); or somebody else's sensor, by the name that a "
+        "package declares, or as module:Class",
+    )
     position_noise: float = option(
         0.0,
         "m",
@@ -52,6 +63,11 @@ class PerceptionConfig(Section):
         "mpc arrives when its own is green",
         flag="--signal-plans",
     )
+
+    @property
+    def plugged_in_sensor(self) -> bool:
+        """Whether the sensor is somebody else's."""
+        return self.sensor not in BUNDLED_SENSORS
 
     @property
     def plugged_in(self) -> bool:
