@@ -30,6 +30,7 @@ def build_check() -> Commands:
     check = Commands("Check code of other packages.")
     check.add("controller", _controller)
     check.add("model", _model)
+    check.add("sensor", _sensor)
     check.callback()(_check)
     return check
 
@@ -59,3 +60,11 @@ def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     from giveway.plug_ins.sockets import MODEL
 
     raise typer.Exit(check_command(name, set_ or (), MODEL, time_step=time_step))
+
+
+def _sensor(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
+    """Does a sensor? It looks at people in made-up scenes, without SUMO."""
+    from giveway.cli.check_command import check_command
+    from giveway.plug_ins.sockets import SENSOR
+
+    raise typer.Exit(check_command(name, set_ or (), SENSOR, time_step=time_step))
