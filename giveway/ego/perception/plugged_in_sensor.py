@@ -127,14 +127,17 @@ class PluggedInSensor:
             raise self._unusable(ids, "each person once", "returned person_ids")
         for name in ("position", "velocity"):
             if not np.isfinite(array := getattr(people, name)).all():
-                raise self._unusable(array[~np.isfinite(array)][0], "finite numbers", name)
+                bad = float(array[~np.isfinite(array)][0])
+                raise self._unusable(bad, "finite numbers", f"returned {name}")
         for name in ("age", "position_bound"):
             array = getattr(answer, name)
             if array is None:
                 continue
             sound = isinstance(array, np.ndarray) and array.shape == (n,) and array.dtype == float
             if not (sound and np.isfinite(array).all() and (array >= 0.0).all()):
-                raise self._unusable(array, f"None, or ({n},) floats of at least 0", name)
+                raise self._unusable(
+                    array, f"None, or ({n},) floats of at least 0", f"returned {name}"
+                )
         return answer
 
     def _unusable(self, value: object, expected: str, verb: str = "returned") -> SensorError:
