@@ -127,7 +127,7 @@ def test_an_ego_whose_sensor_sees_nobody_drives_as_if_alone(toys, controller):
 
 
 def test_the_tables_keep_the_gap_to_people_who_are_not_perceived(toys):
-    result = drive("nobody", crowd__pedestrians=40, seed=13, time_limit=12.0)
+    result = drive("nobody", scenario="encounter", time_limit=12.0)
     assert np.isfinite(result.egos[0].track.gap).any()
 
 
