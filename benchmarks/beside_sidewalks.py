@@ -43,7 +43,7 @@ def drive(seed: int, controller: str, file: Path) -> None:
 
 def kerbs_of(way: Any, width: float) -> Any:
     """The kerbs beside the way."""
-    from giveway.ego.kerbs import Kerbs
+    from giveway.ego.perception.kerbs import Kerbs
     from giveway.geometry.path import EgoPath
     from giveway.walkways import WalkNetwork
     from sumo_scenarios import find

@@ -50,6 +50,10 @@ class RuleError(GivewayError):
     """A rule of the road of another package cannot be made, or demanded something unusable."""
 
 
+class SensorError(GivewayError):
+    """A sensor cannot be made, or its answer cannot be used."""
+
+
 class CrowdError(GivewayError):
     """The pedestrians cannot be placed or moved as asked."""
 

@@ -31,6 +31,8 @@ def build_check() -> Commands:
     check.add("controller", _controller)
     check.add("model", _model)
     check.add("rule", _rule)
+
+    check.add("sensor", _sensor)
     check.callback()(_check)
     return check
 
@@ -68,3 +70,11 @@ def _rule(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     from giveway.plug_ins.sockets import RULE
 
     raise typer.Exit(check_command(name, set_ or (), RULE, time_step=time_step))
+
+
+def _sensor(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
+    """Does a sensor? It looks at people in made-up scenes, without SUMO."""
+    from giveway.cli.check_command import check_command
+    from giveway.plug_ins.sockets import SENSOR
+
+    raise typer.Exit(check_command(name, set_ or (), SENSOR, time_step=time_step))

@@ -15,7 +15,7 @@ from giveway.config.files.foreign_code import foreign_code, require_code
 from giveway.config.files.layers import Layer, build_config
 from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
-from giveway.plug_ins.sockets import CONTROLLER, RULE, Socket
+from giveway.plug_ins.sockets import CONTROLLER, RULE, SENSOR, Socket
 from pedestrian_model import JUPEDSIM_MODELS
 
 LIMIT = 60.0  # [s] that a rule may take: most take a tenth of a second
@@ -131,6 +131,13 @@ def _battery(connection: Connection, config: str, what: str) -> None:
         ((name, settings),) = own.rules.plugged_in.items()
         ruled = check_rule(maker(name, settings), made_up_route(own, step), connection.send)
         connection.send([(finding.rule, finding.problem) for finding in ruled])
+    elif what == SENSOR.what:
+        from giveway.ego.perception import plugged_in_sensor as sensors
+        from giveway.ego.perception.conformance import check_sensor
+
+        (own,) = effective.each_ego()
+        told = check_sensor(sensors.maker(own), sensors.setup_of(own, step), connection.send)
+        connection.send([(finding.rule, finding.problem) for finding in told])
     else:
         from giveway.crowd import models
         from pedestrian_model import check_model

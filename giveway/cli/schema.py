@@ -12,7 +12,7 @@ from giveway.config.files.presets import NAMES
 from giveway.config.files.schema_names import PRESET, PROFILE, RUN, STUDY
 from giveway.config.run_config import EGO_TABLES, RunConfig
 from giveway.plug_ins.finding import declared_names
-from giveway.plug_ins.sockets import CONTROLLER, MODEL
+from giveway.plug_ins.sockets import CONTROLLER, MODEL, SENSOR
 from giveway.results.json_text import json_text
 from giveway.studies.definition import StudyDefinition
 from pedestrian_model import PRESETS
@@ -54,6 +54,7 @@ def _run_schema() -> dict[str, Any]:
     defined = schema["$defs"]
     places = [(CONTROLLER, schema["properties"])]
     places += [(MODEL, defined[name]["properties"]) for name in ("CrowdConfig", "PerceptionConfig")]
+    places.append((SENSOR, defined["PerceptionConfig"]["properties"]))
     for socket, properties in places:
         declared = [{"enum": names}] if (names := declared_names(socket)) else []
         properties[socket.location[-1]]["anyOf"] += declared

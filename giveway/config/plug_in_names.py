@@ -1,4 +1,4 @@
-"""Names of what drives and of what moves people: ours, declared by a package, or module:Class."""
+"""Names of controllers, pedestrian models and sensors: ours, a package's, or module:Class."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from giveway.plug_ins.finding import declared_names, is_fmu, is_reference
-from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
+from giveway.plug_ins.sockets import CONTROLLER, MODEL, SENSOR, Socket
 
 BundledController = Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"]
 BundledModel = Literal[
@@ -20,9 +20,11 @@ BundledModel = Literal[
     "jupedsim:CollisionFreeSpeedModel",
     "jupedsim:SocialForceModel",
 ]
+BundledSensor = Literal["all"]
 _JUPEDSIM = "jupedsim:"
 BUNDLED: frozenset[str] = frozenset(get_args(BundledController))
 BUNDLED_MODELS: frozenset[str] = frozenset(get_args(BundledModel))
+BUNDLED_SENSORS: frozenset[str] = frozenset(get_args(BundledSensor))
 
 
 def _controller(value: Any) -> Any:
@@ -34,6 +36,10 @@ def _controller(value: Any) -> Any:
 
 def _model(value: Any) -> Any:
     return _known(value, get_args(BundledModel), MODEL)
+
+
+def _sensor(value: Any) -> Any:
+    return _known(value, get_args(BundledSensor), SENSOR)
 
 
 def _known(name: Any, bundled: tuple[str, ...], socket: Socket) -> Any:
@@ -54,3 +60,4 @@ _Other = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"^[\w.]+:[
 _Fmu = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"\.[Ff][Mm][Uu]$"})]
 ControllerName = Annotated[BundledController | _Other | _Fmu, BeforeValidator(_controller)]
 ModelName = Annotated[BundledModel | _Other, BeforeValidator(_model)]
+SensorName = Annotated[BundledSensor | _Other, BeforeValidator(_sensor)]

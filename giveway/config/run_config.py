@@ -58,6 +58,7 @@ EGO_TABLES = (
     "planner",
     "safety",
     "perception",
+    "sensor_options",
 )
 """What may differ from ego to ego."""
 
@@ -137,6 +138,9 @@ class RunConfig(Section):
         default_factory=dict,
         description="the options of a pedestrian model that is not giveway's own",
     )
+    sensor_options: dict[str, JsonValue] = Field(
+        default_factory=dict, description="the options of a sensor that is not giveway's own"
+    )
     safety: SafetyConfig = SafetyConfig()
     perception: PerceptionConfig = PerceptionConfig()
     traffic: TrafficConfig = TrafficConfig()
@@ -184,6 +188,11 @@ class RunConfig(Section):
         values = self.model_dump(exclude={"egos"})
         if entry.get("controller", self.controller) != self.controller:
             values["controller_options"], values["controller_profile"] = {}, ""  # of another one
+        own = entry.get("perception")
+        if isinstance(own, dict) and own.get("sensor", self.perception.sensor) != (
+            self.perception.sensor
+        ):
+            values["sensor_options"] = {}
         for key, value in entry.items():
             values[key] = {**values[key], **value} if isinstance(value, dict) else value
         try:
@@ -285,6 +294,12 @@ class EgoRunConfig(RunConfig):
                 "named level beside its name"
             )
 
+        if self.sensor_options and not self.perception.plugged_in_sensor:
+            key = next(iter(self.sensor_options))
+            raise ValueError(
+                f"[sensor_options] {key}: '{self.perception.sensor}' has no options there; name a "
+                "sensor that has it as [perception] sensor, or leave it out"
+            )
         if self.controller_profile and not is_fmu(self.controller):
             raise ValueError(
                 f"controller_profile = '{self.controller_profile}': '{self.controller}' is no "

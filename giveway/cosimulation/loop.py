@@ -30,7 +30,8 @@ from giveway.cosimulation.traffic.interactions import Meetings
 from giveway.crowd.reachable import flow_remark, spawn_remark, way_of
 from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
-from giveway.errors import ControlError, CrowdError, RuleError, VehicleError
+from giveway.ego.perception.truth import Truth
+from giveway.errors import ControlError, CrowdError, RuleError, SensorError, VehicleError
 from giveway.geometry.kernel import Array
 from giveway.journal.recorder import Recorder
 from giveway.processes.garbage import full_collections_put_off
@@ -81,6 +82,9 @@ class Loop:
         self._meetings = Meetings(parts.sumo, parts.yielding)
         self._instants = Instants(recorder, parts.config.record, parts.time_step)
         self._fronts = np.empty((0, 2))
+        self._truth = Truth.of_people(parts.roster.crowd)
+        if parts.surroundings.walls is not None:
+            self._truth.outlines = parts.surroundings.walls.segments
         self.followed = Followed(parts) if follow else None
         walks = None if self.followed is None else self.followed.walks
         self._walking = Walking(parts.config, parts.crowd_model, parts.roster, walks)
@@ -100,6 +104,8 @@ class Loop:
             raise ControlError(f"controller at step {self._k}: {error}") from error
         except RuleError as error:
             raise RuleError(f"rule at step {self._k}: {error}") from error
+        except SensorError as error:
+            raise SensorError(f"sensor at step {self._k}: {error}") from error
         except PedestrianModelError as error:
             raise CrowdError(self._blame(error)) from error
         for ego in self._egos:
@@ -261,12 +267,13 @@ class Loop:
         recorder, mirror = self._recorder, self._mirror
         recorder.instant(time)
         mirror.place(self._egos)
-        crowd, surroundings = self._roster.crowd, self._parts.surroundings
+        truth, surroundings = self._truth, self._parts.surroundings
+        truth.people, truth.vehicles, truth.time = self._roster.crowd, mirror.poses[0], time
         predicting = controlling = 0.0
         acting = ""
         for row, ego in enumerate(self._egos):
             look_at = perf_counter()
-            seen = ego.look(row, mirror.poses, crowd, surroundings, self._roster.present)
+            seen = ego.look(row, mirror.poses, truth, surroundings, self._roster.present)
             decide_at = perf_counter()
             decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
@@ -277,8 +284,8 @@ class Loop:
                 recorder.outputs(ego.id, *ego.outputs())
             predicted = ego.expected(seen) if self._instants.looks else None
             if predicted is not None:
-                present, relevant = self._roster.present, seen.relevant
-                whom = present if relevant is None else present[relevant]
+                whom, relevant = seen.percept.person_ids, seen.relevant
+                whom = whom if relevant is None else whom[relevant]
                 self._instants.predictions(ego.id, predicted, whom)
             predicting += decide_at - look_at
             controlling += controlled_at - decide_at

@@ -4,23 +4,24 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controller import Decision, Observation
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
-from giveway.crowd.perception import Perception
-from giveway.ego.corridor import Corridor
 from giveway.ego.foresight.building import foresight_of
 from giveway.ego.foresight.relevance import Nearby, Relevance
-from giveway.ego.kerbs import NO_KERBS, Kerbs
-from giveway.ego.path_view import PathView
 from giveway.ego.percept import NOBODY, Seen
+from giveway.ego.perception.corridor import Corridor
+from giveway.ego.perception.kerbs import NO_KERBS, Kerbs
 from giveway.ego.perception.leader import NO_LEADER, NOBODY_BESIDE
+from giveway.ego.perception.path_ahead import PathView
+from giveway.ego.perception.protocol import Ids, OwnState, Percept
+from giveway.ego.perception.sensing import Perception
+from giveway.ego.perception.sudden_starts import SettingOut
+from giveway.ego.perception.truth import Truth
 from giveway.ego.rules.following import Following
 from giveway.ego.rules.protocol import Told
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.safety_layer import Guard
-from giveway.ego.setting_out import SettingOut
 from giveway.ego.stop_cause import waits_for
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ControlError, VehicleError
@@ -101,6 +102,7 @@ class Ego:
         safety = waiting.safety
         perception = Perception(config, waiting.worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
+        self._own = OwnState(Pose(0.0, 0.0, 0.0), 0.0, 0, shape)
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._kerbs = kerbs if self._guard is not None else None
         self.systems = rules.systems | (frozenset() if kerbs is None else kerbs.systems)
@@ -159,24 +161,26 @@ class Ego:
         self,
         row: int,
         poses: Array,
-        crowd: Crowd,
+        truth: Truth,
         surroundings: Surroundings,
-        numbers: NDArray[np.int64],
+        person_ids: Ids,
     ) -> Seen:
         """Find what is in front, now and over the horizon.
 
         Args:
             row: the ego's row among the vehicles.
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
-            crowd: the pedestrians now, as they are; the controller acts on how they are seen.
+            truth: World as it is, which the sensor looks at; all else works on the percept.
             surroundings: the walls and lights that they heed.
-            numbers: (n,) one for each pedestrian that it keeps.
+            person_ids: Number of each pedestrian of the truth, (n,).
         """
         front, speed, corridor = self.front, self.vehicle.speed, self.corridor
-        truth, perception, errors = crowd, self._perception, None
+        percept, perception = Percept(truth.people, person_ids), self._perception
         if perception is not None:
-            crowd = perception.observe(truth, numbers)
-            errors = perception.errors
+            own = self._own
+            own.pose, own.speed, own.row = self.pose, speed, row
+            percept = perception.observe(truth, person_ids, own)
+        crowd, numbers, _, errors = percept
         kerbs, hasty = NO_KERBS, NOBODY
         if self._kerbs is not None:
             kerbs = self._kerbs.of(crowd.position, crowd.velocity, front)
@@ -184,7 +188,7 @@ class Ego:
         pedestrian, reachable = corridor.closest_now(crowd.position, front)
         closest = pedestrian
         if perception is not None:
-            closest, _ = corridor.closest_now(truth.position, front)
+            closest, _ = corridor.closest_now(truth.people.position, front)
         ahead = corridor.empty
         predictor, predicted, relevant, foresight = self._predictor, None, None, None
         if reachable and predictor is not None:
@@ -230,12 +234,10 @@ class Ego:
             predicted,
             relevant,
             closest,
-            crowd,
+            percept,
             foresight,
             poses,
             row,
-            numbers,
-            errors,
             to_clear,
             kerbs,
             hasty,
@@ -262,7 +264,8 @@ class Ego:
             )
         if self._guard is not None:
             there = self.front, self.vehicle.speed
-            safe = self._guard.overrule(decision, *there, seen.crowd, seen.errors, seen.kerbs)
+            people, _, _, bound = seen.percept
+            safe = self._guard.overrule(decision, *there, people, bound, seen.kerbs)
             if safe is not None:
                 controller.applied(safe.force)
                 decision = safe
@@ -297,14 +300,14 @@ class Ego:
             self._force,
             seen.stop - front,
             self._view,
-            seen.crowd,
+            seen.percept.people,
             seen.poses,
             seen.row,
             rules.lane_speeds,
             seen.pedestrian - origin,
             leader.station - origin,
             leader.speed,
-            seen.numbers,
+            seen.percept.person_ids,
             seen.to_clear,
         )
 

@@ -13,7 +13,7 @@ from controller import (
     largest_safe_force,
 )
 from giveway.config import EgoRunConfig
-from giveway.ego.kerbs import NO_KERBS
+from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath, body_pose, segment_at
@@ -65,7 +65,7 @@ class Guard:
             speed: the ego's [m/s].
             crowd: the pedestrians as it sees them.
             errors: (n,) [m] that their positions are off at most; None: as the limits say.
-            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
+            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.perception.kerbs.Kerbs.of`.
         """
         layer = self._layer
         safe, verdict = watch(

@@ -65,5 +65,16 @@ RULE = Socket(
     "--rule",
     "demand",
 )
-SOCKETS = (CONTROLLER, MODEL)
+SENSOR = Socket(
+    "sensor",
+    "[perception] sensor",
+    ("perception", "sensor"),
+    "sensor_options",
+    "sensors",
+    "giveway.sensors",
+    "--perception-sensor",
+    "--set-sensor",
+    "observe",
+)
+SOCKETS = (CONTROLLER, MODEL, SENSOR)
 """The sockets that one key names; those of rules are the keys of a table."""

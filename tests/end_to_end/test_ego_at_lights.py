@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
+from giveway.ego.perception.truth import Truth
 from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.rules.protocol import Told
 from giveway.ego.rules.rule_set import RuleSet
@@ -73,7 +74,9 @@ def drive(
                 ego.update(time, Told({"tls": colour}))
             rows.append((ego.front, ego.vehicle.speed, colour))
             ego.corridor.fill_poses(poses, 0, ego.front, ego.vehicle.speed)
-            ego.decide(k, time, ego.look(0, poses, nobody, OPEN_GROUND, np.arange(0)))
+            ego.decide(
+                k, time, ego.look(0, poses, Truth.of_people(nobody), OPEN_GROUND, np.arange(0))
+            )
             ego.advance()
     return rows
 

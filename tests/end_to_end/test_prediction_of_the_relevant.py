@@ -12,6 +12,7 @@ from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.foresight.relevance import MARGIN
+from giveway.ego.perception.truth import Truth
 from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.geometry.bodies import VehicleShape
@@ -41,6 +42,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
     for _ in range(25):
         speed = rng.uniform(0.0, 10.0)
         people = crowd(rng)
+        truth, ids = Truth.of_people(people), np.arange(len(people))
         seen = []
         for predict_all in (150, 10**9):
             monkeypatch.setattr("giveway.ego.foresight.relevance.PREDICT_ALL", predict_all)
@@ -51,9 +53,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
                 poses = np.zeros((waiting.horizon, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
-                seen.append(
-                    ego.look(0, poses, people, OPEN_GROUND, np.arange(len(people))).ahead.copy()
-                )
+                seen.append(ego.look(0, poses, truth, OPEN_GROUND, ids).ahead.copy())
                 whom = ego._relevance.of(people, ego.pose.x, ego.pose.y, speed)
                 left_out += whom is not None and not whom.all()
         reach = ego.front + (speed + 8.0 * 0.75 / 2) * 0.75 + CONFIG.regulation.safe_distance
@@ -72,6 +72,7 @@ def test_who_is_left_out_hardly_changes_what_a_manoeuvre_would_lead_to(
     for _ in range(12):
         speed = rng.uniform(1.0, 10.0)
         people = crowd(rng, widest=150.0)
+        truth, ids = Truth.of_people(people), np.arange(len(people))
         seen = []
         for margin in (MARGIN, 1e9):
             monkeypatch.setattr("giveway.ego.foresight.relevance.MARGIN", margin)
@@ -83,7 +84,7 @@ def test_who_is_left_out_hardly_changes_what_a_manoeuvre_would_lead_to(
                 poses = np.zeros((N, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
-                look = ego.look(0, poses, people, OPEN_GROUND, np.arange(len(people)))
+                look = ego.look(0, poses, truth, OPEN_GROUND, ids)
                 assert look.foresight is not None
                 left_out += look.relevant is not None and not look.relevant.all()
                 way = speed * 0.05 * np.arange(N + 1)

@@ -10,7 +10,7 @@ from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import find, is_fmu, load_class, shown
 from giveway.plug_ins.options import plain
-from giveway.plug_ins.sockets import CONTROLLER, MODEL, RULE, Socket
+from giveway.plug_ins.sockets import CONTROLLER, MODEL, RULE, SENSOR, SOCKETS, Socket
 
 if TYPE_CHECKING:
     from giveway.config.run_config import EgoRunConfig, RunConfig
@@ -50,12 +50,16 @@ class Named(NamedTuple):
         return find(self.name, self.socket).sha256
 
 
-_PLACES = ((CONTROLLER, "in the controller at"), (MODEL, "in the crowd's step from"))
+_PLACES = (
+    (CONTROLLER, "in the controller at"),
+    (SENSOR, "in the controller at"),
+    (MODEL, "in the crowd's step from"),
+)
 """As a heartbeat tells them."""
 
 
 def foreign_code(config: RunConfig) -> list[Named]:
-    """All plug-ins of a run: of its egos, and of its crowd."""
+    """All plug-ins of a run: of its egos, their sensors, and its crowd."""
     named = [
         Named(CONTROLLER, ego.ego_id, ego.controller, ego.controller_options, ego)
         for ego in config.each_ego()
@@ -64,13 +68,18 @@ def foreign_code(config: RunConfig) -> list[Named]:
     for ego in config.each_ego():
         rules = ego.rules.plugged_in.items()
         named += [Named(RULE, ego.ego_id, name, own) for name, own in rules]
+    named += [
+        Named(SENSOR, ego.ego_id, ego.perception.sensor, ego.sensor_options)
+        for ego in config.each_ego()
+        if ego.perception.plugged_in_sensor
+    ]
     if config.crowd.plugged_in:
         named.append(Named(MODEL, "the crowd", config.crowd.model, config.model_options))
     return named
 
 
 def code_hashes(
-    config: RunConfig, sockets: Collection[Socket] = (CONTROLLER, MODEL, RULE)
+    config: RunConfig, sockets: Collection[Socket] = (*SOCKETS, RULE)
 ) -> dict[str, str]:
     """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
 

@@ -3,12 +3,23 @@
 from typing import Literal
 
 from giveway.config.option import Preset, Section, option
-from giveway.config.plug_in_names import BUNDLED_MODELS, ModelName
+from giveway.config.plug_in_names import (
+    BUNDLED_MODELS,
+    BUNDLED_SENSORS,
+    ModelName,
+    SensorName,
+)
 
 
 class PerceptionConfig(Section):
     """What the controllers know of the pedestrians, as far as it is not the truth."""
 
+    sensor: SensorName = option(
+        "all",
+        None,
+        "what perceives the people: all (everybody); or somebody else's sensor, by the name that a "
+        "package declares, or as module:Class",
+    )
     position_noise: float = option(
         0.0,
         "m",
@@ -44,6 +55,11 @@ class PerceptionConfig(Section):
     preset: Preset = option(
         "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"
     )
+
+    @property
+    def plugged_in_sensor(self) -> bool:
+        """Whether the sensor is somebody else's."""
+        return self.sensor not in BUNDLED_SENSORS
 
     @property
     def plugged_in(self) -> bool:

@@ -10,7 +10,7 @@ from giveway.cosimulation.entry.stop_places import SERVING, lanes_of, on_path, p
 from giveway.cosimulation.law_records import way_of
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
-from giveway.ego.kerbs import Kerbs
+from giveway.ego.perception.kerbs import Kerbs
 from giveway.ego.rules.route import RouteContext, Stop
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.waiting_ego import WaitingEgo

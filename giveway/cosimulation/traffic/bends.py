@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.cosimulation.traffic.lane_paths import Indices, LanePathPool, LanePaths
-from giveway.ego.corridor import fill_poses
+from giveway.ego.perception.corridor import fill_poses
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.background import BackgroundVehicles

@@ -4,8 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from giveway.ego.corridor import closest_in_front
 from giveway.ego.foresight.threats import Alarm, conflicts_and_calm
+from giveway.ego.perception.corridor import closest_in_front
 from giveway.geometry.kernel import Array, inlined, kernel
 from giveway.geometry.passage import window
 from giveway.geometry.path import body_pose, segment_at

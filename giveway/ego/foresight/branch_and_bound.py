@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import add_cost_of_others, later_cost, own_cost
-from giveway.ego.corridor import set_pose
 from giveway.ego.foresight.assessment import View, assess_step, interval_of
 from giveway.ego.foresight.intent import walk_up
 from giveway.ego.foresight.later_crossings import fill_crossers
 from giveway.ego.foresight.workspace import Arrays
+from giveway.ego.perception.corridor import set_pose
 from giveway.geometry.kernel import Array, inlined, inner, kernel
 from pedestrian_model import borrowed, leap, start, wish
 

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
-from giveway.ego.corridor import fill_poses
 from giveway.ego.foresight.assessment import View, assess
 from giveway.ego.foresight.branch_and_bound import run_race
 from giveway.ego.foresight.contingency import BRANCHES, hedged
@@ -15,7 +14,8 @@ from giveway.ego.foresight.intent import Beliefs, Halting, Otherwise
 from giveway.ego.foresight.later_crossings import fill_crossers
 from giveway.ego.foresight.threats import Alarm
 from giveway.ego.foresight.workspace import Lanes
-from giveway.ego.kerbs import NO_KERBS, kerb_lines
+from giveway.ego.perception.corridor import fill_poses
+from giveway.ego.perception.kerbs import NO_KERBS, kerb_lines
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
@@ -161,7 +161,7 @@ class CrowdForesight:
             front: the front bumper's station [m].
             speed: the ego's [m/s].
             off: [m] how far people's positions are off at most, beside what the clearance has.
-            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
+            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.perception.kerbs.Kerbs.of`.
             numbers: (n,) one for each person, which the person keeps; None: nobody is known again.
         """
         if off != self._off:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from controller import towards_kerb
-from giveway.ego.kerbs import NO_KERBS
+from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import Array, inner
 

@@ -1,6 +1,6 @@
 """The closest vehicle in front.
 
-What is in front defines :mod:`giveway.ego.corridor`.
+What is in front defines :mod:`giveway.ego.perception.corridor`.
 """
 
 from math import inf

@@ -8,13 +8,15 @@ import pytest
 from controller import Decision
 from giveway.ego.percept import Seen
 from giveway.ego.perception.leader import NO_LEADER, Leader
+from giveway.ego.perception.protocol import Percept
 from giveway.ego.stop_cause import waits_for
 from pedestrian_model import Crowd
 
 FRONT, KEPT = 40.0, 8.0  # [m]
+NOBODY = Percept(Crowd.empty(), np.arange(0))
 ROOM = np.full(3, math.inf)
 FREE = Seen(
-    math.inf, NO_LEADER, math.inf, "", ROOM, None, None, math.inf, Crowd.empty(), None,
+    math.inf, NO_LEADER, math.inf, "", ROOM, None, None, math.inf, NOBODY, None,
     np.empty((1, 1, 7)), 0,
 )  # fmt: skip
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from giveway.ego.corridor import Corridor
+from giveway.ego.perception.corridor import Corridor
 from giveway.errors import ScenarioError
 from giveway.geometry.path import EgoPath, fine_near
 

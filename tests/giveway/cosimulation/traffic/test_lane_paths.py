@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.cosimulation.traffic.lane_paths import LanePathPool, gaps_ahead, sort_pedestrians
-from giveway.ego.corridor import closest_in_front
+from giveway.ego.perception.corridor import closest_in_front
 from giveway.geometry.kernel import kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lanes import Lanes

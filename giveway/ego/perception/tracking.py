@@ -13,8 +13,8 @@ chord.
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.ego.perception.protocol import OwnArrays, Percept
 from giveway.geometry.kernel import Array, kernel
-from pedestrian_model import Crowd
 
 _LEAST = 0.02  # of an observation's weight in the mean: what is older than 50 steps fades
 _COLUMNS = 9  # low x, y; high x, y; the estimate x, y [m]; velocity [m/s]; observations
@@ -24,7 +24,7 @@ class Tracker:
     """Follows people whom one ego sees, each by the number that the person keeps.
 
     Args:
-        error: [m] that a position is off at most in x and in y.
+        error: Largest error [m] of a position in x and in y, where the sensor claims no bound.
         acceleration: a_max [m/s^2] of people.
         time_step: dt [s] between two looks.
     """
@@ -36,14 +36,16 @@ class Tracker:
         self._seen = np.zeros(0, dtype=np.int64)  # at which look each was seen last
         self._look = 1
         self._errors = np.zeros(0)
+        self._own = OwnArrays("position")
 
-    def update(self, crowd: Crowd, numbers: NDArray[np.int64]) -> Array:
-        """Replace seen positions by estimates; (n,) [m] how far these are off at most.
-
-        Args:
-            crowd: as it is seen; its positions are overwritten.
-            numbers: (n,) who they are.
-        """
+    def refine(self, percept: Percept) -> Percept:
+        """The percept with estimated positions, and with bounds of their errors."""
+        seen, numbers = percept.people, percept.person_ids
+        if percept.position_bound is None and not self._error:
+            return percept  # positions are exact
+        people = self._own.of(seen) if len(seen) else seen
+        if len(seen):
+            people.position[:] = seen.position
         n = len(numbers)
         most = int(numbers.max(initial=-1)) + 1
         if most > len(self._known):
@@ -54,19 +56,19 @@ class Tracker:
             self._errors = np.zeros(2 * n)
         self._look += 1
         errors = self._errors[:n]
+        errors[:] = self._error if percept.position_bound is None else percept.position_bound
         _track(
-            crowd.position,
-            crowd.velocity,
+            people.position,
+            people.velocity,
             numbers,
             self._look,
-            self._error,
             self._slack,
             self._time_step,
             self._known,
             self._seen,
             errors,
         )
-        return errors
+        return Percept(people, numbers, percept.age, errors)
 
 
 @kernel
@@ -75,16 +77,15 @@ def _track(
     velocity: Array,
     numbers: NDArray[np.int64],
     look: int,
-    error: float,
     slack: float,
     time_step: float,
     known: Array,
     seen: NDArray[np.int64],
     errors: Array,
 ) -> None:
-    """Overwrite positions by estimates, and fill ``errors``; see :class:`Tracker`."""
+    """Overwrite positions and ``errors`` (of each axis) by estimates and their bounds."""
     for row in range(len(numbers)):
-        mine = known[numbers[row]]
+        mine, error = known[numbers[row]], errors[row]
         lost = seen[numbers[row]] != look - 1
         seen[numbers[row]] = look
         for axis in range(2):

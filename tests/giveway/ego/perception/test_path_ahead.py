@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.ego.path_view import PathView
+from giveway.ego.perception.path_ahead import PathView
 from giveway.geometry.path import EgoPath
 
 RADIUS = 20.0  # [m] of a left bend behind 30 m of straight road

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
-from giveway.ego.kerbs import NO_KERBS, Kerbs, kerb_lines
-from giveway.ego.setting_out import SettingOut
+from giveway.ego.perception.kerbs import NO_KERBS, Kerbs, kerb_lines
+from giveway.ego.perception.sudden_starts import SettingOut
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
 from giveway.sumo.signal_plans import SignalChange, untold

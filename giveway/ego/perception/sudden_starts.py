@@ -29,7 +29,7 @@ class SettingOut:
         Args:
             numbers: (n,) one for each person that it keeps.
             velocity: (n, 2) [m/s].
-            kerbs: (n, 3) see :meth:`giveway.ego.kerbs.Kerbs.of`.
+            kerbs: (n, 3) see :meth:`giveway.ego.perception.kerbs.Kerbs.of`.
         """
         _, before, now = np.intersect1d(self._who, numbers, assume_unique=True, return_indices=True)
         more = ((velocity[now] - self._velocity[before]) * self._kerbs[before]).sum(axis=1)

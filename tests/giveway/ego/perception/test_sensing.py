@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from giveway.config import EgoRunConfig
-from giveway.crowd.perception import Perception
+from giveway.ego.perception.protocol import OwnState
+from giveway.ego.perception.sensing import Perception
+from giveway.ego.perception.truth import Truth
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import Pose
 from pedestrian_model import Crowd, CrowdModel, Vehicles
 
 
@@ -22,8 +26,21 @@ def eyes(seed: int = 1, ego: str = "ego", **perception) -> Perception:
     return Perception(config, 3.0, 0.05)
 
 
-def observed(seen_by: Perception, crowd: Crowd) -> Crowd:
-    return seen_by.observe(crowd, np.arange(len(crowd)))
+OWN = OwnState(Pose(0.0, 0.0, 0.0), 0.0, 0, VehicleShape(4.5, 1.8))
+
+
+def observed(seen_by: Perception, crowd: Crowd, ids=None) -> Crowd:
+    ids = np.arange(len(crowd)) if ids is None else ids
+    percept = seen_by.observe(Truth.of_people(crowd), ids, OWN)
+    assert percept.person_ids is ids
+    return percept.people
+
+
+def bound_of(seen_by: Perception, crowd: Crowd) -> np.ndarray:
+    """How far the perceived positions are off at most [m]."""
+    percept = seen_by.observe(Truth.of_people(crowd), np.arange(len(crowd)), OWN)
+    assert percept.position_bound is not None
+    return percept.position_bound.copy()
 
 
 def test_without_errors_the_very_crowd_is_seen():
@@ -102,9 +119,9 @@ def test_what_is_learnt_is_kept_by_person():
     learnt = observed(seen_by, crowd).desired_speed.copy()
     crowd.velocity[:] = 0.0
     left = crowd.select(np.arange(len(crowd)) % 2 == 0)
-    again = seen_by.observe(left, np.arange(0, len(crowd), 2))
+    again = observed(seen_by, left, np.arange(0, len(crowd), 2))
     assert (again.desired_speed == learnt[::2]).all()
-    newcomers = seen_by.observe(left, np.arange(100, 100 + len(left)))
+    newcomers = observed(seen_by, left, np.arange(100, 100 + len(left)))
     assert (newcomers.desired_speed == 1.394).all()
 
 
@@ -180,11 +197,9 @@ def test_unknown_goals_turn_with_the_heading():
 def test_who_comes_back_after_nobody_was_there_is_new_to_the_tracker():
     crowd, seen_by = make_crowd(), eyes(position_noise=0.1, tracker=True)
     for _ in range(20):
-        observed(seen_by, crowd)
-    assert (seen_by.errors < 0.28).all()
-    observed(seen_by, Crowd.empty())
-    assert not len(seen_by.errors)
+        bound = bound_of(seen_by, crowd)
+    assert (bound < 0.28).all()
+    assert not len(bound_of(seen_by, Crowd.empty()))
     elsewhere = make_crowd()
     elsewhere.position[:] += 0.1
-    observed(seen_by, elsewhere)
-    assert seen_by.errors == pytest.approx(np.full(40, 0.2 * np.sqrt(2.0)))
+    assert bound_of(seen_by, elsewhere) == pytest.approx(np.full(40, 0.2 * np.sqrt(2.0)))

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.ego.corridor import Corridor, closest_in_front
+from giveway.ego.perception.corridor import Corridor, closest_in_front
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.kernel import kernel
 from giveway.geometry.passage import SIGHT

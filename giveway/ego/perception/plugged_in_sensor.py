@@ -1,0 +1,145 @@
+"""Somebody else's sensor: made from the configuration, shown copies, its answers checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from controller.plug_ins.plugged_in import described
+from giveway.config import EgoRunConfig
+from giveway.ego.perception.protocol import Ids, OwnState, Percept, Sensor, SensorSetup
+from giveway.ego.perception.truth import Truth
+from giveway.errors import SensorError
+from giveway.plug_ins.finding import load_class
+from giveway.plug_ins.sockets import SENSOR
+from pedestrian_model import Crowd
+
+
+def sensor_of(config: EgoRunConfig, time_step: float) -> PluggedInSensor | None:
+    """The sensor of one ego by its configured name; None for giveway's own.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Time between two observations [s].
+
+    Raises:
+        ConfigError: an option of the sensor cannot be used.
+        ControlError: the sensor is not installed, or cannot be imported.
+        SensorError: the sensor cannot be made.
+    """
+    if not config.perception.plugged_in_sensor:
+        return None
+    make, setup = maker(config), setup_of(config, time_step)
+    name = f"'{config.perception.sensor}' of '{config.ego_id}'"
+    return PluggedInSensor(name, lambda: make(setup))
+
+
+def setup_of(config: EgoRunConfig, time_step: float) -> SensorSetup:
+    """What the sensor of one ego is made for.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Time between two observations [s].
+    """
+    return SensorSetup(time_step, config.seed, config.ego_id)
+
+
+def maker(config: EgoRunConfig) -> Callable[[SensorSetup], object]:
+    """The function that makes the sensor of one ego with its options.
+
+    Args:
+        config: Configuration of the ego.
+
+    Raises:
+        ConfigError: an option of the sensor cannot be used.
+        ControlError: the sensor is not installed, or cannot be imported.
+    """
+    kind, options = load_class(config.perception.sensor, SENSOR, config.sensor_options)
+    return lambda setup: kind(setup) if options is None else kind(setup, options)
+
+
+class PluggedInSensor:
+    """A sensor of another package as the run asks any sensor.
+
+    It is shown copies, which it may overwrite. What it answers is checked before anything uses it.
+
+    Args:
+        name: Name of the sensor and of its ego, for messages.
+        make: Function that makes the sensor.
+
+    Raises:
+        SensorError: the sensor cannot be made, or has no method ``observe``.
+    """
+
+    def __init__(self, name: str, make: Callable[[], object]) -> None:
+        self._name = name
+        try:
+            sensor = make()
+        except (Exception, SystemExit) as error:
+            raise SensorError(f"{name} raised {described(error)} when it was made") from error
+        if not isinstance(sensor, Sensor):
+            raise self._unusable(sensor, "an object with a method observe", "made")
+        self._sensor = sensor
+        self._room: Crowd | None = None  # memory for the copy of the people
+        self._known = np.zeros(0, dtype=np.bool_)  # by person id: it has been shown
+
+    def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
+        """What the sensor perceives, checked.
+
+        Args:
+            truth: World as it is; the sensor is shown a copy.
+            person_ids: Number of each pedestrian in ``truth.people``, (n,).
+            ego: State of the ego.
+
+        Raises:
+            SensorError: the sensor raises, or its answer cannot be used.
+        """
+        everybody = np.ones(len(person_ids), dtype=np.bool_)
+        self._room = truth.people.select(everybody, self._room)
+        shown = Truth(self._room, truth.vehicles.copy(), truth.outlines.copy(), truth.time)
+        own = OwnState(ego.pose, ego.speed, ego.row, ego.shape)
+        most = int(person_ids.max(initial=-1)) + 1
+        if most > len(self._known):
+            self._known = np.concatenate([self._known, np.zeros(most, dtype=np.bool_)])
+        self._known[person_ids] = True
+        try:
+            answer = self._sensor.observe(shown, person_ids.copy(), own)
+        except (Exception, SystemExit) as error:
+            raise SensorError(f"{self._name} raised {described(error)}") from error
+        return self._checked(answer)
+
+    def _checked(self, answer: Any) -> Percept:
+        """The answer, if everything in it can be used."""
+        if not (isinstance(answer, Percept) and isinstance(answer.people, Crowd)):
+            raise self._unusable(answer, "a Percept of a Crowd")
+        people, ids, n = answer.people, answer.person_ids, len(answer.people)
+        whole = isinstance(ids, np.ndarray) and ids.dtype == np.int64 and ids.shape == (n,)
+        if not whole:
+            raise self._unusable(ids, f"({n},) int64, one for each person", "returned person_ids")
+        strangers = ids[(ids < 0) | (ids >= len(self._known))]
+        strangers = strangers if len(strangers) else ids[~self._known[ids]]
+        if len(strangers):
+            what = "those of people whom it was shown"
+            raise self._unusable(int(strangers[0]), what, "returned person_ids with")
+        if len(np.unique(ids)) < n:
+            raise self._unusable(ids, "each person once", "returned person_ids")
+        for name in ("position", "velocity"):
+            if not np.isfinite(array := getattr(people, name)).all():
+                bad = float(array[~np.isfinite(array)][0])
+                raise self._unusable(bad, "finite numbers", f"returned {name}")
+        for name in ("age", "position_bound"):
+            array = getattr(answer, name)
+            if array is None:
+                continue
+            sound = isinstance(array, np.ndarray) and array.shape == (n,) and array.dtype == float
+            if not (sound and np.isfinite(array).all() and (array >= 0.0).all()):
+                raise self._unusable(
+                    array, f"None, or ({n},) floats of at least 0", f"returned {name}"
+                )
+        return answer
+
+    def _unusable(self, value: object, expected: str, verb: str = "returned") -> SensorError:
+        text = " ".join(repr(value).split())[:80]
+        return SensorError(f"{self._name} {verb} {text}: expected {expected} (docs/plugins.md)")

@@ -1,0 +1,121 @@
+"""What a sensor is asked and what it answers, and what refines its answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import Pose
+from pedestrian_model import Crowd
+
+if TYPE_CHECKING:
+    from giveway.ego.perception.truth import Truth
+
+Ids = NDArray[np.int64]
+
+
+class Percept(NamedTuple):
+    """What an ego perceives of the pedestrians; its rows are its own, not those of the truth.
+
+    Attributes:
+        people: Perceived pedestrians, n of them: where they are expected to be now.
+        person_ids: Number of each perceived person, (n,); a person keeps it during the run.
+        age: Time [s] since each was last seen, (n,); None if all are seen at this instant.
+        position_bound: Largest error [m] of each position, (n,); None if the sensor claims none.
+    """
+
+    people: Crowd
+    person_ids: Ids
+    age: Array | None = None
+    position_bound: Array | None = None
+
+
+@dataclass(slots=True)
+class OwnState:
+    """What an ego knows of itself; one object per ego is refilled in place.
+
+    Attributes:
+        pose: Centre of the front bumper [m] and heading of the body [rad].
+        speed: Speed [m/s].
+        row: Row of the ego among the vehicles of the truth.
+        shape: Length and width of the body [m].
+    """
+
+    pose: Pose
+    speed: float
+    row: int
+    shape: VehicleShape
+
+
+@dataclass(frozen=True)
+class SensorSetup:
+    """What a sensor is made for.
+
+    Attributes:
+        time_step: Time between two observations [s].
+        seed: Seed of the run.
+        ego_id: SUMO's id of the ego that carries the sensor.
+    """
+
+    time_step: float
+    seed: int
+    ego_id: str
+
+    def random(self) -> np.random.Generator:
+        """A generator of random numbers that only this ego's sensor draws from."""
+        return np.random.default_rng((self.seed, _STREAM, *self.ego_id.encode()))
+
+
+_STREAM = 0x5E25  # tells a sensor's draws from others of the same seed
+
+
+@runtime_checkable
+class Sensor(Protocol):
+    """Looks at the truth and tells what an ego perceives of it.
+
+    A person may be missing from an answer, appear late, vanish and come back.
+    """
+
+    def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
+        """Perceive the pedestrians at one instant.
+
+        Args:
+            truth: World as it is.
+            person_ids: Number of each pedestrian in ``truth.people``, (n,).
+            ego: State of the ego that carries the sensor.
+        """
+        ...
+
+
+class Refinement(Protocol):
+    """A member of the chain behind a sensor: noise, tracker, desired speeds, goals."""
+
+    def refine(self, percept: Percept) -> Percept:
+        """The percept after this member of the chain; the given arrays are not written."""
+        ...
+
+
+class OwnArrays:
+    """Copies of a crowd in which some arrays are its own and all others are shared.
+
+    Args:
+        names: Names of the arrays that are not shared.
+    """
+
+    def __init__(self, *names: str) -> None:
+        self._names = names
+        self._source: Crowd | None = None
+        self._copy: Crowd | None = None
+
+    def of(self, people: Crowd) -> Crowd:
+        """The copy of these people; the same object as before if they are the same object."""
+        if self._copy is None or people is not self._source:
+            own = {name: getattr(people, name).copy() for name in self._names}
+            self._source, self._copy = people, replace(people, **own)
+        self._copy.__dict__["signals"] = people.signals  # a crowd may be refilled in place
+        return self._copy

@@ -1,0 +1,93 @@
+"""Members of the chain behind a sensor that are stated in a few lines: noise, speeds, goals."""
+
+from dataclasses import replace
+from functools import cached_property
+from math import sqrt
+
+import numpy as np
+
+from giveway.crowd.motion.noise import BOUND, planar_noise
+from giveway.ego.perception.desired_speeds import Pace
+from giveway.ego.perception.protocol import OwnArrays, Percept
+from pedestrian_model import Crowd
+
+_FAR = 1000.0  # Distance [m] along the heading to an expected goal, beyond every horizon
+_STANDS = 0.1  # Speed [m/s] below which a person has no heading and is expected to stay
+
+
+class PositionNoise:
+    """Moves each perceived position by noise that is drawn anew at each instant.
+
+    Args:
+        deviation: Standard deviation on each axis [m], cut off at twice that.
+        seed: Seed of the draws.
+    """
+
+    def __init__(self, deviation: float, seed: tuple[int, ...]) -> None:
+        self._deviation, self._seed = deviation, seed
+        self._bound = sqrt(2.0) * BOUND * deviation
+        self._own = OwnArrays("position")
+
+    @cached_property
+    def _random(self) -> np.random.Generator:
+        return np.random.default_rng(self._seed)
+
+    def refine(self, percept: Percept) -> Percept:
+        """The percept with noise on its positions; a bound that the sensor claims grows by it."""
+        people = percept.people
+        if not len(people):
+            return percept
+        noise = planar_noise(self._random, len(people))
+        noise *= self._deviation
+        noisy, bound = self._own.of(people), percept.position_bound
+        np.add(people.position, noise, out=noisy.position)
+        bound = None if bound is None else bound + self._bound
+        return Percept(noisy, percept.person_ids, percept.age, bound)
+
+
+class DesiredSpeeds:
+    """Replaces desired speeds, which no sensor sees, by a typical or by a learnt one.
+
+    Args:
+        typical: Desired speed [m/s] that is expected of a person who is new.
+        pace: Estimator that learns from walking speeds; None if everybody stays typical.
+    """
+
+    def __init__(self, typical: float, pace: Pace | None) -> None:
+        self._typical, self._pace = typical, pace
+        self._own = OwnArrays("desired_speed")
+
+    def refine(self, percept: Percept) -> Percept:
+        """The percept with desired speeds that are estimated."""
+        people = percept.people
+        if not len(people):
+            return percept
+        own, pace = self._own.of(people), self._pace
+        own.desired_speed[:] = (
+            self._typical if pace is None else pace.learn(people, percept.person_ids)
+        )
+        return Percept(own, *percept[1:])
+
+
+class HeadingGoals:
+    """Replaces the ways of all people by straight ones along their present headings."""
+
+    def refine(self, percept: Percept) -> Percept:
+        """The percept in which everybody walks straight on and standing people stay."""
+        people = percept.people
+        return Percept(_walking_on(people), *percept[1:]) if len(people) else percept
+
+
+def _walking_on(crowd: Crowd) -> Crowd:
+    """The crowd with straight ways; nothing else differs."""
+    n = len(crowd)
+    speed = np.hypot(crowd.velocity[:, 0], crowd.velocity[:, 1])
+    reach = np.where(speed > _STANDS, _FAR / np.maximum(speed, _STANDS), 0.0)
+    return replace(
+        crowd,
+        waypoints=crowd.position + crowd.velocity * reach[:, None],
+        waypoint_start=np.arange(n + 1),
+        waypoint_index=np.zeros(n, dtype=np.int64),
+        waypoint_passage=np.zeros((n, 3)),
+        waypoint_signal=np.full(n, -1, dtype=np.int64),
+    )

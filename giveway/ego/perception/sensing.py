@@ -1,0 +1,69 @@
+"""The perception of one ego: its sensor, and the chain of refinements behind it.
+
+Prediction, rules, controllers and the safety layer work on the percept that leaves the chain;
+tables and metrics work on the truth.
+"""
+
+from giveway.config import EgoRunConfig
+from giveway.crowd.motion.noise import BOUND
+from giveway.ego.perception.desired_speeds import Pace
+from giveway.ego.perception.plugged_in_sensor import sensor_of
+from giveway.ego.perception.protocol import Ids, OwnState, Percept, Refinement, Sensor
+from giveway.ego.perception.refinements import DesiredSpeeds, HeadingGoals, PositionNoise
+from giveway.ego.perception.tracking import Tracker
+from giveway.ego.perception.truth import Truth
+
+_STREAM = 0x5EE  # tells these draws from others of the same seed
+
+
+class AllPeople:
+    """The sensor that perceives everybody exactly."""
+
+    def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:  # noqa: ARG002
+        """Everybody, in the very arrays of the truth."""
+        return Percept(truth.people, person_ids)
+
+
+class Perception:
+    """One ego's sensor and the chain behind it, which is a sensor again.
+
+    Each observation draws new noise, from a generator of this ego's own: equal runs perceive the
+    same, whatever other egos there are. A tracker makes the most of noisy positions and desired
+    speeds are learnt, unless the tracker is switched off; the paper's controllers have none.
+
+    Args:
+        config: Configuration of the ego.
+        acceleration: Largest acceleration [m/s^2] of a person that the tracker counts on.
+        time_step: Time between two observations [s].
+    """
+
+    def __init__(self, config: EgoRunConfig, acceleration: float, time_step: float) -> None:
+        seen, tracks = config.perception, config.tracks_people
+        own = sensor_of(config, time_step)
+        self._sensor: Sensor = AllPeople() if own is None else own
+        self._chain: list[Refinement] = []
+        if seen.desired_speeds != "known":
+            typical = config.crowd.desired_speed_mean
+            pace = Pace(typical, time_step) if tracks else None
+            self._chain.append(DesiredSpeeds(typical, pace))
+        if seen.position_noise:
+            seed = (config.seed, _STREAM, *config.ego_id.encode())
+            self._chain.append(PositionNoise(seen.position_noise, seed))
+        if tracks and (seen.position_noise or own is not None):
+            self._chain.append(Tracker(BOUND * seen.position_noise, acceleration, time_step))
+        if seen.goals != "known":
+            self._chain.append(HeadingGoals())
+        self.exact = own is None and not self._chain
+
+    def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
+        """What the ego perceives; the next call overwrites it.
+
+        Args:
+            truth: World as it is; not changed. Arrays are shared where they are seen as they are.
+            person_ids: Number of each pedestrian in ``truth.people``, (n,).
+            ego: State of the ego.
+        """
+        percept = self._sensor.observe(truth, person_ids, ego)
+        for member in self._chain:
+            percept = member.refine(percept)
+        return percept
