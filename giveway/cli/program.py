@@ -35,7 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
     except Exception as error:
         if hasattr(error, "format_message"):
-            code = fail(f"{error.format_message()} See giveway --help.", 2)  # a usage error
+            said = _renamed(words) or f"{error.format_message()} See giveway --help."
+            code = fail(said, 2)  # a usage error
         elif str(error) == _NO_THREAD:
             code = fail(
                 "the system gives no more threads; end other processes, or raise the limit "
@@ -45,6 +46,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
         else:
             raise  # a fault of giveway: the traceback is wanted
     sys.exit(code)
+
+
+def _renamed(words: Sequence[str]) -> str | None:
+    """The message about the first flag that no longer exists; None if there is no such flag."""
+    from giveway.config.renamed import renamed_flag
+
+    for word in words:
+        instead = renamed_flag(word) if word.startswith("--") else None
+        if instead is not None:
+            return f"{word.partition('=')[0]}: no longer exists; {instead}"
+    return None
 
 
 def _named(error: OSError) -> str:

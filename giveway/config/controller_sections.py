@@ -3,7 +3,7 @@
 from typing import Literal
 
 from giveway.config.option import Section, option
-from giveway.config.reasons import BUFFER, FORCE, GAP, MILLIMETRE, TYRES
+from giveway.config.reasons import BUFFER, GAP, MILLIMETRE, TYRES
 
 
 class MpcConfig(Section):
@@ -17,22 +17,7 @@ class MpcConfig(Section):
         le=200,
         because="one step is no plan, and of 200 nothing is known",
     )
-    force_limit: float = option(
-        8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6, least=1.0, because=FORCE
-    )
-    force_rate_limit: float = option(
-        1000.0, "N/step", "du_max", gt=0, le=1e6, least=1.0, because=FORCE
-    )
     speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60, because="no car is faster")
-    speed_max: float = option(
-        20.0,
-        "m/s",
-        "v_max",
-        gt=0,
-        le=100,
-        least=0.1,
-        because="slower than that nobody says whether it drives; no car is faster",
-    )
     solver: Literal["osqp", "daqp"] = option("osqp", None, "QP solver")
 
 

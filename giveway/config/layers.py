@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from giveway.config.option import Section, declared, expectation
+from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
 from giveway.config.schema_names import RUN, with_schema
 from giveway.config.toml import read_toml_file
@@ -188,6 +189,10 @@ def build_config(layers: Sequence[Layer]) -> RunConfig:
         ConfigError: one line naming origin, key, value, what was expected and, for an unknown
             key, the one probably meant.
     """
+    for layer in layers:
+        for old, new in renamed_in(layer.values):
+            instead = advice(new, as_flag=layer.from_flags)
+            raise ConfigError(f"{layer.name(old)}: no longer exists; {instead}")
     merged = merge(layers)
     try:
         return RunConfig.model_validate(merged)

@@ -303,7 +303,7 @@ class EgoRunConfig(RunConfig):
         Raises:
             ValueError: it may not.
         """
-        low, high = self.mpc.speed_min, self.mpc.speed_max
+        low, high = self.mpc.speed_min, self.vehicle.speed_max
         for key, speed in (
             ("[regulation] reference_speed", self.reference_speed),
             ("[ego] initial_speed", self.ego.initial_speed),
@@ -311,7 +311,7 @@ class EgoRunConfig(RunConfig):
             if speed is None or isinstance(speed, str):
                 continue
             if self.optimises and not low <= speed <= high:
-                msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
+                msg = f"{key} = {speed:g}: expected within [mpc] speed_min and [vehicle] speed_max"
                 msg += f", {low:g} to {high:g} [m/s]"
                 raise ValueError(msg)
 

@@ -148,7 +148,7 @@ class Entrance:
         )
         if profile is not None and not ego.recorded:
             ego.controller = make_controller(config, self._time_step, profile.fastest)
-        hardest = config.mpc.force_limit / config.vehicle.mass
+        hardest = config.vehicle.acceleration_limit
         ego.start(speed)
         goal = config.ego.travel_distance
         junctions = junctions_on(

@@ -50,7 +50,7 @@ def make_controller(
     Raises:
         ControlError: its parameters contradict each other, or its solver is missing.
     """
-    speed: float = config.mpc.speed_max if fastest is None else fastest
+    speed: float = config.vehicle.speed_max if fastest is None else fastest
     if config.reference_speed != LANE:
         speed = config.reference_speed
     regulation = config.regulation.model_copy(update={"reference_speed": speed})
@@ -86,7 +86,9 @@ def plan_steps(config: EgoRunConfig, time_step: float) -> int:
 def _paper_mpc(config: EgoRunConfig, time_step: float) -> SpeedController:
     """The paper's MPC, with the paper's PID where the QP has no solution."""
     safe_distance = config.regulation.safe_distance + model_margin(config, time_step)
-    parameters = filled(MpcParameters, config.mpc, config.regulation, safe_distance=safe_distance)
+    parameters = filled(
+        MpcParameters, config.mpc, config.vehicle, config.regulation, safe_distance=safe_distance
+    )
     return SpeedController(Mpc(_model(config, time_step), parameters), _pid(config, time_step))
 
 
@@ -97,7 +99,7 @@ def _pid(config: EgoRunConfig, time_step: float) -> Pid:
         PidParameters,
         config.regulation,
         pid,
-        config.mpc,
+        config.vehicle,
         K_p=pid.proportional_gain,
         K_i=pid.integral_gain,
         K_d=pid.derivative_gain,
@@ -108,7 +110,7 @@ def _pid(config: EgoRunConfig, time_step: float) -> Pid:
 def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
     """The well-tuned PID, with the actuator's limits of the MPC."""
     reference = filled(ReferenceParameters, config.regulation, config.tuned_pid)
-    parameters = filled(TunedPidParameters, config.tuned_pid, config.mpc, reference=reference)
+    parameters = filled(TunedPidParameters, config.tuned_pid, config.vehicle, reference=reference)
     return TunedPid(parameters, _model(config, time_step))
 
 
@@ -136,6 +138,7 @@ def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
         regulation,
         planner,
         config.mpc,
+        config.vehicle,
         horizon=plan_steps(config, time_step),
         safe_distance=regulation.safe_distance + margin,
         manoeuvres=manoeuvres_of(planner, margin),

@@ -40,7 +40,7 @@ def foresight_of(
         half_width=half_width,
         planned_speed=planner.planned_speed,
         clearance=waiting.clearance,
-        braking=config.mpc.force_limit / config.vehicle.mass,
+        braking=config.vehicle.acceleration_limit,
         worst=None if waiting.safety is None else waiting.safety.worst,
         beliefs=beliefs,
     )

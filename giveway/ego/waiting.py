@@ -161,7 +161,7 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         body_radius=walking.body_radius,
         margin=safety.margin + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,
-        force_limit=config.mpc.force_limit,
-        force_rate_limit=config.mpc.force_rate_limit if safety.rate_limited else inf,
+        force_limit=config.vehicle.force_limit,
+        force_rate_limit=config.vehicle.force_rate_limit if safety.rate_limited else inf,
         reaction_time=identified_reaction_time(config) if reaction is None else reaction,
     )

@@ -41,7 +41,7 @@ def test_a_car_keeps_the_defaults(remark, mass):
 
 def test_a_truck_gets_the_same_accelerations(remark):
     assert remark(18_000.0).endswith(
-        "for the same accelerations, --mpc-force-limit 140000 --mpc-force-rate-limit 18000 "
+        "for the same accelerations, --vehicle-force-limit 140000 --vehicle-force-rate-limit 18000 "
         "--pid-proportional-gain 43000"
     )
 

@@ -1,0 +1,58 @@
+"""Keys and flags that no longer exist, each with what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+Location = tuple[str, ...]
+
+RENAMED: Final[Mapping[Location, Location | str]] = {
+    ("mpc", "force_limit"): ("vehicle", "force_limit"),
+    ("mpc", "force_rate_limit"): ("vehicle", "force_rate_limit"),
+    ("mpc", "speed_max"): ("vehicle", "speed_max"),
+}
+"""A key that is refused: the key to write instead, or a sentence that says what to do."""
+
+FLAGS: Final[Mapping[str, Location]] = {}
+"""Flags of keys in ``RENAMED`` that were not derived from the key."""
+
+
+def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location | str]]:
+    """The keys of one origin's settings, or of its table of one ego, that no longer exist."""
+    egos = values.get("egos")
+    for old, new in RENAMED.items():
+        for table in (values, *(egos if isinstance(egos, list | tuple) else ())):
+            if _holds(table, old):
+                yield old, new
+
+
+def advice(new: Location | str, *, as_flag: bool) -> str:
+    """What to write instead of a key that no longer exists, in the words of a file or of flags."""
+    if isinstance(new, str):
+        return new
+    if new[0].endswith("_options"):
+        setting = "--set" if new[0] == "controller_options" else "--set-model"
+        return f"write {setting} {new[-1]}=VALUE" if as_flag else f"write [{new[0]}] {new[-1]}"
+    if as_flag:
+        return "write --" + "-".join(new).replace("_", "-")
+    *tables, key = new
+    return f"write [{'.'.join(tables)}] {key}" if tables else f"write {key}"
+
+
+def renamed_flag(word: str) -> str | None:
+    """What to write instead of a flag that no longer exists; None if the word is not one."""
+    name = word.partition("=")[0]
+    for old, new in RENAMED.items():
+        derived = "-".join(old).replace("_", "-")
+        if name in {f"--{derived}", f"--no-{derived}"}:
+            return advice(new, as_flag=True)
+    return advice(RENAMED[FLAGS[name]], as_flag=True) if name in FLAGS else None
+
+
+def _holds(values: Any, location: Location) -> bool:
+    for key in location:
+        if not isinstance(values, Mapping) or key not in values:
+            return False
+        values = values[key]
+    return True
