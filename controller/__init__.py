@@ -6,6 +6,7 @@ Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
 
 from controller._stopping import towards_kerb
 from controller.conformance import Finding, check_controller
+from controller.declarations import DECLARED
 from controller.errors import (
     ControllerError,
     ParameterError,
@@ -20,18 +21,18 @@ from controller.mpc import Mpc
 from controller.parameters import PRINTED_PID, MpcParameters, PidParameters
 from controller.pid import Pid
 from controller.planning import (
-    ATTITUDES,
-    AttitudeName,
+    STYLES,
     ManoeuvreParameters,
     Planner,
     PlannerParameters,
     PlanningController,
+    StyleName,
     add_cost_of_others,
     branch_off,
     later_cost,
     own_cost,
 )
-from controller.plug_in import Acceleration, Answer, Force, PlugIn, Setup, Speed
+from controller.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
 from controller.plugged_in import PluggedIn
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
 from controller.safety import SafeForce, SafetyLayer, SafetyParameters, largest_safe_force
@@ -42,14 +43,15 @@ from controller.tuned_pid import TunedPid, TunedPidParameters
 from controller.worst_motion import PeopleName, WorstMotion, worst_motion
 
 __all__ = [
-    "ATTITUDES",
+    "DECLARED",
     "PRINTED_PID",
+    "STYLES",
     "Acceleration",
     "Answer",
-    "AttitudeName",
     "Controller",
     "ControllerError",
     "Decision",
+    "Defaults",
     "Finding",
     "Force",
     "Foresight",
@@ -85,6 +87,7 @@ __all__ = [
     "Speed",
     "SpeedController",
     "SpeedReference",
+    "StyleName",
     "Trials",
     "TunedPid",
     "TunedPidParameters",

@@ -61,7 +61,7 @@ def _set_flag(socket: Socket) -> Any:
 _EVERYDAY = frozenset(
     {
         ("controller",),
-        ("planner", "attitude"),
+        ("planner", "style"),
         ("seed",),
         ("time_limit",),
         ("twin",),

@@ -156,24 +156,6 @@ class PlannerConfig(Section):
         le=10,
         because="a stop takes longer than 0.3 s, and of people nothing is known after 10 s",
     )
-    gap_choice: bool = option(
-        True, None, "search whom to pass before and whom behind; else the plan just keeps d_safe"
-    )
-    soft: bool = option(
-        True, None, "distances give way as far as braking cannot keep them; else the PID takes over"
-    )
-    terminal: bool = option(
-        False, None, "a stop stays possible at every step of the plan, its end included"
-    )
-    planned_speed: bool = option(
-        True, None, "people are predicted under the planned speeds; else under the present one"
-    )
-    belief: bool = option(
-        True, None, "who seems to yield is expected to; else everybody to walk on by the preset"
-    )
-    contingency: bool = option(
-        True, None, "where it is open who yields, a plan counts with either; else with the likelier"
-    )
     effort_weight: float = option(
         0.02,
         "s",
@@ -190,18 +172,18 @@ class PlannerConfig(Section):
         le=100,
         because="beyond, a plan is made of that weight alone",
     )
-    attitude: Literal["careful", "normal", "assertive"] = option(
+    style: Literal["careful", "normal", "assertive"] = option(
         "normal",
         None,
         "careful, normal or assertive: how much delay it takes for people's sake, by the two "
         "weights and the distance below",
-        flag="--attitude",
+        flag="--style",
     )
     conflict_weight: float | None = option(
         None,
         None,
         "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
-        "worth; none: the attitude's, 1.6, 0.8 or 0.4",
+        "worth; none: the style's, 1.6, 0.8 or 0.4",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -210,7 +192,7 @@ class PlannerConfig(Section):
         None,
         None,
         "seconds of delay that a second at v_r right before somebody is worth, 0 at d_safe; none: "
-        "the attitude's, 10, 7 or 3.5",
+        "the style's, 10, 7 or 3.5",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -234,7 +216,7 @@ class PlannerConfig(Section):
     minimum_distance: float | None = option(
         None,
         "m",
-        "least distance to a person in front, at standstill; none: the attitude's, 0.8, 0.4 or 0.4",
+        "least distance to a person in front, at standstill; none: the style's, 0.8, 0.4 or 0.4",
         ge=0,
         le=100,
         least=MILLIMETRE,
@@ -243,7 +225,7 @@ class PlannerConfig(Section):
     deceleration: float = option(
         6.0,
         "m/s^2",
-        "of a stop before where the way ends; with terminal, one that is no harder stays possible",
+        "of a stop before where the way ends",
         gt=0,
         le=10,
         least=0.1,
@@ -257,14 +239,6 @@ class PlannerConfig(Section):
         ge=0,
         le=10,
         because="no plan is longer",
-    )
-    block_growth: float = option(
-        0.25,
-        None,
-        "how the plan's intervals grow from one to the next; 0: not",
-        ge=0,
-        le=2,
-        because="a plan needs some intervals",
     )
 
 

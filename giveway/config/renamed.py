@@ -11,10 +11,17 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("mpc", "force_limit"): ("vehicle", "force_limit"),
     ("mpc", "force_rate_limit"): ("vehicle", "force_rate_limit"),
     ("mpc", "speed_max"): ("vehicle", "speed_max"),
+    ("planner", "attitude"): ("planner", "style"),
+    **{
+        ("planner", key): "leave it out: it is always on"
+        for key in ("gap_choice", "soft", "planned_speed", "belief", "contingency")
+    },
+    ("planner", "terminal"): "leave it out: it is always off",
+    ("planner", "block_growth"): "leave it out: it is always 0.25",
 }
 """A key that is refused: the key to write instead, or a sentence that says what to do."""
 
-FLAGS: Final[Mapping[str, Location]] = {}
+FLAGS: Final[Mapping[str, Location]] = {"--attitude": ("planner", "attitude")}
 """Flags of keys in ``RENAMED`` that were not derived from the key."""
 
 

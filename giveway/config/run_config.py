@@ -16,6 +16,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
+from controller import DECLARED, Defaults
 from giveway.config.controller_sections import (
     MpcConfig,
     PidConfig,
@@ -30,7 +31,6 @@ from giveway.config.perception import PerceptionConfig
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
 from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import (
-    DEFAULT_SPEED,
     EgoConfig,
     RecordConfig,
     SumoConfig,
@@ -195,24 +195,34 @@ class RunConfig(Section):
             raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
 
     @property
+    def defaults(self) -> Defaults:
+        """What the controller declares of itself.
+
+        What somebody else's declares stands in the configuration already, see
+        :func:`giveway.config.loading.load`: to read a configuration imports nobody's code.
+        """
+        return DECLARED.get(self.controller, Defaults())
+
+    @property
     def reference_speed(self) -> float | Literal["lane"]:
         """How fast an ego drives where nothing is in its way [m/s]; "lane": as its lanes say."""
         wanted = self.regulation.reference_speed
         if wanted is not None:
             return wanted
-        return DEFAULT_SPEED if self.controller.endswith("-paper") else LANE
+        own = self.defaults.reference_speed
+        return LANE if own is None else own
 
     @property
     def heeds_priority(self) -> bool:
         """Whether the law of the road holds: an ego gives way by it, people rely on it."""
         priority = self.regulation.priority
-        return not self.controller.endswith("-paper") if priority is None else priority == "road"
+        return self.defaults.heeds_priority if priority is None else priority == "road"
 
     @property
     def tracks_people(self) -> bool:
         """Whether the controllers are shown tracked positions where perception is noisy."""
         tracker = self.perception.tracker
-        return not self.controller.endswith("-paper") if tracker is None else tracker
+        return self.defaults.tracker if tracker is None else tracker
 
     @property
     def driver(self) -> str:
@@ -281,20 +291,20 @@ class EgoRunConfig(RunConfig):
     @property
     def optimises(self) -> bool:
         """Whether a model predictive controller drives: it has a model and a horizon."""
-        return self.controller in {"mpc", "mpc-paper"}
+        return self.defaults.optimises
 
     @property
     def safety_layer(self) -> bool:
         """Whether the safety layer watches over the controller."""
         enabled = self.safety.enabled
-        return not self.controller.endswith("-paper") if enabled is None else enabled
+        return self.defaults.safety_layer if enabled is None else enabled
 
     @property
     def buffer_distance(self) -> float:
         """Over which the reference speed rises linearly to v_r beyond d_safe [m]; 0: not so."""
-        if self.controller.endswith("-paper"):
+        if self.defaults.buffered:
             return self.pid.buffer_distance
-        linear = self.controller == "pid-tuned" and self.tuned_pid.profile == "linear"
+        linear = self.defaults.smooths and self.tuned_pid.profile == "linear"
         return self.tuned_pid.buffer_distance if linear else 0.0
 
     def require_speeds_in_reach(self) -> None:

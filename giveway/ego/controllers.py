@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from controller import (
-    ATTITUDES,
+    STYLES,
     Controller,
     ControllerError,
     LongitudinalModel,
@@ -115,7 +115,7 @@ def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
 
 
 def manoeuvres_of(planner: PlannerConfig, margin: float = 0.0) -> ManoeuvreParameters:
-    """The planner's manoeuvres: what its attitude sets, unless the options say otherwise.
+    """The planner's manoeuvres: what its style sets, unless the options say otherwise.
 
     Args:
         planner: the options.
@@ -123,14 +123,14 @@ def manoeuvres_of(planner: PlannerConfig, margin: float = 0.0) -> ManoeuvreParam
     """
     weighed = {
         name: usual if getattr(planner, name) is None else getattr(planner, name)
-        for name, usual in ATTITUDES[planner.attitude].items()
+        for name, usual in STYLES[planner.style].items()
     }
     weighed["minimum_distance"] += margin
     return filled(ManoeuvreParameters, planner, **weighed)
 
 
 def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
-    """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
+    """The planning MPC."""
     regulation, planner = config.regulation, config.planner
     margin = model_margin(config, time_step)
     parameters = filled(
@@ -143,9 +143,7 @@ def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
         safe_distance=regulation.safe_distance + margin,
         manoeuvres=manoeuvres_of(planner, margin),
     )
-    return PlanningController(
-        Planner(_model(config, time_step), parameters), _tuned_pid(config, time_step)
-    )
+    return PlanningController(Planner(_model(config, time_step), parameters))
 
 
 def _model(config: EgoRunConfig, time_step: float) -> LongitudinalModel:

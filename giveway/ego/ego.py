@@ -110,7 +110,7 @@ class Ego:
             self._origin,
             config.regulation.comfortable_deceleration,
             plans=waiting.controller.foresees,
-            tuned=config.controller == "pid-tuned",
+            tuned=config.defaults.smooths,
         )
 
     @property

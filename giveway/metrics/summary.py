@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import WorstMotion
+from controller import DECLARED, Defaults, WorstMotion
 from giveway.metrics.anticipation import Anticipation
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
@@ -23,7 +23,6 @@ from giveway.records.tracks import EgoTrack
 if TYPE_CHECKING:
     import pandas as pd
 
-_OPTIMISERS = frozenset({"mpc", "mpc-paper"})
 SAFETY = "safety"  # the name under which the safety layer acts
 HARD = 4.0
 """[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
@@ -204,7 +203,9 @@ def summarise(
         rms_jerk=float(np.sqrt(np.mean(jerk**2))) if jerk.size else np.nan,
         peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
         mpc_feasibility_rate=(
-            float(np.mean(ego.acting == "mpc")) if controller in _OPTIMISERS else np.nan
+            float(np.mean(ego.acting == "mpc"))
+            if DECLARED.get(controller, Defaults()).optimises
+            else np.nan
         ),
         safety_share=float(np.mean(ego.acting == SAFETY)),
         minimum_gap=_extreme(ego.gap, np.min),

@@ -81,7 +81,7 @@ def test_every_option_has_its_own_flag_and_a_meaning() -> None:
 
 
 def test_later_layers_win_key_by_key() -> None:
-    below = Layer("a", {"seed": 1, "mpc": {"horizon": 20, "force_limit": 5000}})
+    below = Layer("a", {"seed": 1, "mpc": {"horizon": 20}, "vehicle": {"force_limit": 5000}})
     above = Layer("b", {"mpc": {"horizon": 30}})
     config = build_config([below, above])
     assert (config.seed, config.mpc.horizon, config.vehicle.force_limit) == (1, 30, 5000)
@@ -212,8 +212,8 @@ def test_a_contradiction_between_keys_names_their_table() -> None:
 
 
 def test_speeds_outside_of_the_mpcs_limits_are_refused() -> None:
-    assert "[mpc] speed_min and speed_max" in explain(
-        {"controller": "mpc-paper", "mpc": {"speed_max": 3}}
+    assert "[mpc] speed_min and [vehicle] speed_max" in explain(
+        {"controller": "mpc-paper", "vehicle": {"speed_max": 3}}
     )
     assert "[ego] initial_speed = 30" in explain(
         {"controller": "mpc-paper", "ego": {"initial_speed": 30}}

@@ -111,7 +111,7 @@ def test_an_attitude_sets_what_the_options_leave_out():
 
 def test_an_option_reaches_the_parameter_of_its_name():
     config = EgoRunConfig.model_validate(
-        {"mpc": {"force_limit": 5000.0}, "regulation": {"reference_speed": 4.0}}
+        {"vehicle": {"force_limit": 5000.0}, "regulation": {"reference_speed": 4.0}}
     )
     assert filled(PidParameters, config.regulation, config.pid, config.mpc).force_limit == 5000.0
     assert filled(PidParameters, config.mpc, force_limit=6000.0).force_limit == 6000.0
