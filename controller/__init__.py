@@ -11,7 +11,6 @@ from controller.errors import (
     ControllerError,
     ParameterError,
     PlugInError,
-    SolverMissingError,
     SolverSetupError,
 )
 from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials, Verdict
@@ -82,7 +81,6 @@ __all__ = [
     "SafetyLayer",
     "SafetyParameters",
     "Setup",
-    "SolverMissingError",
     "SolverSetupError",
     "Speed",
     "SpeedController",

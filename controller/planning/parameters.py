@@ -12,9 +12,7 @@ from controller.defaults import (
     ITERATION_LIMIT,
     REFERENCE_SPEED,
     SAFE_DISTANCE,
-    SOLVER,
     SPEED_MAX,
-    SolverName,
 )
 from controller.parameters import require, require_not_negative, require_positive
 
@@ -111,7 +109,6 @@ class PlannerParameters:
     force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
     effort_weight: float = 0.02  # of (m/s^2)^2 s, beside (m/s)^2 s of the speed error
     jerk_weight: float = 0.02  # of (m/s^3)^2 s
-    solver: SolverName = SOLVER
     iteration_limit: int = ITERATION_LIMIT  # of the QP solver
     manoeuvres: ManoeuvreParameters = ManoeuvreParameters()
 
@@ -125,7 +122,6 @@ class PlannerParameters:
         require_positive("force_rate_limit", self.force_rate_limit, "N per step")
         require_not_negative("effort_weight", self.effort_weight, "s")
         require_not_negative("jerk_weight", self.jerk_weight, "s^3")
-        require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")
 
     @property
     def calm_time(self) -> float:

@@ -45,7 +45,7 @@ class Planner:
 
     Raises:
         ParameterError: the time step leaves no horizon.
-        SolverMissingError, SolverSetupError: the solver cannot be used.
+        SolverSetupError: the solver cannot be used.
     """
 
     def __init__(
@@ -57,9 +57,7 @@ class Planner:
         N = parameters.horizon
         self._search = Search(model, parameters)
         self._problem = SmoothingProblem(model, parameters)
-        self._solver = ExactSolver(
-            self._problem, parameters.solver, parameters.iteration_limit, box=None
-        )
+        self._solver = ExactSolver(self._problem, parameters.iteration_limit, box=None)
         problem = self._problem
         self._arrays = (
             problem.nodes,

@@ -18,7 +18,6 @@ class MpcConfig(Section):
         because="one step is no plan, and of 200 nothing is known",
     )
     speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60, because="no car is faster")
-    solver: Literal["osqp", "daqp"] = option("osqp", None, "QP solver")
 
 
 class PidConfig(Section):

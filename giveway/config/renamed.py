@@ -11,6 +11,7 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("mpc", "force_limit"): ("vehicle", "force_limit"),
     ("mpc", "force_rate_limit"): ("vehicle", "force_rate_limit"),
     ("mpc", "speed_max"): ("vehicle", "speed_max"),
+    ("mpc", "solver"): "leave it out: the solver is always OSQP",
     ("planner", "attitude"): ("planner", "style"),
     **{
         ("planner", key): "leave it out: it is always on"

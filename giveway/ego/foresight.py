@@ -141,7 +141,6 @@ class CrowdForesight:
         poses: Array,
         row: int,
         front: float,
-        speed: float,
         off: float = 0.0,
         kerbs: Array = NO_KERBS,
         numbers: NDArray[np.int64] | None = None,
@@ -154,7 +153,6 @@ class CrowdForesight:
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
             row: the ego's.
             front: the front bumper's station [m].
-            speed: the ego's [m/s].
             off: [m] how far people's positions are off at most, beside what the clearance has.
             kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
             numbers: (n,) one for each person, which the person keeps; None: nobody is known again.
