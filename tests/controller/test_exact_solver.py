@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from least_squares_cases import optimum
 
+import controller.osqp_backend as osqp_backend
 from controller import LongitudinalModel, MpcParameters, Outcome, exact_solver
 from controller.speed_problem import UNDECIDED, SpeedProblem
 

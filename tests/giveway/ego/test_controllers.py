@@ -113,7 +113,6 @@ def test_an_option_reaches_the_parameter_of_its_name():
     config = EgoRunConfig.model_validate(
         {"vehicle": {"force_limit": 5000.0}, "regulation": {"reference_speed": 4.0}}
     )
-    assert (
-        filled(PidParameters, config.regulation, config.pid, config.vehicle).force_limit == 5000.0
-    )
+    tables = config.regulation, config.pid, config.vehicle
+    assert filled(PidParameters, *tables).force_limit == 5000.0
     assert filled(PidParameters, config.vehicle, force_limit=6000.0).force_limit == 6000.0
