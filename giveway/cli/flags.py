@@ -26,7 +26,6 @@ _PANELS = {
     "regulation": "Regulation",
     "mpc": "MPC",
     "pid": "PID",
-    "tuned_pid": "Tuned PID",
     "planner": "Planner",
     "safety": "Safety",
     "perception": "Perception",

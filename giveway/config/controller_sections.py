@@ -1,5 +1,7 @@
 """The tables of the configuration about who drives: controllers, safety."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Literal
 
 from giveway.config.option import Section, option
@@ -58,8 +60,8 @@ class PidConfig(Section):
     )
 
 
-class TunedPidConfig(Section):
-    """The well-tuned PID, the fair rival (controller = "pid-tuned"); docs/controllers.md."""
+class TunedPidOptions(Section):
+    """Options of the well-tuned PID, the fair rival (controller = "pid-tuned"); docs/pid.md."""
 
     profile: Literal["braking-curve", "linear"] = option(
         "braking-curve", None, "how the reference speed falls towards who is in front"
@@ -145,7 +147,7 @@ class TunedPidConfig(Section):
 
 
 class PlannerConfig(Section):
-    """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
+    """What users choose of the planning MPC (controller = "mpc"); docs/controllers.md."""
 
     horizon: float = option(
         2.5,
@@ -155,6 +157,18 @@ class PlannerConfig(Section):
         le=10,
         because="a stop takes longer than 0.3 s, and of people nothing is known after 10 s",
     )
+    style: Literal["careful", "normal", "assertive"] = option(
+        "normal",
+        None,
+        "careful, normal or assertive: how much delay it takes for people's sake, by two "
+        "weights and a distance",
+        flag="--style",
+    )
+
+
+class PlannerOptions(Section):
+    """Options of the planning MPC (controller = "mpc"): its weights; docs/planner.md."""
+
     effort_weight: float = option(
         0.02,
         "s",
@@ -170,13 +184,6 @@ class PlannerConfig(Section):
         ge=0,
         le=100,
         because="beyond, a plan is made of that weight alone",
-    )
-    style: Literal["careful", "normal", "assertive"] = option(
-        "normal",
-        None,
-        "careful, normal or assertive: how much delay it takes for people's sake, by the two "
-        "weights and the distance below",
-        flag="--style",
     )
     conflict_weight: float | None = option(
         None,
@@ -276,3 +283,13 @@ class SafetyConfig(Section):
         because="a vehicle that answers later cannot be driven",
     )
     rate_limited: bool = option(False, None, "the layer's braking keeps to du_max too")
+
+
+class NoOptions(Section):
+    """Options of a controller that has none."""
+
+
+OWN_OPTIONS: Mapping[str, type[Section]] = MappingProxyType(
+    {"mpc": PlannerOptions, "pid-tuned": TunedPidOptions}
+)
+"""The options of each of our controllers by its public name, in [controller_options]."""

@@ -17,6 +17,36 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
         ("planner", key): "leave it out: it is always on"
         for key in ("gap_choice", "soft", "planned_speed", "belief", "contingency")
     },
+    **{
+        ("tuned_pid", key): ("controller_options", key)
+        for key in (
+            "profile",
+            "buffer_distance",
+            "deceleration",
+            "approach_lag",
+            "acceleration",
+            "jerk",
+            "firm_deceleration",
+            "last_distance",
+            "bandwidth",
+            "damping",
+            "acceleration_feed_forward",
+        )
+    },
+    **{
+        ("planner", key): ("controller_options", key)
+        for key in (
+            "effort_weight",
+            "jerk_weight",
+            "conflict_weight",
+            "nearness_weight",
+            "threat_weight",
+            "later_weight",
+            "minimum_distance",
+            "deceleration",
+            "calm_time",
+        )
+    },
     ("planner", "terminal"): "leave it out: it is always off",
     ("planner", "block_growth"): "leave it out: it is always 0.25",
 }

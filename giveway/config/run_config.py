@@ -18,11 +18,13 @@ from pydantic.fields import FieldInfo
 
 from controller import DECLARED, Defaults
 from giveway.config.controller_sections import (
+    OWN_OPTIONS,
     MpcConfig,
+    NoOptions,
     PidConfig,
     PlannerConfig,
     SafetyConfig,
-    TunedPidConfig,
+    TunedPidOptions,
 )
 from giveway.config.crowd import CrowdConfig
 from giveway.config.measures import MeasureConfig, read_measures
@@ -38,6 +40,7 @@ from giveway.config.sections import (
     VehicleConfig,
 )
 from giveway.plug_ins.finding import is_fmu, shown
+from giveway.plug_ins.options import read_options
 
 PAPER_STEP = 0.05
 """[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
@@ -51,7 +54,6 @@ EGO_TABLES = (
     "regulation",
     "mpc",
     "pid",
-    "tuned_pid",
     "planner",
     "safety",
     "perception",
@@ -124,10 +126,9 @@ class RunConfig(Section):
     regulation: RegulationConfig = RegulationConfig()
     mpc: MpcConfig = MpcConfig()
     pid: PidConfig = PidConfig()
-    tuned_pid: TunedPidConfig = TunedPidConfig()
     planner: PlannerConfig = PlannerConfig()
     controller_options: dict[str, JsonValue] = Field(
-        default_factory=dict, description="the options of a controller that is not giveway's own"
+        default_factory=dict, description="the controller's own options"
     )
     model_options: dict[str, JsonValue] = Field(
         default_factory=dict,
@@ -264,14 +265,7 @@ class EgoRunConfig(RunConfig):
         self.require_speeds_in_reach()
         self.require_rolling()
         self.require_known_belief()
-        if self.controller_options and not self.plugged_in:
-            key = next(iter(self.controller_options))
-            raise ValueError(
-                f"[controller_options] {key}: '{self.controller}' has no options there; its own "
-                "tables are in docs/options.md, and a study gives those of another controller in a "
-                "named level beside its name"
-            )
-
+        self.own_options  # noqa: B018 - they are read, and refused if they cannot be used
         if self.controller_profile and not is_fmu(self.controller):
             raise ValueError(
                 f"controller_profile = '{self.controller_profile}': '{self.controller}' is no "
@@ -289,6 +283,19 @@ class EgoRunConfig(RunConfig):
         return self.controller not in BUNDLED
 
     @property
+    def own_options(self) -> Section:
+        """The options of one of our own controllers; those of others are read by their sockets.
+
+        Raises:
+            ConfigError: One is unknown, or its value cannot be used.
+        """
+        if self.plugged_in:
+            return NoOptions()
+        kind = OWN_OPTIONS.get(self.controller)
+        own = read_options(self.controller, kind, self.controller_options)
+        return own if isinstance(own, Section) else NoOptions()
+
+    @property
     def optimises(self) -> bool:
         """Whether a model predictive controller drives: it has a model and a horizon."""
         return self.defaults.optimises
@@ -304,8 +311,10 @@ class EgoRunConfig(RunConfig):
         """Over which the reference speed rises linearly to v_r beyond d_safe [m]; 0: not so."""
         if self.defaults.buffered:
             return self.pid.buffer_distance
-        linear = self.defaults.smooths and self.tuned_pid.profile == "linear"
-        return self.tuned_pid.buffer_distance if linear else 0.0
+        own = self.own_options
+        if isinstance(own, TunedPidOptions) and own.profile == "linear":
+            return own.buffer_distance
+        return 0.0
 
     def require_speeds_in_reach(self) -> None:
         """Make sure that the MPC may drive at the speeds asked for.

@@ -21,11 +21,11 @@ from controller import (
     PlanningController,
     ReferenceParameters,
     SpeedController,
+    StyleName,
     TunedPid,
     TunedPidParameters,
 )
 from giveway.config import EgoRunConfig
-from giveway.config.controller_sections import PlannerConfig
 from giveway.config.option import LANE, Section
 from giveway.ego.plug_in import plugged_in
 from giveway.ego.vehicle import model_margin
@@ -109,39 +109,41 @@ def _pid(config: EgoRunConfig, time_step: float) -> Pid:
 
 def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
     """The well-tuned PID, with the actuator's limits of the MPC."""
-    reference = filled(ReferenceParameters, config.regulation, config.tuned_pid)
-    parameters = filled(TunedPidParameters, config.tuned_pid, config.vehicle, reference=reference)
+    own = config.own_options
+    reference = filled(ReferenceParameters, config.regulation, own)
+    parameters = filled(TunedPidParameters, own, config.vehicle, reference=reference)
     return TunedPid(parameters, _model(config, time_step))
 
 
-def manoeuvres_of(planner: PlannerConfig, margin: float = 0.0) -> ManoeuvreParameters:
+def manoeuvres_of(style: StyleName, own: Section, margin: float = 0.0) -> ManoeuvreParameters:
     """The planner's manoeuvres: what its style sets, unless the options say otherwise.
 
     Args:
-        planner: the options.
+        style: Driving style.
+        own: Options of the planner.
         margin: [m] kept to people for what the vehicle's model lacks.
     """
     weighed = {
-        name: usual if getattr(planner, name) is None else getattr(planner, name)
-        for name, usual in STYLES[planner.style].items()
+        name: usual if getattr(own, name) is None else getattr(own, name)
+        for name, usual in STYLES[style].items()
     }
     weighed["minimum_distance"] += margin
-    return filled(ManoeuvreParameters, planner, **weighed)
+    return filled(ManoeuvreParameters, own, **weighed)
 
 
 def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
     """The planning MPC."""
-    regulation, planner = config.regulation, config.planner
+    regulation, own = config.regulation, config.own_options
     margin = model_margin(config, time_step)
     parameters = filled(
         PlannerParameters,
         regulation,
-        planner,
+        own,
         config.mpc,
         config.vehicle,
         horizon=plan_steps(config, time_step),
         safe_distance=regulation.safe_distance + margin,
-        manoeuvres=manoeuvres_of(planner, margin),
+        manoeuvres=manoeuvres_of(config.planner.style, own, margin),
     )
     return PlanningController(Planner(_model(config, time_step), parameters))
 

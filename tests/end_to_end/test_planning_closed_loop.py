@@ -60,7 +60,10 @@ def test_the_same_seed_gives_the_same_bytes(run_once: Run) -> None:
 def test_every_ingredient_can_be_changed_and_matters(run_once: Run, name: str) -> None:
     usual = run_once(controller="mpc", seed=GIVES_WAY, time_limit=SHORT)
     changed = run_once(
-        controller="mpc", seed=GIVES_WAY, time_limit=SHORT, planner={name: SWITCHES[name]}
+        controller="mpc",
+        seed=GIVES_WAY,
+        time_limit=SHORT,
+        **{"planner" if name == "horizon" else "controller_options": {name: SWITCHES[name]}},
     )
     assert changed.summary["frontal_contacts"] == 0
     assert len(speeds(changed)) == len(speeds(usual))
@@ -74,7 +77,9 @@ def test_calm_speeds_matter_in_some_crowds(
     run_once: Run, name: str, seed: int, until: float
 ) -> None:
     usual = run_once(controller="mpc", seed=seed, time_limit=until)
-    changed = run_once(controller="mpc", seed=seed, time_limit=until, planner={name: 0.0})
+    changed = run_once(
+        controller="mpc", seed=seed, time_limit=until, controller_options={name: 0.0}
+    )
     both = min(len(speeds(usual)), len(speeds(changed)))
     assert np.abs(speeds(changed)[:both] - speeds(usual)[:both]).max() > 1e-6
 

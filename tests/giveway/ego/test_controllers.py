@@ -22,7 +22,12 @@ from controller import (
 )
 from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
-from giveway.config.controller_sections import PlannerConfig, SafetyConfig
+from giveway.config.controller_sections import (
+    PlannerConfig,
+    PlannerOptions,
+    SafetyConfig,
+    TunedPidOptions,
+)
 from giveway.config.option import LANE
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.ego.controllers import filled, make_controller, manoeuvres_of
@@ -31,6 +36,7 @@ from giveway.geometry.bodies import BODY
 from pedestrian_model import SIM
 
 STEP = 0.05  # [s]
+TUNED, PLANNING = TunedPidOptions(), PlannerOptions()
 CONFIG = EgoRunConfig.model_validate({"regulation": {"reference_speed": DEFAULT_SPEED}})
 
 
@@ -40,14 +46,17 @@ CONFIG = EgoRunConfig.model_validate({"regulation": {"reference_speed": DEFAULT_
         (LongitudinalModel, ["vehicle"], {"time_step": STEP}),
         (MpcParameters, ["mpc", "vehicle", "regulation"], {}),
         (PidParameters, ["regulation", "pid", "vehicle"], {}),
-        (ReferenceParameters, ["regulation", "tuned_pid"], {}),
-        (TunedPidParameters, ["tuned_pid", "vehicle"], {}),
-        (PlannerParameters, ["regulation", "planner", "vehicle"], {"horizon": 50}),
+        (ReferenceParameters, ["regulation", TUNED], {}),
+        (TunedPidParameters, [TUNED, "vehicle"], {}),
+        (PlannerParameters, ["regulation", PLANNING, "vehicle"], {"horizon": 50}),
     ],
     ids=lambda value: getattr(value, "__name__", None),
 )
 def test_the_controllers_defaults_are_the_configurations(kind, tables, own):
-    assert filled(kind, *(getattr(CONFIG, table) for table in tables), **own) == kind()
+    assert (
+        filled(kind, *(getattr(CONFIG, t) if isinstance(t, str) else t for t in tables), **own)
+        == kind()
+    )
 
 
 def test_the_paper_s_gains_are_the_configurations():
@@ -99,11 +108,11 @@ def test_lanes_say_how_fast_but_not_to_the_paper_s_controllers():
 
 
 def test_a_style_sets_what_the_options_leave_out():
-    assert manoeuvres_of(PlannerConfig()) == ManoeuvreParameters()
+    assert manoeuvres_of("normal", PLANNING) == ManoeuvreParameters()
     chosen = PlannerConfig.model_fields["style"].annotation
     assert get_args(chosen) == get_args(StyleName) == tuple(STYLES)
     for name, usual in STYLES.items():
-        found = manoeuvres_of(PlannerConfig(style=name, nearness_weight=5.0), margin=0.1)
+        found = manoeuvres_of(name, PlannerOptions(nearness_weight=5.0), margin=0.1)
         assert found.conflict_weight == usual["conflict_weight"]
         assert found.nearness_weight == 5.0
         assert found.minimum_distance == usual["minimum_distance"] + 0.1
