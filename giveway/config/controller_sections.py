@@ -265,15 +265,6 @@ class SafetyConfig(Section):
         "responsible, 2.2 m/s^2, once in 100; on a sidewalk these two: 0.6 m/s^2 towards the road",
         flag="--safety-people",
     )
-    margin: float = option(
-        0.05,
-        "m",
-        "kept between the front bumper and whoever may get there",
-        ge=0,
-        le=5,
-        least=MILLIMETRE,
-        because=GAP,
-    )
     reaction_time: float | None = option(
         None,
         "s",
@@ -282,7 +273,6 @@ class SafetyConfig(Section):
         le=5,
         because="a vehicle that answers later cannot be driven",
     )
-    rate_limited: bool = option(False, None, "the layer's braking keeps to du_max too")
 
 
 class NoOptions(Section):

@@ -12,6 +12,10 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("mpc", "force_rate_limit"): ("vehicle", "force_rate_limit"),
     ("mpc", "speed_max"): ("vehicle", "speed_max"),
     ("mpc", "solver"): "leave it out: the solver is always OSQP",
+    ("safety", "margin"): "leave it out: it is always 0.05 m",
+    ("safety", "rate_limited"): "leave it out: the layer's braking is never rate-limited",
+    ("traffic", "yield_distance"): "leave it out: it is always 2 m",
+    ("crowd", "zone_margin"): "leave it out: it is always 5 m",
     ("planner", "attitude"): ("planner", "style"),
     **{
         ("planner", key): "leave it out: it is always on"

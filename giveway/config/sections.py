@@ -16,7 +16,7 @@ from giveway.config.option import (
     TimeOrWindow,
     option,
 )
-from giveway.config.reasons import FORCE, GAP, MILLIMETRE
+from giveway.config.reasons import FORCE
 
 _SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # what SUMO accepts as the name of anything
 SUMO_TIME = "SUMO counts milliseconds"
@@ -183,15 +183,6 @@ class TrafficConfig(Section):
 
     yielding: bool = option(
         True, None, "SUMO's vehicles brake for pedestrians and egos in their way", flag="--yield"
-    )
-    yield_distance: float = option(
-        2.0,
-        "m",
-        "they want to stop this far before a pedestrian",
-        ge=0,
-        le=50,
-        least=MILLIMETRE,
-        because=GAP,
     )
 
 

@@ -2,7 +2,7 @@
 
 from contextlib import ExitStack
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import sqrt
 
 from controller import Controller, PluggedIn, SafetyParameters, WorstMotion
 from fmus import FmuError, Vehicle
@@ -16,6 +16,7 @@ from giveway.errors import VehicleError
 from giveway.records.tracks import EgoTrack
 from pedestrian_model import CrowdPredictor
 
+_MARGIN = 0.05  # Distance [m] between the front bumper and whoever may get there; docs/safety.md
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
 
 
@@ -159,9 +160,8 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         walking_speed=worst.speed,
         setting_out=worst.setting_out,
         body_radius=walking.body_radius,
-        margin=safety.margin + model_margin(config, time_step),
+        margin=_MARGIN + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,
         force_limit=config.vehicle.force_limit,
-        force_rate_limit=config.vehicle.force_rate_limit if safety.rate_limited else inf,
         reaction_time=identified_reaction_time(config) if reaction is None else reaction,
     )
