@@ -18,17 +18,17 @@ from unittest.mock import patch
 
 import numpy as np
 
-from controller.least_squares import Outcome
-from controller.osqp_backend import OsqpBackend
+from controller.qp.least_squares import Outcome
+from controller.qp.osqp_backend import OsqpBackend
 from giveway.api import RunResult, simulate
-from giveway.config.layers import Layer
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import load
 from giveway.cosimulation import loop
 from giveway.cosimulation.assembly import assemble
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.geometry.path import headings_to_angles
 from giveway.precompile import compile_kernels_once
-from giveway.records.tracks import Timings
+from giveway.run_data.tracks import Timings
 
 CONTROLLERS = ("mpc", "pid-tuned", "mpc-paper", "pid-paper")
 AGAIN = 50  # runs with the longest control steps that are made again

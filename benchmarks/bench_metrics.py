@@ -22,7 +22,7 @@ from giveway.metrics import (
     proximity,
     summarise,
 )
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +49,7 @@ def made_up_run(pedestrians: int, steps: int) -> tuple[EgoTrack, CrowdTrack]:
         reference_speed=np.full(steps, 4.0),
         vehicle_gap=np.full(steps, np.inf),
         stop_gap=np.full(steps, np.inf),
-        acting=np.full(steps, "mpc"),
+        controller=np.full(steps, "mpc"),
         reason=np.full(steps, "optimal"),
         solver_status=np.full(steps, "solved"),
         waits_for=np.full(steps, ""),

@@ -30,13 +30,13 @@ import numpy as np
 from cities import City, build_city
 
 from giveway.api import RunResult, simulate
-from giveway.config.layers import Layer
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import load
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.preflight import preflight
-from giveway.cosimulation.yielding import Yielding
+from giveway.cosimulation.traffic.yielding import Yielding
 from giveway.crowd.exchange import Exchange
-from giveway.records.tracks import Timings
+from giveway.run_data.tracks import Timings
 from giveway.sumo.session import SumoSession
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ FOUR = "import numba, pandas, libsumo, matplotlib"
 FIRST_STEP = """
 import os
 from giveway.api import simulate
-from giveway.config.layers import Layer
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.precompile import compile_kernels_once
 

@@ -16,8 +16,8 @@ from dataclasses import asdict
 from time import perf_counter, process_time
 from typing import TYPE_CHECKING
 
-from giveway.config.layers import Layer
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import load
 from giveway.studies.execution import cluster_executor, local_executor
 from giveway.studies.execution.perform import perform
 from giveway.studies.identity import software_identity

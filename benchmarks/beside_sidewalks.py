@@ -65,8 +65,8 @@ class Judge:
     """
 
     def __init__(self, kept: dict[str, Any], kerbs: Any, sidewalks: bool, hard: float) -> None:
-        from controller.worst_motion import RECORDED
-        from giveway.ego.threats import Alarm
+        from controller.safety.worst_motion import RECORDED
+        from giveway.ego.foresight.threats import Alarm
 
         self._hard = hard
         self._ego, self._crowd, self._kerbs = kept["track"], kept["crowd"], kerbs
@@ -102,7 +102,7 @@ class Judge:
 
     def _threats(self, k: int, now: int, gone: float) -> list[tuple[int, bool]]:
         """Whom the ego could meet, and whether they are on a sidewalk."""
-        from giveway.ego.threats import is_threat, outline
+        from giveway.ego.foresight.threats import is_threat, outline
 
         ego, crowd, alarm = self._ego, self._crowd, self._alarm
         cos, sin, speed = np.cos(ego.heading[k]), np.sin(ego.heading[k]), float(ego.speed[k])

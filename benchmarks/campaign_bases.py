@@ -182,7 +182,7 @@ _ADDITIONAL: Final = """<additional>
 _JOURNAL: Final = """import sys
 from pathlib import Path
 from giveway.api import run_checked
-from giveway.config.loading import as_layer, load
+from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
 settings = {"crowd": {"pedestrians": 3}, "time_limit": 1.0}
 journal, results = map(Path, sys.argv[1:])
@@ -290,7 +290,7 @@ class Bases:
     @cached_property
     def presets(self) -> list[str]:
         """Texts of preset files: whole ones, and one on a base."""
-        from giveway.config.presets import preset_text
+        from giveway.config.files.presets import preset_text
         from pedestrian_model import SIM, TABLE2
 
         few = 'name = "few"\nbase = "TABLE2"\n[parameters]\nmass = 70\nbody_radius = 0.25\n'

@@ -26,7 +26,7 @@ from clairvoyant_search import (
 from matplotlib.figure import Figure
 
 import giveway
-from giveway.config.regulation import CORRIDOR_MARGIN
+from giveway.config.tables.regulation import CORRIDOR_MARGIN
 from giveway.figures.style import BLUE, GREEN, GREY, ORANGE, VERMILION, quiet_grid, save_figure
 from giveway.figures.style import styled as in_house_style
 from giveway.studies.statistics.bootstrap import mean_interval, seed_of

@@ -19,7 +19,7 @@ from clairvoyant_search import CONTACT, CONTACT_PRICE, arrival_tolls
 
 from giveway.geometry.kernel import kernel
 from giveway.metrics import post_encroachment_time
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
     from clairvoyant_lattice import Course, Lattice

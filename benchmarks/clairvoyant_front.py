@@ -62,8 +62,8 @@ if TYPE_CHECKING:
     from clairvoyant_encroachment import Stretches
     from matplotlib.axes import Axes
 
-    from giveway.records.tracks import CrowdTrack
     from giveway.results.run_result import RunResult
+    from giveway.run_data.tracks import CrowdTrack
 
 SCENES = ("one-sided, 30", "two-sided, 30", "two-sided, 60", "stream, 30", "encounter, medium")
 DRIVERS: dict[str, dict[str, Any]] = {

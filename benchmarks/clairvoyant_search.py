@@ -17,7 +17,7 @@ from giveway.geometry.kernel import kernel
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.records.tracks import CrowdTrack
+    from giveway.run_data.tracks import CrowdTrack
 
     Array = NDArray[np.float64]
     Flags = NDArray[np.uint8]

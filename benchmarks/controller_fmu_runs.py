@@ -42,7 +42,7 @@ def main() -> None:
             theirs = giveway.run({**run, "controller": str(fmu), **LIKE_THE_PAPER}).egos[0].track
             pairs = [(getattr(ours, name), getattr(theirs, name)) for name in MOTION]
             decisions += len(ours.time)
-            by_pid += int(np.sum(ours.acting == "pid"))
+            by_pid += int(np.sum(ours.controller == "pid"))
             exact += all(np.array_equal(a, b) for a, b in pairs)
             same_digits += all(
                 len(a) == len(b) and np.array_equal(np.round(a, DIGITS), np.round(b, DIGITS))

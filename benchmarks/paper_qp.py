@@ -1,6 +1,7 @@
 """The paper's QP, in its own unknowns and units: the definition that everything is tested against.
 
-The solvers get the same problem in speeds (``controller.speed_problem``), where it is well
+The solvers get the same problem in speeds (``controller.paper_mpc.speed_problem``), where it is
+well
 conditioned. The tests of ``controller`` and bench_qp.py use this file.
 """
 

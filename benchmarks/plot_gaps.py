@@ -50,7 +50,7 @@ def draw(axis: Axes, controller: str, seed: int) -> None:
     axis.plot(time[crowd.step[inside]], crowd.x[inside], ".", ms=2, color=VERMILION, label="person")
     axis.fill_between(time, track.front_x - length, track.front_x, color=SKY_BLUE, alpha=0.5)
     axis.plot(time, track.front_x, color="black", lw=1.2, label="ego's front")
-    acts = track.acting == "safety"
+    acts = track.controller == "safety"
     axis.plot(time[acts], track.front_x[acts], "o", ms=4, color=ORANGE, label="safety layer acts")
     summary = result.summary
     axis.set_title(

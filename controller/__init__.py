@@ -4,8 +4,6 @@ Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Contr
 Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
 """
 
-from controller._stopping import towards_kerb
-from controller.conformance import Finding, check_controller
 from controller.declarations import DECLARED
 from controller.errors import (
     ControllerError,
@@ -14,11 +12,13 @@ from controller.errors import (
     SolverSetupError,
 )
 from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials, Verdict
-from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
-from controller.mpc import Mpc
+from controller.paper_mpc.mpc import Mpc
+from controller.paper_mpc.solution import MpcSolution
 from controller.parameters import PRINTED_PID, MpcParameters, PidParameters
-from controller.pid import Pid
+from controller.pid.pid import Pid
+from controller.pid.speed_reference import ReferenceParameters, SpeedReference
+from controller.pid.tuned_pid import TunedPid, TunedPidParameters
 from controller.planning import (
     STYLES,
     ManoeuvreParameters,
@@ -31,15 +31,15 @@ from controller.planning import (
     later_cost,
     own_cost,
 )
-from controller.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
-from controller.plugged_in import PluggedIn
+from controller.plug_ins.conformance import Finding, check_controller
+from controller.plug_ins.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
+from controller.plug_ins.plugged_in import PluggedIn
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
-from controller.safety import SafeForce, SafetyLayer, SafetyParameters, largest_safe_force
-from controller.solution import MpcSolution
+from controller.qp.least_squares import Outcome
+from controller.safety.layer import SafeForce, SafetyLayer, SafetyParameters, largest_safe_force
+from controller.safety.stopping import towards_kerb
+from controller.safety.worst_motion import PeopleName, WorstMotion, worst_motion
 from controller.speed_controller import SpeedController
-from controller.speed_reference import ReferenceParameters, SpeedReference
-from controller.tuned_pid import TunedPid, TunedPidParameters
-from controller.worst_motion import PeopleName, WorstMotion, worst_motion
 
 __all__ = [
     "DECLARED",

@@ -53,7 +53,7 @@ class Observation(NamedTuple):
     time: float = 0.0  # t_k [s] on SUMO's clock
     acceleration: float = 0.0  # [m/s^2] of the ego
     force: float = 0.0  # u(k-1) [N] that acted in the step before
-    stop_gap: float = inf  # [m] from the front bumper to where a red light wants it; inf: none
+    stop_gap: float = inf  # [m] from the front bumper to where it has to stop; inf: nowhere
     path: PathAhead | None = None  # None: a straight line without end
     people: People | None = None  # None: nobody
     vehicles: Array | None = None  # (N, m, 7) all, now and predicted: x, y, heading, speed, front,

@@ -1,10 +1,10 @@
 """The MPC where it has a plan, else the PID (Yang & Özgüner 2019, algorithm 1); or a PID alone."""
 
 from controller.defaults import STANDSTILL
-from controller.mpc import Mpc
-from controller.pid import Pid
+from controller.paper_mpc.mpc import Mpc
+from controller.pid.pid import Pid
+from controller.pid.tuned_pid import TunedPid
 from controller.protocol import Decision, Observation
-from controller.tuned_pid import TunedPid
 
 
 class SpeedController:

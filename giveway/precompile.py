@@ -195,7 +195,7 @@ def _call_the_rest() -> None:
 
 def _run(settings: dict[str, Any], *, measured: bool = True) -> None:
     from giveway.api import run
-    from giveway.records.progress import Ending
+    from giveway.run_data.progress import Ending
 
     result = run(settings)
     if result.ending is Ending.INTERRUPTED:

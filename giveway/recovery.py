@@ -10,20 +10,20 @@ import numpy as np
 
 from giveway.api import in_journal, keep
 from giveway.config import RunConfig
-from giveway.config.foreign_code import named_in
-from giveway.config.layers import read_toml_text
-from giveway.config.loading import load
+from giveway.config.files.foreign_code import named_in
+from giveway.config.files.layers import read_toml_text
+from giveway.config.files.loading import load
 from giveway.errors import CrashError, GivewayError, ResultsError
+from giveway.journal.journal_reader import JournalContents, read_journal
+from giveway.journal.recorded import RecordedRows
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import FolderInUseError, locked
 from giveway.processes.supervisor import Verdict, journals, verdict_on_left
-from giveway.recording.journal_reader import JournalContents, read_journal
-from giveway.recording.recorded import RecordedRows
-from giveway.records.progress import Ending
 from giveway.results.ego_result import results_of_egos
 from giveway.results.folder import is_marked_only, release_folder, taken_folder
 from giveway.results.provenance import manifest
 from giveway.results.run_result import RunResult
+from giveway.run_data.progress import Ending
 from sumo_scenarios import Scenario
 
 

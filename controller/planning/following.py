@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from controller._jit import Array, inner, kernel
-from controller.exact_solver import solve_verified
 from controller.planning.costs import add_cost_of_others, corridor, stopping_need
 from controller.planning.parameters import Weights
 from controller.planning.smoothing import fill, set_target, unfold
+from controller.qp.exact_solver import solve_verified
 
 UNSOLVED = -1  # the exact methods did not end: OSQP has to
 _WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows

@@ -8,9 +8,7 @@ import numpy as np
 from controller._jit import Array
 from controller.defaults import STANDSTILL
 from controller.errors import ParameterError
-from controller.exact_solver import ExactSolver
 from controller.foresight import Foresight, Manoeuvre
-from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
 from controller.planning.following import (
     UNSOLVED,
@@ -22,6 +20,8 @@ from controller.planning.parameters import PlannerParameters
 from controller.planning.search import Search
 from controller.planning.smoothing import SmoothingProblem
 from controller.protocol import Decision, Observation
+from controller.qp.exact_solver import ExactSolver
+from controller.qp.least_squares import Outcome
 
 _SOLVED = Outcome.SOLVED  # whose class is slow to tell it
 

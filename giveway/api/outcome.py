@@ -4,21 +4,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 from time import perf_counter
 
-from giveway.config.foreign_code import provenance
+from giveway.config.files.foreign_code import provenance
 from giveway.cosimulation.assembly import Parts
-from giveway.cosimulation.followed import Followed
+from giveway.cosimulation.counterfactual.counterfactual import Twin
+from giveway.cosimulation.counterfactual.follow_up import Followed
 from giveway.cosimulation.loop import Loop
-from giveway.cosimulation.twin import Twin
 from giveway.ego.vehicle import model_margin
+from giveway.journal.recorder import Recorder
 from giveway.measures import unreached
 from giveway.metrics import delays
-from giveway.recording.recorder import Recorder
-from giveway.records.progress import Ending
 from giveway.results import law, mismatch, vehicle_contacts
 from giveway.results.effect import Effect, who_gave_way
 from giveway.results.ego_result import EgoResult, results_of_egos
 from giveway.results.provenance import manifest
 from giveway.results.run_result import RunResult
+from giveway.run_data.progress import Ending
 from giveway.sumo.road_marks import road_marks
 from sumo_scenarios import Scenario
 

@@ -7,15 +7,14 @@ from typing import Any
 
 from giveway.api.simulation import simulate
 from giveway.config import RunConfig
-from giveway.config.layers import dump_toml
-from giveway.config.loading import as_layer, load
+from giveway.config.files.layers import dump_toml
+from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.errors import GivewayError, ResultsError
+from giveway.journal.journal import Journal
 from giveway.processes.child import STDERR_FILE
 from giveway.processes.heartbeat import Phase
 from giveway.processes.interrupts import DeferredInterrupt
-from giveway.recording.journal import Journal
-from giveway.records.progress import Watcher
 from giveway.results.folder import (
     ARGUMENTS,
     FLAGS,
@@ -27,6 +26,7 @@ from giveway.results.folder import (
     write_results,
 )
 from giveway.results.run_result import RunResult
+from giveway.run_data.progress import Watcher
 
 
 def run(

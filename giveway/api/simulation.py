@@ -11,15 +11,15 @@ from typing import TypeVar
 from fmus import processes_reused
 from giveway.api.outcome import judged, outcome, with_twin
 from giveway.cosimulation.assembly import Driven, assemble
+from giveway.cosimulation.counterfactual.counterfactual import twin_of
 from giveway.cosimulation.loop import Loop
 from giveway.cosimulation.preflight import CheckedRun
-from giveway.cosimulation.twin import twin_of
 from giveway.errors import CrowdError, SumoError
+from giveway.journal.journal import Journal
+from giveway.journal.recorder import Recorder
 from giveway.processes.interrupts import DeferredInterrupt
-from giveway.recording.journal import Journal
-from giveway.recording.recorder import Recorder
-from giveway.records.progress import Ending, Progress, Watcher
 from giveway.results.run_result import RunResult
+from giveway.run_data.progress import Ending, Progress, Watcher
 from giveway.sumo.library import is_refusal
 from pedestrian_model import PedestrianModelError
 from sumo_scenarios import Scenario

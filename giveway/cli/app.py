@@ -171,8 +171,8 @@ def _config(
 ) -> None:
     """Print the effective configuration as TOML, with units."""
     from giveway.cli.run import layers_of
-    from giveway.config.layers import dump_toml
-    from giveway.config.loading import load
+    from giveway.config.files.layers import dump_toml
+    from giveway.config.files.loading import load
 
     typer.echo(dump_toml(load(layers_of(scenario, config, settings))[0]), nl=False)
 

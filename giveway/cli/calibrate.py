@@ -9,7 +9,7 @@ from rich.table import Table
 
 from giveway.cli.printing import escape, print_place, writing
 from giveway.cli.progress import counting
-from giveway.config.presets import SUFFIX, parameters_of, preset_text
+from giveway.config.files.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
 from giveway.precompile import compile_kernels_once
 from giveway.validation import Calibration, calibrate, dataset_of, read_clips

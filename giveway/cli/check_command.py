@@ -11,8 +11,8 @@ import typer
 
 from giveway.cli.flags import set_options
 from giveway.config import RunConfig
-from giveway.config.foreign_code import foreign_code, require_code
-from giveway.config.layers import Layer, build_config
+from giveway.config.files.foreign_code import foreign_code, require_code
+from giveway.config.files.layers import Layer, build_config
 from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.sockets import CONTROLLER, Socket
@@ -111,7 +111,7 @@ def _battery(connection: Connection, config: str, what: str) -> None:
     if what == CONTROLLER.what:
         from controller import check_controller
         from fmus import processes_reused
-        from giveway.config.controller_fmu import setup_of
+        from giveway.config.files.controller_fmu import setup_of
         from giveway.ego import plug_in
 
         (own,) = effective.each_ego()

@@ -11,7 +11,7 @@ from fmus.errors import FmuError
 from fmus.sources.export import export_controller
 from fmus.sources.parameters import CONTROLLER_FILES, ControllerParameters
 from giveway.cli.run import layers_of
-from giveway.config.loading import load
+from giveway.config.files.loading import load
 from giveway.config.option import LANE
 from giveway.cosimulation.preflight import control_step
 from giveway.ego.controllers import make_controller

@@ -11,8 +11,8 @@ from typing import Annotated, Any, Literal
 import typer
 
 from giveway.cli.help import show_all_options
-from giveway.config.layers import Location, Option, options
-from giveway.config.toml import toml_value
+from giveway.config.files.layers import Location, Option, options
+from giveway.config.files.toml import toml_value
 from giveway.errors import ConfigError
 from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, Socket
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from giveway.config.layers import Layer, merge, read_toml
-from giveway.config.sections import BUNDLED_VEHICLES
+from giveway.config.files.layers import Layer, merge, read_toml
+from giveway.config.tables.basics import BUNDLED_VEHICLES
 from giveway.errors import VehicleError
 from giveway.plug_ins.finding import is_fmu
 

@@ -18,7 +18,7 @@ from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.printing import escape, print_place, writing
-from giveway.config.schema_names import PROFILE, with_schema
+from giveway.config.files.schema_names import PROFILE, with_schema
 from giveway.errors import ConfigError, VehicleError
 
 

@@ -24,7 +24,7 @@ from fmus.profile.draft import Draft
 from fmus.profile.draft_profile import draft_profile
 from fmus.text import printable
 from giveway.cli.exit import fail
-from giveway.config.schema_names import PROFILE, with_schema
+from giveway.config.files.schema_names import PROFILE, with_schema
 
 SHOWN: Final = 12  # rows of a list
 SHOWN_FINDINGS: Final = 4

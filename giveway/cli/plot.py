@@ -8,7 +8,7 @@ from rich.console import Console
 
 from controller import Pid, TunedPid
 from giveway.cli.printing import print_place, writing
-from giveway.config.presets import parameters_of
+from giveway.config.files.presets import parameters_of
 from giveway.errors import ConfigError
 from giveway.figures import reference_figure, save_figure
 from giveway.geometry.bodies import VehicleShape

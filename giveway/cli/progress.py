@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from giveway.config import RunConfig
-    from giveway.records.progress import Progress as State
-    from giveway.records.progress import Watcher
+    from giveway.run_data.progress import Progress as State
+    from giveway.run_data.progress import Watcher
 
 _REFRESH = 0.1  # [s] of wall clock between two redraws
 

@@ -9,8 +9,8 @@ from giveway.cli.printing import escape
 from giveway.cli.progress import run_progress
 from giveway.cli.run import Outputs, interrupted, show
 from giveway.precompile import compile_kernels_once
-from giveway.records.progress import Ending
 from giveway.results.folder import check_folder
+from giveway.run_data.progress import Ending
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
 

@@ -13,11 +13,11 @@ from rich.console import Console
 from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.printing import escape, print_json
 from giveway.cli.progress import run_progress
-from giveway.config.layers import Layer, dump_toml, read_toml
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer, dump_toml, read_toml
+from giveway.config.files.loading import load
 from giveway.errors import GivewayError
-from giveway.records.progress import Ending
 from giveway.results.folder import check_folder, require_parquet
+from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

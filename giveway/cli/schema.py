@@ -8,9 +8,9 @@ from rich.console import Console
 
 from fmus import VehicleProfile
 from giveway.cli.printing import print_place, writing
-from giveway.config.presets import NAMES
+from giveway.config.files.presets import NAMES
+from giveway.config.files.schema_names import PRESET, PROFILE, RUN, STUDY
 from giveway.config.run_config import EGO_TABLES, RunConfig
-from giveway.config.schema_names import PRESET, PROFILE, RUN, STUDY
 from giveway.plug_ins.finding import declared_names
 from giveway.plug_ins.sockets import CONTROLLER, MODEL
 from giveway.results.json_text import json_text

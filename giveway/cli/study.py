@@ -14,7 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from giveway.cli.printing import print_json
 from giveway.cli.study_summary import print_plan, print_summary
-from giveway.config.foreign_code import foreign_code
+from giveway.config.files.foreign_code import foreign_code
 from giveway.precompile import compile_kernels_once
 from giveway.processes.processors import processors
 from giveway.studies.definition import changed, read_definition

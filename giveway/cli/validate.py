@@ -11,7 +11,7 @@ from rich.table import Table
 
 from giveway.cli.printing import escape, print_place
 from giveway.cli.progress import counting
-from giveway.config.presets import parameters_of, require_steady_preset
+from giveway.config.files.presets import parameters_of, require_steady_preset
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import check_folder
 from giveway.validation import Validation, dataset_of, read_clips, validate

@@ -17,7 +17,16 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from controller import DECLARED, Defaults
-from giveway.config.controller_sections import (
+from giveway.config.option import LANE, Section, expectation, option
+from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
+from giveway.config.tables.basics import (
+    EgoConfig,
+    RecordConfig,
+    SumoConfig,
+    TrafficConfig,
+    VehicleConfig,
+)
+from giveway.config.tables.controllers import (
     OWN_OPTIONS,
     MpcConfig,
     NoOptions,
@@ -26,19 +35,10 @@ from giveway.config.controller_sections import (
     SafetyConfig,
     TunedPidOptions,
 )
-from giveway.config.crowd import CrowdConfig
-from giveway.config.measures import MeasureConfig, read_measures
-from giveway.config.option import LANE, Section, expectation, option
-from giveway.config.perception import PerceptionConfig
-from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
-from giveway.config.regulation import RegulationConfig
-from giveway.config.sections import (
-    EgoConfig,
-    RecordConfig,
-    SumoConfig,
-    TrafficConfig,
-    VehicleConfig,
-)
+from giveway.config.tables.crowd import CrowdConfig
+from giveway.config.tables.measures import MeasureConfig, read_measures
+from giveway.config.tables.perception import PerceptionConfig
+from giveway.config.tables.regulation import RegulationConfig
 from giveway.plug_ins.finding import is_fmu, shown
 from giveway.plug_ins.options import read_options
 

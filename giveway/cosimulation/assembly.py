@@ -11,23 +11,24 @@ import shapely
 from shapely.ops import substring
 
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.cosimulation.arrivals import Arrivals
-from giveway.cosimulation.departures import Departures
-from giveway.cosimulation.people import people_at_first, people_to_come
+from giveway.cosimulation.entry.departures import Departures
+from giveway.cosimulation.people.arrivals import Arrivals
+from giveway.cosimulation.people.initial import people_at_first, people_to_come
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
-from giveway.cosimulation.yielding import Yielding
+from giveway.cosimulation.traffic.yielding import Yielding
 from giveway.crowd.exchange import Exchange
 from giveway.crowd.models import model_of
 from giveway.crowd.priority import PriorityOnFoot
 from giveway.crowd.roster import Roster
 from giveway.crowd.zone import Zone
 from giveway.ego.controllers import make_controller
+from giveway.ego.preparation import make_waiting_ego, recorded_ego
 from giveway.ego.vehicle import model_remark
-from giveway.ego.waiting import WaitingEgo, make_waiting_ego, recorded_ego
+from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.tracks import EgoTrack
 from giveway.scenario_files import StartOptions
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type

@@ -21,22 +21,22 @@ import numpy as np
 from controller import ControllerError
 from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
-from giveway.cosimulation.followed import Followed
-from giveway.cosimulation.instants import Instants
-from giveway.cosimulation.meetings import Meetings
+from giveway.cosimulation.counterfactual.follow_up import Followed
+from giveway.cosimulation.law_records import LawRecords
 from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.recording_instants import Instants
 from giveway.cosimulation.standstill import Standstill
-from giveway.cosimulation.ways import LawRecords
+from giveway.cosimulation.traffic.interactions import Meetings
 from giveway.crowd.reachable import flow_remark, spawn_remark, way_of
 from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.geometry.kernel import Array
+from giveway.journal.recorder import Recorder
 from giveway.processes.garbage import full_collections_put_off
 from giveway.processes.heartbeat import INSTANT, MILLISECONDS, PHASE, Phase
 from giveway.processes.interrupts import DeferredInterrupt
-from giveway.recording.recorder import Recorder
-from giveway.records.progress import Ending, Progress, Watcher
+from giveway.run_data.progress import Ending, Progress, Watcher
 from pedestrian_model import PedestrianModelError, PlugInError
 
 # An enumeration's class takes four times as long as a module to tell its members.

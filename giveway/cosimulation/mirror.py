@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.cosimulation.bends import Bends
+from giveway.cosimulation.traffic.bends import Bends
 from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.errors import CrowdError, VehicleError

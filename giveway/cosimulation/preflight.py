@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.foreign_code import require_code
-from giveway.config.presets import require_steady_preset
+from giveway.config.files.foreign_code import require_code
+from giveway.config.files.presets import require_steady_preset
 from giveway.crowd.zone import Zone
 from giveway.ego.vehicle import require_vehicles
 from giveway.errors import ConfigError

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.presets import parameters_of
-from giveway.crowd.attention import Inattentive
-from giveway.crowd.cohesion import BY_FORCES, Cohesive
+from giveway.config.files.presets import parameters_of
+from giveway.crowd.motion.attention import Inattentive
+from giveway.crowd.motion.cohesion import BY_FORCES, Cohesive
 from giveway.crowd.roster import Roster
 from giveway.errors import CrowdError
 from giveway.plug_ins.finding import load_class

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig
-from giveway.crowd.noise import BOUND, planar_noise
+from giveway.crowd.motion.noise import BOUND, planar_noise
 from giveway.crowd.pace import Pace
 from giveway.crowd.tracking import Tracker
 from giveway.geometry.kernel import Array

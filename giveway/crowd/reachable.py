@@ -7,8 +7,8 @@ import numpy as np
 import shapely
 import shapely.affinity
 
-from giveway.config.crowd import ENCOUNTERS, CrowdConfig
-from giveway.config.flows import FlowConfig
+from giveway.config.tables.crowd import ENCOUNTERS, CrowdConfig
+from giveway.config.tables.flows import FlowConfig
 from giveway.crowd.ways import corners, middle_of
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import RunConfig
-from giveway.config.people import DISTRACTED
-from giveway.crowd.disturbance import disturbance_of
+from giveway.config.tables.people import DISTRACTED
+from giveway.crowd.motion.disturbance import disturbance_of
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
 
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from giveway.config.flows import FlowConfig, Place, is_line
+from giveway.config.tables.flows import FlowConfig, Place, is_line
 from giveway.geometry.kernel import Array
 from giveway.sumo.crossings import Crossing
 from giveway.walkways.reading import Signal

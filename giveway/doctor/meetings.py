@@ -4,7 +4,7 @@ import shlex
 from pathlib import Path
 from typing import Any
 
-from giveway.config.layers import read_toml
+from giveway.config.files.layers import read_toml
 from giveway.doctor.finding import Finding, note
 from sumo_scenarios import find
 

@@ -9,7 +9,7 @@ only beyond the sight of 100 m along the path, the distance is infinite.
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.ego.leader import NOBODY_BESIDE, Leader, vehicles_in_front
+from giveway.ego.perception.leader import NOBODY_BESIDE, Leader, vehicles_in_front
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import EgoPath, body_pose

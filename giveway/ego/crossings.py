@@ -30,7 +30,7 @@ from giveway.ego.giving_way import (
     leaves_no_room,
     needed_braking,
 )
-from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, fine_near

@@ -7,28 +7,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import Decision, Observation
-from giveway.config.regulation import CORRIDOR_MARGIN
+from giveway.config.tables.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
-from giveway.ego.foreseeing import foresight_of
+from giveway.ego.foresight.building import foresight_of
+from giveway.ego.foresight.relevance import Nearby, Relevance
 from giveway.ego.kerbs import NO_KERBS
-from giveway.ego.leader import NO_LEADER, NOBODY_BESIDE, Following
 from giveway.ego.path_view import PathView
-from giveway.ego.relevance import Nearby, Relevance
-from giveway.ego.safety import Guard
-from giveway.ego.seen import NOBODY, Seen
+from giveway.ego.percept import NOBODY, Seen
+from giveway.ego.perception.leader import NO_LEADER, NOBODY_BESIDE, Following
+from giveway.ego.safety_layer import Guard
 from giveway.ego.setting_out import SettingOut
 from giveway.ego.speed_profile import SpeedProfile
-from giveway.ego.waiting import WaitingEgo
-from giveway.ego.waits_for import waits_for
+from giveway.ego.stop_cause import waits_for
+from giveway.ego.waiting_ego import WaitingEgo
 from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
 from giveway.geometry.slope import Slope
-from giveway.records.outputs import ROAD_GRADE
-from giveway.records.rows import STOP_SPEED, EgoRow
+from giveway.run_data.outputs import ROAD_GRADE
+from giveway.run_data.rows import STOP_SPEED
+from giveway.run_data.tracks import EgoRow
 from pedestrian_model import Crowd, Surroundings
 
 _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
@@ -53,7 +54,8 @@ class Ego:
     Attributes:
         front: station of the front bumper [m].
         pose: where the front bumper's centre is, and the direction of the body.
-        beside: of the background vehicles' rows, see :func:`giveway.ego.leader.vehicles_in_front`.
+        beside: of the background vehicles' rows, see
+            :func:`~giveway.ego.perception.leader.vehicles_in_front`.
     """
 
     front: float
@@ -324,21 +326,23 @@ class Ego:
         front = self.front
         origin = front + self._origin
         return EgoRow(
-            time,
-            self.vehicle.position,
-            self.pose,
-            self.vehicle.speed,
-            self.vehicle.acceleration,
-            decision.force,
-            seen.closest - origin,
-            decision.reference_speed,
-            seen.leader.station - origin,
-            seen.stop - front,
-            decision.acting,
-            decision.reason,
-            decision.status,
-            self._waits_for(seen, decision),
-            decision.iterations,
+            time=time,
+            position=self.vehicle.position,
+            front_x=self.pose.x,
+            front_y=self.pose.y,
+            heading=self.pose.heading,
+            speed=self.vehicle.speed,
+            acceleration=self.vehicle.acceleration,
+            force=decision.force,
+            controller=decision.acting,
+            reason=decision.reason,
+            solver_status=decision.status,
+            solver_iterations=decision.iterations,
+            gap=seen.closest - origin,
+            reference_speed=decision.reference_speed,
+            vehicle_gap=seen.leader.station - origin,
+            stop_gap=seen.stop - front,
+            waits_for=self._waits_for(seen, decision),
         )
 
     def _waits_for(self, seen: Seen, decision: Decision) -> str:

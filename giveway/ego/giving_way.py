@@ -2,7 +2,7 @@
 
 import math
 
-from giveway.ego.leader import Leader
+from giveway.ego.perception.leader import Leader
 
 STOP_BEFORE = 1.0  # [m] before a line or a crossing the front bumper is to stand
 HARDEST = 3.0  # [m/s^2] of braking that anybody with priority may ask for

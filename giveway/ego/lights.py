@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from giveway.ego.giving_way import STOP_BEFORE, at_rest, needed_braking
-from giveway.ego.leader import Leader
+from giveway.ego.perception.leader import Leader
 from giveway.sumo.lane_path import Light
 from giveway.sumo.signal_plans import Greens, GreensOf
 

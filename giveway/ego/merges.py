@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from giveway.ego.giving_way import HARDEST
-from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.merging import Merging

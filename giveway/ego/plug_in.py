@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from controller import PluggedIn, Setup
 from giveway.config import EgoRunConfig
-from giveway.config.controller_fmu import prepared, setup_of
+from giveway.config.files.controller_fmu import prepared, setup_of
 from giveway.ego.fmu_plug_in import FmuPlugIn
 from giveway.plug_ins.finding import is_fmu, load_class, shown
 from giveway.plug_ins.sockets import CONTROLLER

@@ -27,8 +27,8 @@ from giveway.ego.giving_way import (
     needed_braking,
 )
 from giveway.ego.junctions import PathJunction
-from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.lights import RED, YELLOW
+from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.junctions import Movement
 

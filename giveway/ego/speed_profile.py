@@ -15,7 +15,7 @@ import numpy as np
 from controller import LongitudinalModel, SafetyLayer
 from giveway.config.option import LANE
 from giveway.ego.path_view import HALF, PathView
-from giveway.ego.waiting import WaitingEgo
+from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath

@@ -26,10 +26,10 @@ from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.sections import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
+from giveway.config.tables.basics import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
 from giveway.errors import VehicleError
-from giveway.records.columns import EGO_COLUMNS
-from giveway.records.outputs import ROAD_GRADE
+from giveway.run_data.outputs import ROAD_GRADE
+from giveway.run_data.tracks import EGO_COLUMNS
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
 _SAME_STEP = 1e-6  # relative

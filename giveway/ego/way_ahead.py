@@ -6,9 +6,9 @@ from collections.abc import Mapping, Set
 from giveway.ego.crossings import Crossings
 from giveway.ego.giving_way import at_rest
 from giveway.ego.kerbs import Kerbs
-from giveway.ego.leader import Leader
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges
+from giveway.ego.perception.leader import Leader
 from giveway.ego.right_of_way import RightOfWay, Traffic
 from giveway.ego.stops import Stops
 from pedestrian_model import Crowd

@@ -22,8 +22,8 @@ from giveway.figures.road import LIGHTS, UNPAINTED, bands
 from giveway.figures.style import BLUE, GREY, LIGHT_GREY, VERMILION
 from giveway.figures.view import Box
 from giveway.geometry.kernel import Array
-from giveway.records.road_marks import shown
 from giveway.replays.run_folder import RunFolder
+from giveway.run_data.road_marks import shown
 
 MP4_SIZE, GIF_SIZE = (1280, 720), (640, 360)  # pixels
 _FINER = 2  # times the size at which a frame is painted

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from giveway.config.measures import MeasureConfig
+from giveway.config.tables.measures import MeasureConfig
 from giveway.figures.conflict_points import Conflict, mark_conflicts
 from giveway.figures.style import SKY_BLUE, NotebookFigure, styled
 from giveway.measures import DensityMap

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from giveway.figures.style import GREY, LIGHT_GREY
 from giveway.figures.view import Box
-from giveway.records.road_marks import RoadMarks, Zebra, shown
+from giveway.run_data.road_marks import RoadMarks, Zebra, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from giveway.records.tracks import SignalTrack
+    from giveway.run_data.tracks import SignalTrack
 
 Road = Sequence[NDArray[np.float64]]
 """Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""

@@ -28,7 +28,7 @@ from giveway.figures.style import (
     quiet_grid,
     styled,
 )
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.tracks import EgoTrack
 
 VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.4, "label": "to a vehicle"}
 STOP: dict[str, Any] = {"color": PURPLE, "linewidth": 1.8, "label": "to its next stop"}
@@ -133,14 +133,14 @@ def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
     A command holds until the next instant, so that the last one is not carried out. A run of one
     instant is shown ``SINGLE_INSTANT`` to either side.
     """
-    edges = np.flatnonzero(ego.acting[1:] != ego.acting[:-1]) + 1
+    edges = np.flatnonzero(ego.controller[1:] != ego.controller[:-1]) + 1
     starts = np.concatenate(([0], edges))
     ends = np.append(edges, ego.time.size - 1)
     if ego.time.size == 1:
         instant = float(ego.time[0])
-        return [(str(ego.acting[0]), instant - SINGLE_INSTANT, instant + SINGLE_INSTANT)]
+        return [(str(ego.controller[0]), instant - SINGLE_INSTANT, instant + SINGLE_INSTANT)]
     return [
-        (str(ego.acting[start]), float(ego.time[start]), float(ego.time[end]))
+        (str(ego.controller[start]), float(ego.time[start]), float(ego.time[end]))
         for start, end in zip(starts, ends, strict=True)
         if end > start
     ]
@@ -321,7 +321,7 @@ def _legend(egos: Sequence[EgoTrack], stop_lines: bool) -> list[Artist]:
 
 def phase_handles(egos: Sequence[EgoTrack]) -> list[Artist]:
     """What the legend shows of the phases that some of the runs have."""
-    acted = {str(name) for ego in egos for name in np.unique(ego.acting)}
+    acted = {str(name) for ego in egos for name in np.unique(ego.controller)}
     return [
         Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name])
         for name, (colour, opacity) in SHADES.items()

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from giveway.figures.study_rows import PUBLISHED, wrapped
 from giveway.figures.style import BLACK, BLUE, GREY, ORANGE, quiet_grid, styled
-from giveway.records.writing import digits_for, number, pretty_unit
+from giveway.run_data.writing import digits_for, number, pretty_unit
 
 BINS = 48
 TAIL = 2.5  # [%] of the differences at either end that the picture may leave out

@@ -19,7 +19,7 @@ from giveway.figures.study_rows import (
     wrapped,
 )
 from giveway.figures.style import BLACK, GREY, styled
-from giveway.records.writing import with_unit
+from giveway.run_data.writing import with_unit
 
 WHISKERS = (5.0, 25.0, 50.0, 75.0, 95.0)  # [%]
 

@@ -19,7 +19,7 @@ from giveway.figures.study_rows import (
     wrapped,
 )
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, styled
-from giveway.records.writing import with_unit
+from giveway.run_data.writing import with_unit
 
 LOOKS = {  # colour and marker
     "general": (BLUE, "o"),

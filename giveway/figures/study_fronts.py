@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from giveway.figures.study_rows import wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
-from giveway.records.writing import with_unit
+from giveway.run_data.writing import with_unit
 
 _COLUMNS = 4  # of panels at most
 _PANEL = 2.5, 2.3  # [inch] width and height

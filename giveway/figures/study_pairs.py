@@ -24,7 +24,7 @@ from giveway.figures.state import (
 )
 from giveway.figures.study_rows import wrapped
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, VERMILION, quiet_grid, styled
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.tracks import EgoTrack
 
 
 @dataclass(frozen=True)

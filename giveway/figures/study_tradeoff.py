@@ -11,7 +11,7 @@ from matplotlib.transforms import Bbox
 
 from giveway.figures.study_rows import wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
-from giveway.records.writing import with_unit
+from giveway.run_data.writing import with_unit
 
 SAME_PLACE = 0.05  # of the picture's width and height
 DOT = 4.0  # [pt] half of what a point takes up

@@ -27,8 +27,8 @@ from giveway.figures.style import (
 from giveway.figures.view import Box
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.groups import PedestrianGroups
-from giveway.records.road_marks import UNMARKED, RoadMarks
-from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, SignalTrack
+from giveway.run_data.road_marks import UNMARKED, RoadMarks
+from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, SignalTrack
 
 TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
 """Its last third is too light for a line on white."""

@@ -18,15 +18,15 @@ from numpy.typing import NDArray
 from controller import Acceleration, Force, Observation, Setup
 from giveway.api import simulate
 from giveway.config import RunConfig
-from giveway.config.layers import Layer
-from giveway.config.loading import as_layer, load
-from giveway.config.presets import parameters_of
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import as_layer, load
+from giveway.config.files.presets import parameters_of
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, ControlError, InstallationError
 from giveway.geometry.kernel import Array
 from giveway.processes.interrupts import DeferredInterrupt
-from giveway.records.progress import Ending
 from giveway.results.run_result import RunResult
+from giveway.run_data.progress import Ending
 from sumo_scenarios import Scenario
 
 try:

@@ -1,6 +1,6 @@
 """The columns of ``measures.csv``."""
 
-from giveway.records.columns import Column
+from giveway.run_data.columns import Column
 
 MEASURE_COLUMNS = (
     Column("measure", "string", None, "name of the line or area"),

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.measures.trajectories import surroundings, walks
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 CELL = 0.5  # [m] side of a grid's cell
 SAMPLES = 200  # instants, at most, that the mean goes over

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.config.measures import MeasureConfig
+from giveway.config.tables.measures import MeasureConfig
 from giveway.errors import ResultsError
 from giveway.measures.columns import MEASURE_COLUMNS
 from giveway.measures.service import FRUIN, HCM, level_of_service
 from giveway.measures.trajectories import surroundings, trajectory_data, walks
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.metrics.groups import PedestrianGroups
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import shapely
 
-from giveway.config.measures import MeasureConfig
-from giveway.records.tracks import CrowdTrack
+from giveway.config.tables.measures import MeasureConfig
+from giveway.run_data.tracks import CrowdTrack
 
 NEAR = 1.0  # [m] who comes no nearer has nothing to do with a line or an area
 

@@ -25,7 +25,7 @@ from giveway.metrics.severity import SEVERITIES, SEVERITY_FIELDS, severities
 from giveway.metrics.standing import stops, waiting_times
 from giveway.metrics.summary import SUMMARY_FIELDS, Summary, summarise
 from giveway.metrics.vehicles import VehicleContact, vehicle_contacts
-from giveway.records.rows import STOP_SPEED
+from giveway.run_data.rows import STOP_SPEED
 
 __all__ = [
     "CRITICAL_TTC",

@@ -4,7 +4,7 @@ An attentive driver slows while the first person is still far off in time, and s
 of people or flows through it. Lengths in m, times in s.
 """
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from math import nan
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ from giveway.metrics.conflicts import centre_poses, check_records, proximity
 from giveway.metrics.groups import PedestrianGroups
 from giveway.metrics.slowing import slowing_begins
 from giveway.metrics.standing import stops
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 PASSING = 5.0
 """[m] from the front or the rear bumper: who crosses its line there walks round the car."""
@@ -81,12 +81,12 @@ def _time_to_contact(
         return np.asarray(np.interp(station[:count], way, column), dtype=np.float64)
 
     taken = {each.name: getattr(ego, each.name)[begin : begin + count] for each in fields(ego)}
-    kept = replace(
-        EgoTrack(**taken),
-        front_x=there(ego.front_x),
-        front_y=there(ego.front_y),
-        heading=there(np.unwrap(ego.heading)),
-    )
+    taken |= {
+        "front_x": there(ego.front_x),
+        "front_y": there(ego.front_y),
+        "heading": there(np.unwrap(ego.heading)),
+    }
+    kept = EgoTrack(**taken)
     people = crowd.during(begin, count)
     apart = proximity(kept, people, shape, body_radius).clearance
     touching = np.flatnonzero(apart < 0.0)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, signed_distance, to_frame
 from giveway.geometry.kernel import kernel
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 CRITICAL_TTC = 1.5
 """[s] Below it an encounter is a conflict: the threshold of SSAM (Gettman & Head 2003, FHWA), in

@@ -20,7 +20,7 @@ from giveway.metrics.conflicts import (
     contact_body,
 )
 from giveway.metrics.groups import PedestrianGroups
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 NO_CONTACT = ""
 SIDE = "side"

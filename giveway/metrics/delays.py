@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.metrics.encroachment import CONTACT, EGO, PERSON
-from giveway.records.columns import Quantity, columns_of
-from giveway.records.walks import WalkTrack
+from giveway.run_data.columns import Quantity, columns_of
+from giveway.run_data.walks import WalkTrack
 
 Basis = Literal["arrival", "route", ""]
 

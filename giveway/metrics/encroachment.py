@@ -17,7 +17,7 @@ from giveway.metrics.conflicts import (
 )
 from giveway.metrics.groups import PedestrianGroups
 from giveway.metrics.separation import blocks_of, ego_comes_later, separation
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 SECTIONS = 16  # of a control period, to find the smallest separation in it
 GOLDEN = 0.6180339887498949

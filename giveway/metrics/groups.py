@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 
 class PedestrianGroups:

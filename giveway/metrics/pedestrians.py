@@ -12,8 +12,8 @@ from giveway.metrics.conflicts import proximity
 from giveway.metrics.contacts import contacts
 from giveway.metrics.encroachment import encroachment
 from giveway.metrics.groups import PedestrianGroups
-from giveway.records.columns import Quantity, columns_of
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.columns import Quantity, columns_of
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,8 +14,8 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.conflicts import CRITICAL_TTC, proximity
 from giveway.metrics.contacts import FRONTAL
 from giveway.metrics.groups import PedestrianGroups
-from giveway.records.columns import Quantity, columns_of
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.columns import Quantity, columns_of
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
     import pandas as pd

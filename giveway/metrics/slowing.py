@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.tracks import EgoTrack
 
 SLOWED = 0.8
 """Of the free speed: an ego below it is slowed."""

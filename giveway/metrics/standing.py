@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.records.rows import STOP_SPEED
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.rows import STOP_SPEED
+from giveway.run_data.tracks import EgoTrack
 
 
 def stops(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.int64]:

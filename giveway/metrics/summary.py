@@ -16,9 +16,9 @@ from giveway.metrics.severity import CRITICAL_PET
 from giveway.metrics.slowing import slowed
 from giveway.metrics.standing import waiting_times
 from giveway.metrics.vehicles import VehicleContact
-from giveway.records.columns import Quantity, columns_of
-from giveway.records.rows import STOP_SPEED
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.columns import Quantity, columns_of
+from giveway.run_data.rows import STOP_SPEED
+from giveway.run_data.tracks import EgoTrack
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -203,11 +203,11 @@ def summarise(
         rms_jerk=float(np.sqrt(np.mean(jerk**2))) if jerk.size else np.nan,
         peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
         mpc_feasibility_rate=(
-            float(np.mean(ego.acting == "mpc"))
+            float(np.mean(ego.controller == "mpc"))
             if DECLARED.get(controller, Defaults()).optimises
             else np.nan
         ),
-        safety_share=float(np.mean(ego.acting == SAFETY)),
+        safety_share=float(np.mean(ego.controller == SAFETY)),
         minimum_gap=_extreme(ego.gap, np.min),
         share_below_safe_distance=float(np.mean(ego.gap < safe_distance)),
         minimum_clearance=_extreme(clearances, np.min),

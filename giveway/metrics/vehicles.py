@@ -6,7 +6,7 @@ import numpy as np
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.overlap import rectangles_overlap
-from giveway.records.tracks import BackgroundTrack, EgoTrack
+from giveway.run_data.tracks import BackgroundTrack, EgoTrack
 
 _SAME_INSTANT = 1e-6  # [s]
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from giveway.figures.road import bands
-from giveway.records.road_marks import SignalHead, shown
 from giveway.replays.packing import Frame, packed
 from giveway.replays.run_folder import RunFolder
+from giveway.run_data.road_marks import SignalHead, shown
 
 _DARK = "-"  # shown for a light of which nothing is known, or that is out
 

@@ -13,12 +13,11 @@ from jinja2 import Environment, StrictUndefined, Template
 from markupsafe import Markup
 from shapely import LineString
 
-from giveway.config.presets import parameters_of
-from giveway.config.regulation import CORRIDOR_MARGIN
+from giveway.config.files.presets import parameters_of
+from giveway.config.tables.regulation import CORRIDOR_MARGIN
 from giveway.errors import ResultsError
 from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
-from giveway.records.writing import pretty_unit
 from giveway.replays.contours import influence_contours
 from giveway.replays.events import events, why
 from giveway.replays.marks import pack_marks
@@ -31,6 +30,7 @@ from giveway.replays.packing import (
     thinning,
 )
 from giveway.replays.run_folder import PREDICTIONS, RunFolder, read_predictions
+from giveway.run_data.writing import pretty_unit
 
 _SCRIPTS = ("data.js", "motion.js", "view.js", "scene.js", "charts.js", "panels.js", "player.js")
 _NUMBERS = ("speed", "reference_speed", "force", "gap", "vehicle_gap", "stop_gap")

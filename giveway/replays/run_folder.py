@@ -11,18 +11,18 @@ import numpy as np
 import pandas as pd
 
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.layers import build_config, read_toml
+from giveway.config.files.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
 from giveway.geometry.kernel import Array
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
-from giveway.records.columns import (
-    EGO_COLUMNS,
+from giveway.run_data.columns import (
     PREDICTION_COLUMNS,
     SIGNAL_COLUMNS,
     TRAJECTORY_COLUMNS,
     Column,
 )
-from giveway.records.scene import Scene
+from giveway.run_data.scene import Scene
+from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"
 _ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})  # in every row

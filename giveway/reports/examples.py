@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 from giveway.errors import GivewayError
 from giveway.figures.study_pairs import PairSide, pair_figure
-from giveway.records.tracks import EgoTrack
 from giveway.reports.choice import ExamplePair
 from giveway.reports.pictures import Picture
 from giveway.reports.wording import quantity, shown_ego
 from giveway.results.run_result import RunResult
+from giveway.run_data.tracks import EgoTrack
 from giveway.studies.statistics import metric
 
 TITLES = {

@@ -17,8 +17,8 @@ from zipfile import BadZipFile
 import numpy as np
 
 from giveway.errors import ResultsError
-from giveway.records.tracks import EgoTrack
 from giveway.reports.examples import Drive
+from giveway.run_data.tracks import EgoTrack
 from giveway.studies.folder import StudyFolder
 
 REPLAYS = "replays"
@@ -67,7 +67,7 @@ class KeptRuns:
             with np.load(self._drives(run), allow_pickle=False) as kept:
                 about = json.loads(str(kept["egos"]))
                 return [
-                    Drive(name, EgoTrack(*(kept[f"{i}_{c}"] for c in _COLUMNS)), safe, buffer)
+                    Drive(name, EgoTrack(**{c: kept[f"{i}_{c}"] for c in _COLUMNS}), safe, buffer)
                     for i, (name, safe, buffer) in enumerate(about)
                 ]
         except (OSError, BadZipFile, KeyError, ValueError, TypeError) as error:

@@ -13,7 +13,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from giveway.config.layers import options
+from giveway.config.files.layers import options
 from giveway.errors import ResultsError
 from giveway.figures.style import house_style, save_figure
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS

@@ -6,12 +6,12 @@ from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from giveway.errors import GivewayError
-from giveway.records.progress import Ending
 from giveway.replays import write_replay
 from giveway.reports.examples import Drive, drives_of
 from giveway.reports.kept_runs import KeptRuns
 from giveway.reports.page import shown_runs, write_report
 from giveway.results.run_result import RunResult
+from giveway.run_data.progress import Ending
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
 

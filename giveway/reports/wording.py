@@ -2,7 +2,7 @@
 
 import math
 
-from giveway.records.writing import digits_for, number, pretty_unit
+from giveway.run_data.writing import digits_for, number, pretty_unit
 
 __all__ = [
     "counted",

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import EGO, Delays, DelaySummary, encroachment, gave_way, summarise_delays
-from giveway.records.tracks import CrowdTrack, EgoTrack
-from giveway.records.walks import WalkTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.walks import WalkTrack
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from controller import WorstMotion
 from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.files.presets import parameters_of
 from giveway.config.option import LANE
-from giveway.config.presets import parameters_of
-from giveway.ego.worst_motion import people_at_worst
+from giveway.ego.people_assumed import people_at_worst
 from giveway.geometry.bodies import VehicleShape
+from giveway.journal.recorded import RecordedEgo, RecordedRows
 from giveway.metrics import (
     DELAY_FIELDS,
     VehicleContact,
@@ -25,12 +26,11 @@ from giveway.metrics import (
 )
 from giveway.metrics.law import Drive, Ledger, Undisturbed, ledger
 from giveway.metrics.pedestrians import pedestrian_columns, table_of
-from giveway.recording.recorded import RecordedEgo, RecordedRows
-from giveway.records.outputs import Output
-from giveway.records.progress import Ending
-from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
 from giveway.results.effect import Effect
 from giveway.results.law import LawRows, others_of, people_from
+from giveway.run_data.outputs import Output
+from giveway.run_data.progress import Ending
+from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
 
 if TYPE_CHECKING:
     import pandas as pd

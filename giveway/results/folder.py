@@ -11,12 +11,12 @@ import numpy as np
 
 from giveway.errors import ResultsError
 from giveway.processes.locks import FolderInUseError, locked
-from giveway.records.columns import Column
-from giveway.records.scene import SCENE_FILE
 from giveway.results.json_text import DECIMALS, json_text
 from giveway.results.names import FILES, SUMO_FOLDER
 from giveway.results.run_tables import RunTables
 from giveway.results.scene import scene_of
+from giveway.run_data.columns import Column
+from giveway.run_data.scene import SCENE_FILE
 
 if TYPE_CHECKING:
     import pandas as pd

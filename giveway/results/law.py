@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from giveway.geometry.kernel import Array
+from giveway.journal.recorded import RecordedEgo
 from giveway.metrics.law import Event, count
-from giveway.recording.recorded import RecordedEgo
-from giveway.records.columns import LEDGER_COLUMNS, PEOPLE_COLUMNS, SIGNAL_COLUMNS
-from giveway.records.tracks import BackgroundTrack, PeopleTrack, SignalTrack
-from giveway.records.way import EgoWay
+from giveway.run_data.columns import LEDGER_COLUMNS, PEOPLE_COLUMNS, SIGNAL_COLUMNS
+from giveway.run_data.tracks import BackgroundTrack, PeopleTrack, SignalTrack
+from giveway.run_data.way import EgoWay
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,26 +40,26 @@ def others_of(
     if not more:
         return background
     parts = [background, *more]
-    columns = [
-        np.concatenate([getattr(part, name) for part in parts])
+    columns = {
+        name: np.concatenate([getattr(part, name) for part in parts])
         for name in BackgroundTrack.__dataclass_fields__
-    ]
-    order = np.argsort(columns[0], kind="stable")
-    return BackgroundTrack(*(column[order] for column in columns))
+    }
+    order = np.argsort(columns["time"], kind="stable")
+    return BackgroundTrack(**{name: column[order] for name, column in columns.items()})
 
 
 def _as_background(ego: RecordedEgo) -> BackgroundTrack:
     track, count_ = ego.track, len(ego.track.time)
     return BackgroundTrack(
-        track.time,
-        np.full(count_, ego.id),
-        np.full(count_, "ego"),
-        track.front_x,
-        track.front_y,
-        track.heading,
-        track.speed,
-        np.full(count_, ego.shape.length),
-        np.full(count_, ego.shape.width),
+        time=track.time,
+        id=np.full(count_, ego.id),
+        type=np.full(count_, "ego"),
+        x=track.front_x,
+        y=track.front_y,
+        heading=track.heading,
+        speed=track.speed,
+        length=np.full(count_, ego.shape.length),
+        width=np.full(count_, ego.shape.width),
     )
 
 
@@ -81,8 +81,8 @@ def signal_table(track: SignalTrack) -> "pd.DataFrame":
     import pandas as pd
 
     names = [column.name for column in SIGNAL_COLUMNS]
-    values = (track.time, track.system, track.state)
-    return pd.DataFrame(dict(zip(names, values, strict=True)))
+    columns = {"time": track.time, "system": track.system, "state": track.state}
+    return pd.DataFrame(columns)[names]
 
 
 def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> "pd.DataFrame":
@@ -95,8 +95,9 @@ def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> "pd.Dat
     begins = np.flatnonzero(another)
     number = np.arange(len(track.step)) - np.repeat(begins, np.diff(begins, append=len(track.step)))
     who = np.array(ids, dtype=object)[track.pedestrian]
-    values = (time[track.step], who, track.desired_speed, number, track.x, track.y)
-    return pd.DataFrame(dict(zip(names, values, strict=True)))
+    when = {"time": time[track.step], "id": who, "number": number}
+    columns = when | {"desired_speed": track.desired_speed, "x": track.x, "y": track.y}
+    return pd.DataFrame(columns)[names]
 
 
 def remark(ego_id: str, violations: Sequence[Event]) -> str:

@@ -5,8 +5,8 @@ import numpy as np
 from fmus.checking.fitting import fit, prepare
 from fmus.checking.manoeuvres import Trace
 from fmus.checking.prediction import position_errors
-from giveway.records.tracks import EgoTrack
 from giveway.results.ego_result import EgoResult
+from giveway.run_data.tracks import EgoTrack
 
 _TOLERATED = 0.05  # [m] over the horizon
 _SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is worth telling

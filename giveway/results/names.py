@@ -1,6 +1,6 @@
 """The names of the files in a results folder."""
 
-from giveway.records.scene import SCENE_FILE
+from giveway.run_data.scene import SCENE_FILE
 
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))

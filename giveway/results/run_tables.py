@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from giveway.config import RunConfig
-from giveway.config.layers import dump_toml
-from giveway.config.presets import parameters_of
+from giveway.config.files.layers import dump_toml
+from giveway.config.files.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.measures import MEASURE_COLUMNS, measure_table
@@ -22,27 +22,6 @@ from giveway.metrics import (
     walks_without_ego,
 )
 from giveway.metrics.law import LAW_FIELDS
-from giveway.records.columns import (
-    EGO_COLUMNS,
-    LEDGER_COLUMNS,
-    PEOPLE_COLUMNS,
-    PREDICTION_COLUMNS,
-    SIGNAL_COLUMNS,
-    SUMMARY_HEAD,
-    TIMING_COLUMNS,
-    TRAJECTORY_COLUMNS,
-    Column,
-)
-from giveway.records.progress import Ending
-from giveway.records.road_marks import UNMARKED, RoadMarks
-from giveway.records.tracks import (
-    BackgroundTrack,
-    CrowdTrack,
-    EgoTrack,
-    PeopleTrack,
-    SignalTrack,
-    Timings,
-)
 from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
 from giveway.results.law import (
@@ -52,6 +31,27 @@ from giveway.results.law import (
 )
 from giveway.results.provenance import CONFIGURATION, sha256
 from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
+from giveway.run_data.columns import (
+    LEDGER_COLUMNS,
+    PEOPLE_COLUMNS,
+    PREDICTION_COLUMNS,
+    SIGNAL_COLUMNS,
+    SUMMARY_HEAD,
+    TIMING_COLUMNS,
+    TRAJECTORY_COLUMNS,
+    Column,
+)
+from giveway.run_data.progress import Ending
+from giveway.run_data.road_marks import UNMARKED, RoadMarks
+from giveway.run_data.tracks import (
+    EGO_COLUMNS,
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PeopleTrack,
+    SignalTrack,
+    Timings,
+)
 from sumo_scenarios import Scenario
 
 if TYPE_CHECKING:

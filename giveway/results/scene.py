@@ -3,8 +3,8 @@
 import numpy as np
 
 from giveway.geometry.kernel import Array
-from giveway.records.scene import Scene
 from giveway.results.run_tables import RunTables
+from giveway.run_data.scene import Scene
 
 _AROUND = 60.0  # [m] of road kept beyond the places where somebody was
 _DECIMALS = 2  # centimetres

@@ -1,4 +1,4 @@
-"""The run's tables as pandas frames, columns as in :mod:`giveway.records.columns`."""
+"""The run's tables as pandas frames, columns as in :mod:`giveway.run_data.columns`."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -7,14 +7,15 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import headings_to_angles
-from giveway.records.columns import (
-    EGO_COLUMNS,
+from giveway.run_data.columns import (
     PREDICTION_COLUMNS,
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
+    quantities_of,
 )
-from giveway.records.outputs import Output
-from giveway.records.tracks import (
+from giveway.run_data.outputs import Output
+from giveway.run_data.tracks import (
+    EGO_COLUMNS,
     BackgroundTrack,
     CrowdTrack,
     EgoTrack,
@@ -32,50 +33,29 @@ def ego_table(track: EgoTrack, ego_id: str, outputs: Sequence[Output] = ()) -> "
     """``ego.csv``: one row per control instant."""
     import pandas as pd
 
-    gaps = (track.gap, track.vehicle_gap, track.stop_gap)
-    gap, vehicle_gap, stop_gap = (np.where(np.isfinite(each), each, np.nan) for each in gaps)
-    values = (
-        track.time,
-        ego_id,
-        track.position,
-        track.front_x,
-        track.front_y,
-        headings_to_angles(track.heading),
-        track.speed,
-        track.acceleration,
-        track.force,
-        track.acting,
-        track.reason,
-        track.solver_status,
-        track.solver_iterations,
-        gap,
-        track.reference_speed,
-        vehicle_gap,
-        stop_gap,
-        track.waits_for,
-    )
-    names = [column.name for column in EGO_COLUMNS]
+    columns = {"id": ego_id} | {
+        quantity.column or name: quantity.written(getattr(track, name))
+        for name, (_, quantity) in quantities_of(EgoTrack).items()
+    }
     own = {output.name: output.values for output in outputs}
-    columns = dict(zip(names, values, strict=True)) | own
-    return pd.DataFrame(columns, index=range(len(track.time)))
+    names = [column.name for column in EGO_COLUMNS]
+    return pd.DataFrame(columns | own, index=range(len(track.time)))[[*names, *own]]
 
 
 def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) -> "pd.DataFrame":
     """``predictions.csv``: one row per control instant, pedestrian and look-ahead."""
     import pandas as pd
 
-    names = np.array(ids, dtype=object)
-    values = (
-        track.time,
-        ego_id,
-        names[track.pedestrian],
-        track.look_ahead,
-        track.x,
-        track.y,
-    )
-    columns = [column.name for column in PREDICTION_COLUMNS]
-    table = dict(zip(columns, values, strict=True))
-    return pd.DataFrame(table, index=range(len(track.time)))
+    columns = {
+        "time": track.time,
+        "ego": ego_id,
+        "id": np.array(ids, dtype=object)[track.pedestrian],
+        "look_ahead": track.look_ahead,
+        "x": track.x,
+        "y": track.y,
+    }
+    names = [column.name for column in PREDICTION_COLUMNS]
+    return pd.DataFrame(columns, index=range(len(track.time)))[names]
 
 
 def trajectory_table(
@@ -147,8 +127,6 @@ def timing_table(time: Array, timings: Timings) -> "pd.DataFrame":
     """``timing.csv``: computing times [us]; the only table that differs between equal runs."""
     import pandas as pd
 
-    names = [column.name for column in TIMING_COLUMNS]
-    microseconds = np.round(timings.seconds * 1e6, 1)
-    frame = pd.DataFrame(microseconds, columns=names[1:])
-    frame.insert(0, names[0], time[: len(frame)])
-    return frame
+    microseconds = pd.DataFrame(np.round(timings.seconds * 1e6, 1), columns=list(Timings.NAMES))
+    microseconds["time"] = time[: len(microseconds)]
+    return microseconds[[column.name for column in TIMING_COLUMNS]]

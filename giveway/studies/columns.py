@@ -1,6 +1,6 @@
 """The columns of the tables of means and differences; those of the factors come before them."""
 
-from giveway.records.columns import Column
+from giveway.run_data.columns import Column
 
 
 def numbers_of(columns: tuple[Column, ...]) -> list[str]:

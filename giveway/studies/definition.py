@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal
 import tomlkit
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
-from giveway.config.layers import anchored
+from giveway.config.files.layers import anchored
+from giveway.config.files.schema_names import STUDY, with_schema
+from giveway.config.files.toml import parse_toml, read_toml_file
 from giveway.config.option import Section
-from giveway.config.schema_names import STUDY, with_schema
-from giveway.config.toml import parse_toml, read_toml_file
 from giveway.errors import ConfigError
 
 Situation = Literal["general", "stop-and-wait", "non-stop", "slowed"]

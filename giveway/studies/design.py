@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from giveway.config.layers import PLUGGED, Layer, merge, options, results_of
+from giveway.config.files.layers import PLUGGED, Layer, merge, options, results_of
 from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS

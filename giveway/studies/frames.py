@@ -8,7 +8,7 @@ import pandas as pd
 
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
-from giveway.records.columns import Column
+from giveway.run_data.columns import Column
 from giveway.studies.design import Cell, Design, Level
 from giveway.studies.record import CRASHED, RunRecord, run_id
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from giveway.records.columns import Column
 from giveway.results.folder import package_of
+from giveway.run_data.columns import Column
 from giveway.studies.atomic_files import write_atomically
 from giveway.studies.columns import (
     COMPARISON_COLUMNS,

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from giveway.config import RunConfig
-from giveway.config.loading import load
+from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError
 from giveway.results.provenance import scenario_inputs

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from giveway.api import run_checked
-from giveway.config.loading import load
+from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.errors import GivewayError
-from giveway.records.progress import Ending, Watcher
 from giveway.results.run_result import RunResult
+from giveway.run_data.progress import Ending, Watcher
 from giveway.studies.execution.perform import rows_of
 from giveway.studies.folder import StudyFolder
 from giveway.studies.record import RunRecord, Scalar

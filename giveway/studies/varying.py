@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from giveway.config.layers import read_toml, undotted
-from giveway.config.toml import toml_value
+from giveway.config.files.layers import read_toml, undotted
+from giveway.config.files.toml import toml_value
 from giveway.errors import ConfigError
 from giveway.studies.definition import StudyDefinition, make_definition
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from giveway.geometry.kernel import Array
-from giveway.records.road_marks import Point, RoadMarks, SignalHead, Zebra
+from giveway.run_data.road_marks import Point, RoadMarks, SignalHead, Zebra
 from giveway.sumo.lanes import Lanes
 
 

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from giveway.config.presets import NAMES, require_parameter
+from giveway.config.files.presets import NAMES, require_parameter
 from giveway.errors import ConfigError, DatasetError
 from giveway.validation.clips import Clip
 from giveway.validation.contacts import DATA, contact_table, people_apart

@@ -7,8 +7,8 @@ from typing import Literal
 
 from pydantic import ValidationError
 
+from giveway.config.files.toml import read_toml_file
 from giveway.config.option import Section, expectation, option
-from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
 
 _FORM = (

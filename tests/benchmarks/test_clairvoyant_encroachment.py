@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import giveway
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import post_encroachment_time
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.tracks import EgoTrack
 
 H = 0.05  # [s] of the records
 BODIES = encroachment.Bodies(VehicleShape(length=5.0, width=2.0), body_radius=0.27)

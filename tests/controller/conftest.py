@@ -19,7 +19,12 @@ import pytest
 from scipy.optimize import linprog, nnls
 
 from controller import LongitudinalModel, MpcParameters
-from controller.speed_problem import CANNOT_HOLD_SPEED, CANNOT_STOP, UNDECIDED, SpeedProblem
+from controller.paper_mpc.speed_problem import (
+    CANNOT_HOLD_SPEED,
+    CANNOT_STOP,
+    UNDECIDED,
+    SpeedProblem,
+)
 
 sys.path[:0] = [str(Path(__file__).parents[2] / "benchmarks"), str(Path(__file__).parent)]
 from paper_qp import quadratic_program  # noqa: E402 - files beside this one and in benchmarks/

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from controller._jit import kernel
-from controller.active_set import solve_exactly
-from controller.speed_problem import SLACK
+from controller.paper_mpc.speed_problem import SLACK
+from controller.qp.active_set import solve_exactly
 
 solve_exactly = kernel(solve_exactly)
 

@@ -19,7 +19,7 @@ from controller import (
     SafetyParameters,
     towards_kerb,
 )
-from controller.worst_motion import RECORDED
+from controller.safety.worst_motion import RECORDED
 
 DT, R, HALF = 0.05, 0.27, 1.0
 LOOKS = 5  # in between, at each step

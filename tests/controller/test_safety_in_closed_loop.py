@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
-from controller.worst_motion import RECORDED
+from controller.safety.worst_motion import RECORDED
 
 A_MAX, V_MAX, R, HALF = 5.0, 2.5, 0.27, 1.0
 SIMULATED = {"walking_acceleration": A_MAX, "walking_speed": V_MAX}

@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from fmus import VehicleProfile, make_profile
-from giveway.config.layers import options
+from giveway.config.files.layers import options
 from giveway.metrics import (
     DELAY_FIELDS,
     DELAY_SUMMARY_FIELDS,
@@ -17,8 +17,7 @@ from giveway.metrics import (
     WALK_SUMMARY_FIELDS,
 )
 from giveway.metrics.law import LAW_FIELDS
-from giveway.records.columns import (
-    EGO_COLUMNS,
+from giveway.run_data.columns import (
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
     PREDICTION_COLUMNS,
@@ -26,6 +25,7 @@ from giveway.records.columns import (
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
 )
+from giveway.run_data.tracks import EGO_COLUMNS
 
 DOCS = Path(__file__).parents[2] / "docs"
 

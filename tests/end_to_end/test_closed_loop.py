@@ -16,7 +16,7 @@ from controller import (
     SpeedController,
 )
 from giveway.api import RunResult
-from giveway.records.progress import Ending, Progress
+from giveway.run_data.progress import Ending, Progress
 from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles
 
 Run = Callable[..., RunResult]
@@ -117,7 +117,7 @@ def test_the_controller_acts_on_the_state_at_t_k_without_lag(mpc_run: RunResult)
         gap = in_front(position, front) - front
         assert ego.gap[k] == pytest.approx(gap, abs=1e-9)
         decision = regulator.control(Observation(front, speed, gap, np.array(x_p)))
-        assert decision.acting == ego.acting[k]
+        assert decision.acting == ego.controller[k]
         assert decision.force == pytest.approx(ego.force[k], abs=1.0)
 
 
@@ -127,15 +127,15 @@ def test_mpc_and_pid_meet_the_same_crowd(mpc_run: RunResult, pid_run: RunResult)
 
 
 def test_a_pid_run_never_lets_the_mpc_act(pid_run: RunResult) -> None:
-    assert set(pid_run.ego_track.acting) == {"pid"}
+    assert set(pid_run.ego_track.controller) == {"pid"}
     assert np.isnan(pid_run.summary["mpc_feasibility_rate"])
 
 
 def test_the_mpc_falls_back_to_the_pid_and_says_why(mpc_run: RunResult) -> None:
     ego = mpc_run.ego_track
-    assert set(ego.acting) == {"mpc", "pid"}
-    assert set(ego.reason[ego.acting == "mpc"]) == {"optimal"}
-    assert "optimal" not in set(ego.reason[ego.acting == "pid"])
+    assert set(ego.controller) == {"mpc", "pid"}
+    assert set(ego.reason[ego.controller == "mpc"]) == {"optimal"}
+    assert "optimal" not in set(ego.reason[ego.controller == "pid"])
 
 
 def test_sumos_step_length_does_not_touch_the_result(run_once: Run, mpc_run: RunResult) -> None:

@@ -15,8 +15,8 @@ import pytest
 
 import giveway
 from fmus import ControllerParameters, export_controller
-from giveway.config.layers import read_toml
-from giveway.config.loading import load
+from giveway.config.files.layers import read_toml
+from giveway.config.files.loading import load
 from giveway.errors import ConfigError, ControlError
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run

@@ -15,7 +15,7 @@ from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
-from giveway.ego.waiting import make_waiting_ego
+from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath

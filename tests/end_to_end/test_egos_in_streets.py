@@ -17,7 +17,7 @@ import sumo
 
 import giveway
 from giveway.errors import ScenarioError
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 import giveway
-from giveway.config.layers import Layer
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import load
 from giveway.cosimulation.assembly import Parts, assemble
 from giveway.cosimulation.loop import Loop
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError, SumoError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import Pose
+from giveway.journal.recorder import Recorder
 from giveway.processes.interrupts import DeferredInterrupt
-from giveway.recording.recorder import Recorder
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 from giveway.scenario_files import StartOptions, read_scenario
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type

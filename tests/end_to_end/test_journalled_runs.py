@@ -3,13 +3,13 @@
 from pathlib import Path
 
 from giveway.api import run_checked
-from giveway.config.loading import as_layer, load
+from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
+from giveway.journal.journal import ROWS_FILE
 from giveway.processes.heartbeat import Phase, Pulse
 from giveway.processes.supervisor import Verdict
-from giveway.recording.journal import ROWS_FILE
-from giveway.records.progress import Ending
 from giveway.recovery import recover
+from giveway.run_data.progress import Ending
 
 SHORT = {"crowd": {"pedestrians": 3}, "ego": {"travel_distance": 8.0}}
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import giveway
-from giveway.config.layers import read_toml
-from giveway.config.loading import load
+from giveway.config.files.layers import read_toml
+from giveway.config.files.loading import load
 from giveway.errors import CrowdError
 from pedestrian_model import JUPEDSIM_MODELS
 

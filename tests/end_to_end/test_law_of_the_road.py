@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from giveway.api import run_checked, simulate
-from giveway.config.loading import as_layer, load
+from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
 from giveway.metrics.law import LAW_FIELDS
 from giveway.processes.heartbeat import Phase, Pulse

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import giveway
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,7 +43,7 @@ def test_it_drives_its_way_and_touches_nobody(run_once: Run, seed: int) -> None:
 
 def test_it_keeps_the_actuators_limits_where_it_acts(run_once: Run) -> None:
     ego = run_once(controller="mpc", seed=GIVES_WAY).ego_track
-    planned = (ego.acting[1:] == "mpc") & (ego.speed[1:] > 1e-3) & (ego.speed[:-1] > 1e-3)
+    planned = (ego.controller[1:] == "mpc") & (ego.speed[1:] > 1e-3) & (ego.speed[:-1] > 1e-3)
     assert np.abs(ego.force).max() <= 8000.0
     assert np.abs(np.diff(ego.force))[planned].max() <= 1000.0 + 1e-6
     assert planned.sum() > 100

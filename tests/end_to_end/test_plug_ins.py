@@ -15,8 +15,8 @@ from support.plug_ins import printed
 import giveway
 from giveway.cli.check_command import check_command
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.layers import Layer, dump_toml, read_toml
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer, dump_toml, read_toml
+from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.ego.controllers import make_controller
 from giveway.errors import ConfigError, ControlError

@@ -13,10 +13,10 @@ from support.plug_ins import printed
 
 import giveway
 from giveway.config import RunConfig
-from giveway.config.layers import dump_toml, read_toml
-from giveway.config.loading import load
-from giveway.cosimulation import twin
-from giveway.cosimulation.followed import Beginning
+from giveway.config.files.layers import dump_toml, read_toml
+from giveway.config.files.loading import load
+from giveway.cosimulation.counterfactual import counterfactual
+from giveway.cosimulation.counterfactual.follow_up import Beginning
 from giveway.errors import ConfigError, ControlError, CrowdError
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run
@@ -249,7 +249,7 @@ def test_a_crowd_among_itself_depends_on_its_model_and_on_no_controller(shy, ins
 
     def key(**settings):
         began = Beginning(crowd, ("ped0",), {})
-        return twin._key(RunConfig.model_validate(settings), began, 0.05)
+        return counterfactual._key(RunConfig.model_validate(settings), began, 0.05)
 
     assert key(controller="idle_driver:Idle") == key(controller="mpc")
     theirs = {"crowd": {"model": "shy"}}

@@ -11,8 +11,8 @@ from controller import Manoeuvre
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
-from giveway.ego.relevance import MARGIN
-from giveway.ego.waiting import make_waiting_ego
+from giveway.ego.foresight.relevance import MARGIN
+from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
@@ -43,7 +43,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
         people = crowd(rng)
         seen = []
         for predict_all in (150, 10**9):
-            monkeypatch.setattr("giveway.ego.relevance.PREDICT_ALL", predict_all)
+            monkeypatch.setattr("giveway.ego.foresight.relevance.PREDICT_ALL", predict_all)
             with ExitStack() as stack:
                 waiting = make_waiting_ego(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
                 waiting.start(speed)
@@ -74,7 +74,7 @@ def test_who_is_left_out_hardly_changes_what_a_manoeuvre_would_lead_to(
         people = crowd(rng, widest=150.0)
         seen = []
         for margin in (MARGIN, 1e9):
-            monkeypatch.setattr("giveway.ego.relevance.MARGIN", margin)
+            monkeypatch.setattr("giveway.ego.foresight.relevance.MARGIN", margin)
             with ExitStack() as stack:
                 waiting = make_waiting_ego(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
                 waiting.start(speed)

@@ -9,7 +9,7 @@ from support.front_poses import front_poses
 from controller import Decision, SafetyParameters
 from giveway.api import RunResult
 from giveway.config import EgoRunConfig
-from giveway.ego.safety import Guard
+from giveway.ego.safety_layer import Guard
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd

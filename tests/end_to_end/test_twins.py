@@ -11,16 +11,16 @@ import pytest
 
 import giveway
 from giveway.api import run_checked, simulate
-from giveway.config.loading import as_layer, load
-from giveway.cosimulation.followed import Followed
+from giveway.config.files.loading import as_layer, load
+from giveway.cosimulation.counterfactual.follow_up import Followed
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import SumoError
 from giveway.processes.heartbeat import Phase, Pulse
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.processes.supervisor import Verdict
-from giveway.records.progress import Ending
 from giveway.recovery import recover
+from giveway.run_data.progress import Ending
 from pedestrian_model import Vehicles
 
 if TYPE_CHECKING:

@@ -15,14 +15,15 @@ import pandas as pd
 import pytest
 
 from giveway.api import run_checked
-from giveway.config.loading import as_layer, load
+from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ResultsError
+from giveway.journal.journal import MAGIC, RECORD, Kind, row_type
+from giveway.journal.layout import ROWS
+from giveway.journal.recorded import RecordedRows
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import locked
 from giveway.processes.supervisor import Verdict
-from giveway.recording.journal import MAGIC, RECORD, Kind
-from giveway.recording.recorded import RecordedRows
 from giveway.recovery import recover, recover_left
 
 MANY = 600
@@ -216,11 +217,10 @@ def test_a_journal_whose_description_is_broken_is_named(
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("index", [np.nan, np.inf, 1e300])
 def test_rows_whose_indices_are_none_are_not_cast(index: float) -> None:
-    rows = {
-        name: np.zeros((0, columns))
-        for name, columns in {"ego": 2, "background": 9, "timing": 7}.items()
-    }
-    rows |= {"clock": np.zeros((2, 1)), "crowd": np.array([[0.0, index, 0.0, 0.0, 0.0, 0.0]])}
+    rows = {name: np.zeros(0, row_type(columns)) for name, columns in ROWS.items()}
+    rows["clock"] = np.zeros(2, row_type(ROWS["clock"]))
+    rows["crowd"] = np.zeros(1, row_type(ROWS["crowd"]))
+    rows["crowd"]["pedestrian"] = index
     recorded = RecordedRows(rows, {"pedestrians": ("p",)})
     with pytest.raises(ValueError, match="no index"):
         recorded.crowd_track()

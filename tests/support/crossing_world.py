@@ -17,14 +17,14 @@ import numpy as np
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.law import Drive
-from giveway.records.tracks import (
+from giveway.run_data.tracks import (
     BackgroundTrack,
     CrowdTrack,
     EgoTrack,
     PeopleTrack,
     SignalTrack,
 )
-from giveway.records.way import CrossingOnWay, EgoWay
+from giveway.run_data.way import CrossingOnWay, EgoWay
 
 DT = 0.05
 LANE = -1.75
@@ -62,7 +62,7 @@ def ego(*parts, front=0.0, speed=4.0, turn=0.0):
         reference_speed=np.full(count, 4.0),
         vehicle_gap=far,
         stop_gap=far,
-        acting=none,
+        controller=none,
         reason=none,
         solver_status=none,
         waits_for=none,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from giveway.ego.safety import MOST_POSES, fill_front_poses, spacing_of
+from giveway.ego.safety_layer import MOST_POSES, fill_front_poses, spacing_of
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 

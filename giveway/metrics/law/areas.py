@@ -9,7 +9,7 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import fine_near, points_at
 from giveway.metrics.law.drive import Drive, runs
-from giveway.records.way import CrossingOnWay
+from giveway.run_data.way import CrossingOnWay
 
 _STEP = 0.05  # [m] between two places of the body
 _GRAIN = 0.25  # [m] between two points of its outline, at most

@@ -16,7 +16,7 @@ from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive, runs, spread
 from giveway.metrics.law.encounters import AHEAD, Encounter
 from giveway.metrics.law.standing import BEFORE, Owed
-from giveway.records.way import JunctionOnWay
+from giveway.run_data.way import JunctionOnWay
 
 AFTER = 2.0
 """[s] A cause counts for so long after it was there."""

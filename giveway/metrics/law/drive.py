@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
-from giveway.records.rows import STOP_SPEED
-from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PeopleTrack, SignalTrack
-from giveway.records.way import EgoWay
+from giveway.run_data.rows import STOP_SPEED
+from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PeopleTrack, SignalTrack
+from giveway.run_data.way import EgoWay
 
 NO_LIGHT = "O"
 _SAME = 1e-6  # [s]

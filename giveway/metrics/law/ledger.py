@@ -20,7 +20,7 @@ from giveway.metrics.law.lights import YELLOW, RedLight, red_lights
 from giveway.metrics.law.standing import Blocked, blocked_crossings, blocked_junctions
 from giveway.metrics.law.walks import walks_over
 from giveway.metrics.vehicles import VehicleContact
-from giveway.records.columns import Quantity, columns_of
+from giveway.run_data.columns import Quantity, columns_of
 
 BACK = 0.3
 """[m] Nobody with priority is to be pushed back by more."""

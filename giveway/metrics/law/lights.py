@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from giveway.metrics.law.drive import Drive
-from giveway.records.way import StopLine
+from giveway.run_data.way import StopLine
 
 RED = frozenset("rRu")
 YELLOW = frozenset("yY")

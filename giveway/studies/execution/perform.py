@@ -16,15 +16,15 @@ from fmus.text import printable
 from giveway.api import simulate
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import GivewayError
+from giveway.journal.journal import Journal
 from giveway.processes.heartbeat import Phase
-from giveway.recording.journal import Journal
 from giveway.results.folder import rounded_row
 from giveway.studies.record import FAILED, Computing, RunRecord, Scalar, Task
 from sumo_scenarios import find
 
 if TYPE_CHECKING:
-    from giveway.records.tracks import Timings
     from giveway.results.run_result import RunResult
+    from giveway.run_data.tracks import Timings
 
 
 _LONGEST_FAILURE = 2000  # characters

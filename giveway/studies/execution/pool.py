@@ -226,6 +226,6 @@ class Pool:
 
 def _named(task: Task, failure: str) -> str:
     """The failure, with the name of the controller that it happened in, if it is nobody of ours."""
-    from giveway.config.foreign_code import named_in
+    from giveway.config.files.foreign_code import named_in
 
     return named_in(failure, task.run_config)

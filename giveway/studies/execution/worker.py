@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Final
 
 from giveway.errors import GivewayError
+from giveway.journal.journal import Journal
 from giveway.processes.child import TRACEBACK_FILE, die_with
 from giveway.processes.heartbeat import Heartbeat, Phase
-from giveway.recording.journal import Journal
 from giveway.studies.execution.wire import ERROR, READY, RECORD, REFUSED, Line
 from giveway.studies.record import Task
 

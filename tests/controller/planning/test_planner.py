@@ -21,8 +21,8 @@ from smoothing_cases import (
 
 from controller import Planner, PlannerParameters, Prospect
 from controller._jit import kernel
-from controller.active_set import solve_exactly
 from controller.planning.smoothing import SmoothingProblem
+from controller.qp.active_set import solve_exactly
 
 solve_exactly = kernel(solve_exactly)
 

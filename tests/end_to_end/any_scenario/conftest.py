@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from giveway import RunResult
-    from giveway.records.progress import Progress
+    from giveway.run_data.progress import Progress
 
 HOME = Path(sumo.SUMO_HOME)
 BEGIN, END = 90, 400  # [s] of the city

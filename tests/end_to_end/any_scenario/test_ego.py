@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 import giveway
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -185,8 +185,8 @@ def test_several_egos_of_all_kinds_each_with_its_own_driver(
     assert list(egos) == ["bus", "truck", "bicycle", "own", "flow.3"]  # as they departed
     assert (egos["bus"].shape.length, egos["truck"].shape.length) == (12.0, 9.0)
     assert egos["bicycle"].shape.width < 1.0
-    assert set(egos["bus"].track.acting) == {"pid"}
-    assert "mpc" in egos["truck"].track.acting
+    assert set(egos["bus"].track.controller) == {"pid"}
+    assert "mpc" in egos["truck"].track.controller
     fmus = {name: entry["fmi_version"] for name, entry in result.manifest["vehicles"].items()}
     assert fmus == {**dict.fromkeys(egos, "2.0"), "truck": "3.0"}
     assert egos["own"].track.time[0] == pytest.approx(4.0)

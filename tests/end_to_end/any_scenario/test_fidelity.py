@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import giveway
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 from sumo_scenarios import find
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
     from collections.abc import Callable

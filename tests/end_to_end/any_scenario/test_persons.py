@@ -13,7 +13,7 @@ import pytest
 import shapely
 
 import giveway
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,8 +8,8 @@ import pytest
 import tomlkit
 
 import giveway as library
-from giveway.config.layers import Layer, read_toml
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer, read_toml
+from giveway.config.files.loading import load
 from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, VehicleError

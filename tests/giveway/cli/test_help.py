@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from giveway.config.layers import options
+from giveway.config.files.layers import options
 
 if TYPE_CHECKING:
     from collections.abc import Callable

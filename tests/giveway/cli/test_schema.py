@@ -11,7 +11,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from fmus import bundled_fmu
-from giveway.config.presets import preset_text
+from giveway.config.files.presets import preset_text
 from giveway.studies.definition import dump_definition, read_definition
 from giveway.studies.finding import find_study
 from pedestrian_model import SIM

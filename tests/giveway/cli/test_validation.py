@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from giveway.cli import main
-from giveway.config.presets import parameters_of
+from giveway.config.files.presets import parameters_of
 from pedestrian_model import SIM
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import pytest
 from pydantic import ValidationError
 
 from giveway.config import RunConfig
-from giveway.config.layers import Layer, build_config, dump_toml
-from giveway.config.loading import load
+from giveway.config.files.layers import Layer, build_config, dump_toml
+from giveway.config.files.loading import load
 from giveway.errors import ConfigError
 
 

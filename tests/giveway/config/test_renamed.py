@@ -2,7 +2,7 @@
 
 import pytest
 
-from giveway.config.layers import Layer, build_config, options
+from giveway.config.files.layers import Layer, build_config, options
 from giveway.config.renamed import FLAGS, RENAMED, renamed_flag
 from giveway.errors import ConfigError
 from giveway.plug_ins.sockets import SOCKETS

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import giveway
 from giveway.config import RunConfig
-from giveway.config.layers import (
+from giveway.config.files.layers import (
     Layer,
     Option,
     build_config,
@@ -18,7 +18,7 @@ from giveway.config.layers import (
     options,
     read_toml,
 )
-from giveway.config.loading import as_layer, load
+from giveway.config.files.loading import as_layer, load
 from giveway.errors import ConfigError, GivewayError, ScenarioError
 
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from giveway.config import RunConfig
-from giveway.config.crowd import CrowdConfig
-from giveway.config.people import PeopleConfig
-from giveway.crowd.attention import Inattentive, distance_to_next
-from giveway.crowd.cohesion import Cohesive, attraction
-from giveway.crowd.groups import formation, party_sizes, slowest
-from giveway.crowd.kinds import desired_speeds, draw_kinds
+from giveway.config.tables.crowd import CrowdConfig
+from giveway.config.tables.people import PeopleConfig
+from giveway.crowd.generation.groups import formation, party_sizes, slowest
+from giveway.crowd.generation.kinds import desired_speeds, draw_kinds
+from giveway.crowd.generation.spawn import spawn
 from giveway.crowd.models import model_of
+from giveway.crowd.motion.attention import Inattentive, distance_to_next
+from giveway.crowd.motion.cohesion import Cohesive, attraction
 from giveway.crowd.roster import Roster, Trait
-from giveway.crowd.spawn import spawn
 from giveway.geometry.path import EgoPath
 from pedestrian_model import PLAIN_MODELS, SIM, Crowd, CrowdModel, PlainModel, Vehicles
 

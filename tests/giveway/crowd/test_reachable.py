@@ -9,8 +9,8 @@ import pytest
 import shapely
 
 import giveway
-from giveway.config.crowd import CrowdConfig
-from giveway.config.flows import read_flows
+from giveway.config.tables.crowd import CrowdConfig
+from giveway.config.tables.flows import read_flows
 from giveway.crowd.reachable import flow_remark, spawn_remark, way_of
 from giveway.walkways import WalkNetwork, beside
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.crowd.noise import BOUND, planar_noise
+from giveway.crowd.motion.noise import BOUND, planar_noise
 from giveway.crowd.tracking import Tracker
 from pedestrian_model import Crowd
 

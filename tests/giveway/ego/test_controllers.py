@@ -22,16 +22,16 @@ from controller import (
 )
 from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
-from giveway.config.controller_sections import (
+from giveway.config.option import LANE
+from giveway.config.tables.basics import DEFAULT_SPEED
+from giveway.config.tables.controllers import (
     PlannerConfig,
     PlannerOptions,
     SafetyConfig,
     TunedPidOptions,
 )
-from giveway.config.option import LANE
-from giveway.config.sections import DEFAULT_SPEED
 from giveway.ego.controllers import filled, make_controller, manoeuvres_of
-from giveway.ego.waiting import safety_parameters
+from giveway.ego.preparation import safety_parameters
 from giveway.geometry.bodies import BODY
 from pedestrian_model import SIM
 

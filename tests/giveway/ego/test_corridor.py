@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.ego.corridor import Corridor, closest_in_front
-from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.kernel import kernel
 from giveway.geometry.passage import SIGHT
 from giveway.geometry.path import EgoPath

@@ -15,7 +15,7 @@ import pytest
 
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.giving_way import STOP_BEFORE
-from giveway.ego.leader import Leader
+from giveway.ego.perception.leader import Leader
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath

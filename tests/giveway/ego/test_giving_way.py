@@ -5,7 +5,7 @@ import math
 import pytest
 
 from giveway.ego.giving_way import at_rest, leaves_no_room
-from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.perception.leader import NO_LEADER, Leader
 
 ROOM = 5.0 + 8.5  # [m] the ego's length, and the gap that it keeps
 

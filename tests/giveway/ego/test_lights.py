@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.lights import STOP_BEFORE, Lights
+from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.sumo.lane_path import Light
 
 LINE = 100.0  # [m]

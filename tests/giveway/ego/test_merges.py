@@ -11,8 +11,8 @@ import math
 import numpy as np
 import pytest
 
-from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.merges import Merges, Place, Rival, places_of
+from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.path import EgoPath
 from giveway.sumo.merging import Merging
 

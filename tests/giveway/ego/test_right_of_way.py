@@ -8,7 +8,7 @@ import pytest
 from giveway.ego.crossings import STOP_BEFORE
 from giveway.ego.gaps import MINOR_STRAIGHT, PERMITTED
 from giveway.ego.junctions import PathJunction
-from giveway.ego.leader import Leader
+from giveway.ego.perception.leader import Leader
 from giveway.ego.right_of_way import Approach, RightOfWay
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.junctions import Movement

@@ -10,8 +10,8 @@ import pytest
 
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
+from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.speed_profile import LATERAL_ACCELERATION, SpeedProfile, profile_of
-from giveway.ego.waiting import make_waiting_ego
 from giveway.errors import ScenarioError
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lane_path import SpeedLimit

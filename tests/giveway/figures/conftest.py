@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 DT = 0.05  # [s]
 BODY_RADIUS = 0.27  # [m]
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Run = tuple[EgoTrack, CrowdTrack]
+PLACE = ("time", "position", "front_x", "front_y", "heading")
+NUMBERS = (*PLACE, "speed", "acceleration", "force", "gap", "reference_speed")
 
 
 def drive_through_crowd(pedestrians: int, seed: int, controller: str, goal: float = 40.0) -> Run:
@@ -51,10 +53,10 @@ def drive_through_crowd(pedestrians: int, seed: int, controller: str, goal: floa
     acting = np.array([row[10] for row in egos])
     nothing = np.full(acting.size, np.inf)
     ego = EgoTrack(
-        *numbers,
+        **dict(zip(NUMBERS, numbers, strict=True)),
         vehicle_gap=nothing,
         stop_gap=nothing,
-        acting=acting,
+        controller=acting,
         reason=np.where(acting == "mpc", "optimal", "infeasible"),
         solver_status=np.full(acting.size, ""),
         waits_for=np.full(acting.size, ""),

@@ -62,7 +62,7 @@ def test_a_controller_without_a_buffer_has_no_line_for_it(run):
 
 def test_every_panel_is_shaded_where_each_controller_acted(run):
     ego, _ = run(30, 1, "mpc")
-    assert {"mpc", "pid"} == set(ego.acting)
+    assert {"mpc", "pid"} == set(ego.controller)
     for axes in state_figure(ego, **DISTANCES).axes:
         shaded = spans(axes)
         assert shaded[0][1] == ego.time[0]
@@ -70,7 +70,7 @@ def test_every_panel_is_shaded_where_each_controller_acted(run):
         for k in range(ego.time.size - 1):
             middle = (ego.time[k] + ego.time[k + 1]) / 2
             (acting,) = [name for name, start, end in shaded if start < middle < end]
-            assert acting == ego.acting[k]
+            assert acting == ego.controller[k]
         for patch in axes.patches:
             assert patch.get_facecolor()[:3] == to_rgb(SHADES[patch.get_label()][0])
 
@@ -89,7 +89,7 @@ def test_every_panel_is_shaded_where_each_controller_acted(run):
 def test_phases(run, acting, expected):
     ego = first(run(0, 1, "pid")[0], len(acting))
     names = np.array([{"m": "mpc", "p": "pid", "s": "safety"}[letter] for letter in acting])
-    assert phases(replace(ego, time=np.arange(float(len(acting))), acting=names)) == expected
+    assert phases(replace(ego, time=np.arange(float(len(acting))), controller=names)) == expected
 
 
 def test_the_legend_names_who_acted_and_nobody_else(run):
@@ -102,9 +102,9 @@ def test_the_legend_names_who_acted_and_nobody_else(run):
     curves = {"speed", "reference speed", "gap", "force"}
     assert legend(mpc) == curves | {"MPC acts", "PID acts"}
     assert legend(pid) == curves | {"PID acts"}
-    guarded = pid.acting.astype("U6")
+    guarded = pid.controller.astype("U6")
     guarded[5:9] = "safety"
-    assert legend(replace(pid, acting=guarded)) == curves | {"PID acts", "safety layer acts"}
+    assert legend(replace(pid, controller=guarded)) == curves | {"PID acts", "safety layer acts"}
 
 
 def test_runs_side_by_side_share_their_scales(run):

@@ -27,7 +27,7 @@ from giveway.figures.study_rows import (
 )
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.figures.style import BLUE, GREY, ORANGE
-from giveway.records.writing import digits_for, number
+from giveway.run_data.writing import digits_for, number
 
 NAN = math.nan
 TIME = DifferenceColumn("general", "completion time", "s")
@@ -258,7 +258,7 @@ class TestPairs:
             np.testing.assert_array_equal(
                 lines(force, "force")[0].get_ydata(), side.ego.force / 1000.0
             )
-            assert {patch.get_label() for patch in gap.patches} == set(side.ego.acting)
+            assert {patch.get_label() for patch in gap.patches} == set(side.ego.controller)
         assert len({axes.get_xlim() for axes in grid.flat}) == 1
         assert grid[1, 0].get_ylim() == grid[1, 1].get_ylim()
         assert grid[2, 0].get_ylim() == grid[2, 1].get_ylim()

@@ -17,8 +17,8 @@ from giveway.figures.top_view import VIEW, rectangle
 from giveway.figures.view import SLENDEREST
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import pedestrian_metrics
-from giveway.records.road_marks import RoadMarks, SignalHead, Zebra
-from giveway.records.tracks import BackgroundTrack, CrowdTrack, SignalTrack
+from giveway.run_data.road_marks import RoadMarks, SignalHead, Zebra
+from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, SignalTrack
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from giveway.config.measures import MeasureConfig, read_measures
+from giveway.config.tables.measures import MeasureConfig, read_measures
 from giveway.measures import FRUIN, HCM, density_map, level_of_service, measure_table
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 STEP = 0.05  # [s]
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from giveway.config.measures import read_measures
+from giveway.config.tables.measures import read_measures
 from giveway.measures import measure_table, measuring
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 FOLDER = Path(__file__).parent / "pedpy"
 RATE = 16  # [1/s]

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from giveway.config.measures import read_measures
+from giveway.config.tables.measures import read_measures
 from giveway.measures import unreached
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 
 def walked(*places):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -43,7 +43,7 @@ def make_ego(
         "reference_speed": full(4.0),
         "vehicle_gap": full(np.inf),
         "stop_gap": full(np.inf),
-        "acting": np.full(count, "mpc"),
+        "controller": np.full(count, "mpc"),
         "reason": np.full(count, "optimal"),
         "solver_status": np.full(count, "solved"),
         "waits_for": np.full(count, ""),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from giveway.metrics import delays, gave_way, summarise_delays
-from giveway.records.walks import WalkTrack
+from giveway.run_data.walks import WalkTrack
 
 STEP = 0.5  # [s]
 WAY = 10.0  # [m] of everybody's route

@@ -22,7 +22,7 @@ from giveway.metrics import (
     summarise,
     waiting_times,
 )
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
@@ -148,7 +148,7 @@ def test_the_summary_of_a_drive(ego):
         speed=np.array([4.0, 2.0, 0.0, 0.1, 2.0]),
         acceleration=np.array([0.0, -4.0, -4.0, 0.0, 4.0]),
         gap=np.array([np.inf, 9.0, 6.0, 8.0, np.inf]),
-        acting=np.array(["mpc", "mpc", "pid", "safety", "mpc"]),
+        controller=np.array(["mpc", "mpc", "pid", "safety", "mpc"]),
     )
     summary = summary_of(track)
     assert summary.completed

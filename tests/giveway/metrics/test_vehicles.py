@@ -6,7 +6,7 @@ import pytest
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.metrics import vehicle_contacts
-from giveway.records.tracks import BackgroundTrack
+from giveway.run_data.tracks import BackgroundTrack
 
 SHAPE = VehicleShape(5.0, 2.0)
 TIME = np.arange(0.0, 4.05, 0.1)

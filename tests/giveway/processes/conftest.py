@@ -11,7 +11,7 @@ CHILD = """
 import atexit, ctypes, os, signal, sys, time
 from giveway.processes.heartbeat import Phase
 from giveway.processes.interrupts import DeferredInterrupt
-from giveway.recording.journal import Journal
+from giveway.journal.journal import Journal
 from giveway.processes.child import Supervised, take_journal_folder
 
 def step_sumo():
@@ -22,7 +22,7 @@ with Supervised(folder) as supervised:
     supervised.listen()
     journal = Journal(folder)
     journal.write_meta({{"pid": os.getpid()}})
-    rows = journal.rows("ego", 1)
+    rows = journal.rows("ego", ("step",))
     for k in range(3):
         journal.heartbeat.step(k, 12.2 + 0.05 * k)
         journal.heartbeat.beat(Phase.CONTROLLING)

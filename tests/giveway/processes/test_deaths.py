@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from giveway.journal.journal_reader import read_journal
 from giveway.processes.heartbeat import Phase
 from giveway.processes.supervisor import Verdict, supervise
-from giveway.recording.journal_reader import read_journal
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
 
@@ -49,7 +49,7 @@ def test_a_death_is_told_and_loses_no_row(
     assert verdict.code == code
     assert verdict.message.startswith(cause)
     assert verdict.message.endswith("inside SUMO's step from 12.30 s (step 2)")
-    assert read_journal(journal).tables["ego"][:, 0].tolist() == [0, 1, 2]
+    assert read_journal(journal).tables["ego"]["step"].tolist() == [0, 1, 2]
 
 
 def test_python_says_where_it_stood(fate: Callable[..., Verdict]) -> None:
@@ -113,7 +113,7 @@ SUMO_RUN = """
 import os
 import libsumo
 from giveway.processes.heartbeat import Phase
-from giveway.recording.journal import Journal
+from giveway.journal.journal import Journal
 from giveway.processes.child import Supervised, take_journal_folder
 from sumo_scenarios import find
 
@@ -122,7 +122,7 @@ with Supervised(folder):
     journal = Journal(folder)
     libsumo.start(["sumo", "-c", str(find("street").config_file), "--no-step-log"])
     journal.write_meta({"pid": os.getpid()})
-    rows = journal.rows("step", 2)
+    rows = journal.rows("step", ("step", "vehicles"))
     k = 0
     while True:
         journal.heartbeat.step(k, libsumo.simulation.getTime())
@@ -151,7 +151,7 @@ def test_sumo_killed_in_the_middle_of_a_simulation(tmp_path: Path, journal: Path
     assert verdict.cause == "SIGSEGV"
     assert verdict.pulse.phase is Phase.SUMO
     # Every step up to the one it died in, and that one is named.
-    assert rows[:, 0].tolist() == list(range(len(rows)))
+    assert rows["step"].tolist() == list(range(len(rows)))
     assert len(rows) >= 100
     assert verdict.pulse.step in (len(rows) - 1, len(rows))
     assert verdict.pulse.time == pytest.approx(verdict.pulse.step * 0.1)
@@ -161,7 +161,7 @@ def test_sumo_killed_in_the_middle_of_a_simulation(tmp_path: Path, journal: Path
 SUMO_CRASH = """
 import libsumo
 from giveway.processes.heartbeat import Phase
-from giveway.recording.journal import Journal
+from giveway.journal.journal import Journal
 from giveway.processes.child import Supervised, take_journal_folder
 from sumo_scenarios import find
 
@@ -169,7 +169,7 @@ ids = [f"p{i}" for i in range(50)]
 folder = take_journal_folder()
 with Supervised(folder):
     journal = Journal(folder)
-    rows = journal.rows("round", 1)
+    rows = journal.rows("round", ("round",))
     for k in range(10):
         rows.block(1)[0] = k
         journal.heartbeat.step(k, 0.0)
@@ -193,5 +193,5 @@ def test_a_segmentation_fault_of_sumos_own(tmp_path: Path, journal: Path) -> Non
     verdict = supervise([sys.executable, str(script)], journal)
     assert verdict.message.startswith("SIGSEGV inside SUMO's step from 0.00 s")
     assert "libsumo" in verdict.traceback
-    rounds = read_journal(journal).tables["round"][:, 0].tolist()
+    rounds = read_journal(journal).tables["round"]["round"].tolist()
     assert rounds == list(range(verdict.pulse.step + 1))

@@ -15,7 +15,7 @@ from giveway.processes.interrupts import (
     exit_code_of,
     who_ended,
 )
-from giveway.records.progress import Ending
+from giveway.run_data.progress import Ending
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 

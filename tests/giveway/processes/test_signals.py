@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from giveway.recording.journal_reader import read_journal
+from giveway.journal.journal_reader import read_journal
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
 

@@ -9,9 +9,9 @@ import pandas as pd
 import pytest
 
 from giveway import run
-from giveway.records.road_marks import shown
-from giveway.records.scene import Scene
 from giveway.replays import write_replay
+from giveway.run_data.road_marks import shown
+from giveway.run_data.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,11 +10,11 @@ import pytest
 
 from giveway import run
 from giveway.api import run_checked
-from giveway.config.loading import as_layer, load
-from giveway.cosimulation.instants import looks_ahead
+from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
-from giveway.recording.journal_reader import read_journal
-from giveway.recording.recorded import RecordedRows
+from giveway.cosimulation.recording_instants import looks_ahead
+from giveway.journal.journal_reader import read_journal
+from giveway.journal.recorded import RecordedRows
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -4,13 +4,13 @@ import numpy as np
 from support.crossing_world import SHAPE, ego, traffic
 
 from giveway.geometry.bodies import VehicleShape
+from giveway.journal.recorded import RecordedEgo
 from giveway.metrics.law import Event
-from giveway.recording.recorded import RecordedEgo
-from giveway.records.columns import LEDGER_COLUMNS
-from giveway.records.scene import SCENE_FILE, Scene
-from giveway.records.tracks import PeopleTrack
-from giveway.records.way import CrossingOnWay, EgoWay, StopLine
 from giveway.results.law import ledger_table, others_of, people_table, remark
+from giveway.run_data.columns import LEDGER_COLUMNS
+from giveway.run_data.scene import SCENE_FILE, Scene
+from giveway.run_data.tracks import PeopleTrack
+from giveway.run_data.way import CrossingOnWay, EgoWay, StopLine
 
 MET = Event(3.0, "encounter", False, "ped0", ":c0", 1.0, 2.0, 0.5, "s", "met")
 FAILED = Event(4.0, "failure to yield", True, "ped0", ":c0", 1.0, 2.0, 0.5, "s", "too early")

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from giveway.errors import ResultsError
+from giveway.journal.journal import Journal
 from giveway.processes.heartbeat import Phase
-from giveway.recording.journal import Journal
 from giveway.studies.execution.perform import perform
 from giveway.studies.folder import StudyFolder
 from giveway.studies.identity import software_identity

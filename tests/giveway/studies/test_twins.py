@@ -10,7 +10,7 @@ import numpy as np
 import psutil
 import pytest
 
-from giveway.cosimulation import twin
+from giveway.cosimulation.counterfactual import counterfactual
 from giveway.studies.design import design
 from giveway.studies.rerun import rerun
 from giveway.studies.statistics.fronts import fronts, on_front
@@ -71,7 +71,7 @@ def test_an_interrupted_study_with_twins_goes_on_to_the_same_bytes(study, study_
 
     with pytest.raises(StudyInterruptedError, match="5 of 12 runs are kept"):
         study_of(TEXT, tmp_path / "half", interrupt)
-    twin._alone.clear()  # as in another process
+    counterfactual._alone.clear()  # as in another process
     whole = study_of(TEXT, tmp_path / "half", resume=True)
     assert bytes_of(whole.path) == bytes_of(study.path)
 
@@ -122,17 +122,17 @@ def test_a_study_without_twins_has_no_fronts(small_study):
 
 def test_cells_with_the_same_people_share_the_crowd_among_itself(study_of, tmp_path, monkeypatch):
     made = []
-    build = twin.CrowdAlone
+    build = counterfactual.CrowdAlone
 
     def counted(*arguments):
         made.append(arguments)
         return build(*arguments)
 
-    twin._alone.clear()
-    monkeypatch.setattr(twin, "CrowdAlone", counted)
+    counterfactual._alone.clear()
+    monkeypatch.setattr(counterfactual, "CrowdAlone", counted)
     study_of(TEXT, tmp_path / "shared")
     assert len(made) == 2 * 3  # crowds and seeds; not controllers
-    assert len(twin._alone) <= twin._KEPT
+    assert len(counterfactual._alone) <= counterfactual._KEPT
 
 
 def test_the_front_is_who_nobody_beats_on_both_sides():

@@ -5,7 +5,7 @@ import pytest
 from support.crossing_world import Person, drive, ego, to_a_stand, walker
 
 from giveway.metrics.law import ledger
-from giveway.records.way import CrossingOnWay, Halt, JunctionOnWay, StopLine
+from giveway.run_data.way import CrossingOnWay, Halt, JunctionOnWay, StopLine
 
 ALWAYS = np.arange(0.0, 40.0, 0.05)
 STANDS = to_a_stand(30.0, (4.0, 0.0), (6.0, 1.5))  # until 12.5 s

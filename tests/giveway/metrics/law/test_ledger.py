@@ -10,7 +10,7 @@ from support.crossing_world import ZEBRA, drive, ego, to_a_stand, turned, walker
 
 from giveway.metrics import VehicleContact
 from giveway.metrics.law import LAW_FIELDS, count, ledger
-from giveway.records.way import StopLine
+from giveway.run_data.way import StopLine
 
 PEOPLE = (walker(-4.3, since=3.6), walker(4.3, speed=-1.4, since=1.9))
 RED = {"lines": (StopLine(15.0, "tls", 0),), "lights": [(0.0, "r")]}

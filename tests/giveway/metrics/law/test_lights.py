@@ -4,7 +4,7 @@ import pytest
 from support.crossing_world import drive, ego, to_a_stand
 
 from giveway.metrics.law import ledger
-from giveway.records.way import StopLine
+from giveway.run_data.way import StopLine
 
 LINE = StopLine(20.0, "tls", 1)
 THROUGH = ego((12.0, 0.0))  # at 4 m/s; 2 m/s^2 stop it within 4 m

@@ -5,7 +5,7 @@ import pytest
 from support.crossing_world import NORTH, SIGNALLED, SOUTH, ZEBRA, Person, drive, to_a_stand
 
 from giveway.metrics.law import ledger
-from giveway.records.way import JunctionOnWay
+from giveway.run_data.way import JunctionOnWay
 
 ALWAYS = np.arange(0.0, 30.0, 0.05)
 

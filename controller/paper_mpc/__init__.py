@@ -1,0 +1,1 @@
+"""The model predictive controller of Yang & Özgüner 2019."""

@@ -1,0 +1,1 @@
+"""The paper's PID controller and the tuned one."""

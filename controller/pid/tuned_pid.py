@@ -1,0 +1,160 @@
+"""A PID as a good engineer would make it: the planning MPC's fair rival (``pid-tuned``)."""
+
+from dataclasses import dataclass, field
+from math import inf, isfinite
+
+from controller.defaults import FORCE_LIMIT, FORCE_RATE_LIMIT, STANDSTILL
+from controller.errors import ParameterError
+from controller.model import LongitudinalModel
+from controller.parameters import require_not_negative, require_positive
+from controller.pid.speed_reference import ReferenceParameters, SpeedReference
+
+_TRANSIENT = 0.5  # [m/s^2] of the reference, from which on errors are not integrated
+
+
+@dataclass(frozen=True, slots=True)
+class TunedPidParameters:
+    """The loop's gains, given by what they make of the plant, and the actuator's limits.
+
+    The gains place both poles of M v' + alpha v = u at bandwidth and damping, so they scale with
+    the vehicle. benchmarks/tune_pid.py finds the defaults.
+    """
+
+    bandwidth: float = 2.5  # omega_0 [rad/s] of the closed loop s^2 + 2 zeta omega_0 s + omega_0^2
+    damping: float = 0.85  # zeta [-]
+    acceleration_feed_forward: bool = True  # M dv_ref/dt beside alpha v_ref
+    force_limit: float = FORCE_LIMIT  # u_max [N]
+    force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
+    reference: ReferenceParameters = field(default_factory=ReferenceParameters)
+
+    def __post_init__(self) -> None:
+        require_positive("bandwidth", self.bandwidth, "rad/s")
+        require_positive("damping", self.damping, "-")
+        require_positive("force_limit", self.force_limit, "N")
+        require_positive("force_rate_limit", self.force_rate_limit, "N per step")
+
+    def gains(self, model: LongitudinalModel) -> tuple[float, float]:
+        """K_p [N s/m] and K_i [N/m]: pole placement for a first-order plant.
+
+        Åström & Hägglund 2006, Advanced PID Control, section 6.4. A derivative would act as more
+        mass does: for one lag there is nothing for it to do.
+        """
+        K_p = 2.0 * self.damping * self.bandwidth * model.mass - model.friction
+        return max(K_p, 0.0), self.bandwidth**2 * model.mass
+
+
+class TunedPid:
+    """u = alpha v_ref + M dv_ref/dt + K_p e + u_i, e = v_ref - v, within the actuator's limits.
+
+    * The reference is smooth (:class:`SpeedReference`), so that the feed-forward alone drives the
+      modelled vehicle along it and the feedback has only the model's errors to correct.
+    * Anti-windup by back-calculation with the tracking time K_p / K_i; the reference is conditioned
+      by the same amount (Hanus, Kinnaert & Henrotte 1987): it never runs ahead of what the
+      actuator can do.
+    * Where a limit of 0 wants the car to stand, it does not drive.
+
+    Args:
+        parameters: loop, actuator and reference.
+        model: of the vehicle; its time step is the controller's.
+    """
+
+    def __init__(
+        self,
+        parameters: TunedPidParameters | None = None,
+        model: LongitudinalModel | None = None,
+    ) -> None:
+        self.parameters = p = parameters or TunedPidParameters()
+        self.model = model = model or LongitudinalModel()
+        require_not_negative("friction", model.friction, "N s/m")
+        self.time_step = dt = model.time_step
+        self.K_p, self.K_i = p.gains(model)
+        strongest = p.force_limit / model.mass
+        sharpest = p.force_rate_limit / (model.mass * dt)
+        self.reference = SpeedReference(p.reference, strongest, sharpest, dt)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the past: the reference begins at the next speed, the integrator is empty."""
+        self._integral = 0.0  # u_i(k) [N]
+        self._force = 0.0  # u(k-1) [N]
+        self._speed = 0.0  # v(k) [m/s]
+        self._started = False
+
+    def reference_speed(self, gap: float, limit: float = inf) -> float:
+        """The profile [m/s] at ``gap`` [m]; never more than ``limit`` [m/s]."""
+        return self.reference.target(gap, limit)
+
+    def control(self, speed: float, gap: float, limit: float = inf) -> float:
+        """The force u(k) [N].
+
+        Args:
+            speed: v(k) [m/s].
+            gap: to the closest pedestrian in front [m]; inf when nobody is.
+            limit: caps the reference speed [m/s].
+
+        Raises:
+            ParameterError: speed or gap is not a number.
+        """
+        if not isfinite(speed) or gap != gap or limit != limit:
+            raise ParameterError(f"speed = {speed} m/s, gap = {gap} m: expected numbers")
+        p = self.parameters
+        if not self._started:
+            self._begin(speed, self.model.friction * speed)
+            self._force = 0.0
+        self._speed = speed
+        if speed <= STANDSTILL:
+            self._stand()
+        v_ref, a_ref = self.reference.advance(speed, gap, limit)
+        e = v_ref - speed
+        wanted = self._feed_forward(v_ref, a_ref) + self.K_p * e + self._integral
+        low = max(-p.force_limit, self._force - p.force_rate_limit)
+        high = min(p.force_limit, self._force + p.force_rate_limit)
+        if limit <= 0.0:
+            high = max(low, min(high, 0.0))
+        force = min(max(wanted, low), high)
+        settled = max(0.0, 1.0 - abs(a_ref) / _TRANSIENT)
+        self._learn(settled * e, force - wanted)
+        self._force = force
+        return force
+
+    def track(
+        self, speed: float, gap: float, limit: float = inf, force: float | None = None
+    ) -> None:
+        """While another acts with ``force`` [N]: the own output would be the same."""
+        del gap, limit  # the reference starts at the speed, whatever is in front
+        self._begin(speed, self.model.friction * speed if force is None else force)
+
+    def applied(self, force: float) -> None:
+        """Another force [N] than was asked for acts: the reference goes on from what it does."""
+        model, speed = self.model, self._speed
+        after = model.decay * speed + model.speed_per_force * force
+        self.reference.start(after, (force - model.friction * speed) / model.mass)
+        self._force = force
+
+    def _begin(self, speed: float, force: float) -> None:
+        model = self.model
+        acceleration = (force - model.friction * speed) / model.mass
+        self.reference.start(speed, acceleration)
+        self._integral = force - self._feed_forward(speed, acceleration)
+        self._force = force
+        self._started = True
+
+    def _stand(self) -> None:
+        """At a standstill the force is a brake that holds: what it was does not bind the next."""
+        if self.reference.acceleration <= 0.0:
+            self.reference.start(0.0)
+            self._integral = 0.0
+            self._force = 0.0
+
+    def _feed_forward(self, v_ref: float, a_ref: float) -> float:
+        force = self.model.friction * v_ref
+        return (
+            force + self.model.mass * a_ref if self.parameters.acceleration_feed_forward else force
+        )
+
+    def _learn(self, e: float, cut: float) -> None:
+        """Integrate the error; take back what the limits ``cut`` off [N]."""
+        dt = self.time_step
+        reachable = cut / (self.K_p + self.model.friction) if self.K_p > 0.0 else 0.0  # [m/s]
+        self._integral += self.K_i * dt * (e + reachable)
+        self.reference.speed = max(0.0, self.reference.speed + reachable)

@@ -1,0 +1,154 @@
+"""OSQP: set up once, then only bounds, target and start change. The only file that imports osqp.
+
+It gets the paper's problem in the unknowns v(k+1), v(k+2) - v(k+1), ...: from a cold start it needs
+a seventh of the iterations that the speeds themselves cost it, and they would often not converge.
+"""
+
+import signal
+
+import numpy as np
+import osqp
+from scipy import sparse
+
+from controller._jit import Array, kernel
+from controller.errors import SolverSetupError
+from controller.qp.least_squares import LeastSquares, Outcome
+
+_INFINITY = 1e30  # OSQP's
+_INTERRUPTED = int(osqp.SolverStatus.OSQP_SIGINT)
+_STATUS = {
+    osqp.SolverStatus.OSQP_SOLVED: Outcome.SOLVED,
+    osqp.SolverStatus.OSQP_PRIMAL_INFEASIBLE: Outcome.INFEASIBLE,
+    osqp.SolverStatus.OSQP_SOLVED_INACCURATE: Outcome.INACCURATE,
+    osqp.SolverStatus.OSQP_PRIMAL_INFEASIBLE_INACCURATE: Outcome.INACCURATE,
+    osqp.SolverStatus.OSQP_MAX_ITER_REACHED: Outcome.ITERATION_LIMIT,
+}
+
+_INFEASIBLE, _FAILED = Outcome.INFEASIBLE, Outcome.FAILED  # whose class is slow to tell them
+
+
+class OsqpBackend:
+    """Solves a least-squares problem by OSQP (Stellato et al. 2020), warm-started.
+
+    Nothing depends on a clock: no time limit, and the step size adapts every 50 iterations.
+
+    Raises:
+        SolverSetupError: OSQP refuses the problem.
+    """
+
+    def __init__(self, problem: LeastSquares, iteration_limit: int) -> None:
+        self._problem = problem
+        count, N = problem.rows.shape
+        increments = problem.increments
+        self._sums = sums = np.tril(np.ones((N, N))) if increments else np.eye(N)  # x = sums dx
+        self._aimed_at = problem.target.copy()
+        solver = osqp.OSQP(algebra="builtin")
+        try:
+            solver.setup(
+                sparse.csc_matrix(np.triu(2.0 * sums.T @ sums)),  # P
+                self._gradient(problem.target),  # q
+                sparse.csc_matrix(problem.rows @ sums),
+                np.full(count, -_INFINITY),
+                np.full(count, _INFINITY),
+                verbose=False,
+                warm_starting=True,
+                eps_abs=1e-4,
+                eps_rel=1e-4,
+                check_termination=5,
+                adaptive_rho_interval=50,
+                max_iter=iteration_limit,
+            )
+        except (osqp.OSQPException, ValueError) as error:
+            raise SolverSetupError(
+                f"OSQP refuses the MPC's problem at set-up ({error}); check [mpc] and [vehicle]"
+            ) from error
+        self._solver = solver._solver  # the wrapper's solve() copies and checks for 20 us
+        self._lower = np.empty(count)
+        self._upper = np.empty(count)
+        self._start = np.empty(N)
+
+    def _gradient(self, target: Array) -> Array:
+        """The linear cost of |x - target|^2 in the solver's unknowns."""
+        return np.asarray(-2.0 * self._sums.T @ target)
+
+    def solve(self, solution: Array, multipliers: Array) -> tuple[Outcome, int]:
+        """Solve within the problem's present bounds.
+
+        Args:
+            solution: Start, (n,); receives the solution.
+            multipliers: Start, (m,); receives the solution's, or the certificate of infeasibility.
+
+        Returns:
+            The outcome and the number of iterations.
+        """
+        solver, problem = self._solver, self._problem
+        aims_elsewhere = pose(
+            problem.lower,
+            problem.upper,
+            problem.target,
+            solution,
+            problem.increments,
+            self._lower,
+            self._upper,
+            self._aimed_at,
+            self._start,
+        )
+        q = self._gradient(problem.target) if aims_elsewhere else None
+        solver.update_data_vec(q=q, l=self._lower, u=self._upper)
+        solver.warm_start(self._start, multipliers)
+        solver.solve()
+        info = solver.info
+        if info.status_val == _INTERRUPTED:
+            signal.raise_signal(signal.SIGINT)  # OSQP swallowed it: hand it to whose it is
+            solver.solve()
+            info = solver.info
+        outcome = _STATUS.get(info.status_val, _FAILED)
+        found = solver.solution
+        if outcome is _INFEASIBLE:
+            multipliers[:] = found.prim_inf_cert
+        else:
+            take(found.x, found.y, problem.increments, solution, multipliers)
+        return outcome, int(info.iter)
+
+
+@kernel
+def pose(
+    lower: Array,
+    upper: Array,
+    target: Array,
+    solution: Array,
+    increments: bool,
+    low: Array,
+    high: Array,
+    aimed_at: Array,
+    start: Array,
+) -> bool:
+    """Fill what the solver gets: finite bounds, and where to start; is the target another one?
+
+    Args:
+        lower: (m,) of the problem.
+        upper: (m,) of the problem.
+        target: (n,) of the problem.
+        solution: (n,) of the problem, from which to start.
+        increments: the solver's unknowns are increments.
+        low: (m,) the solver's.
+        high: (m,) the solver's.
+        aimed_at: (n,) the target that the solver knows; brought up to date.
+        start: (n,) the solver's.
+    """
+    for i in range(lower.size):
+        low[i], high[i] = max(lower[i], -_INFINITY), min(upper[i], _INFINITY)
+    elsewhere = False
+    for i in range(target.size):
+        elsewhere |= target[i] != aimed_at[i]
+        aimed_at[i] = target[i]
+        start[i] = solution[i] - solution[i - 1] if increments and i > 0 else solution[i]
+    return elsewhere
+
+
+@kernel
+def take(x: Array, y: Array, increments: bool, solution: Array, multipliers: Array) -> None:
+    """Fill the problem's solution (n,) and multipliers (m,) from the solver's ``x`` and ``y``."""
+    for i in range(x.size):
+        solution[i] = solution[i - 1] + x[i] if increments and i > 0 else x[i]
+    multipliers[:] = y

@@ -1,0 +1,150 @@
+"""A human driver for reference: the intelligent driver model, with gap acceptance towards people.
+
+The car-following model is the improved IDM of Treiber and Kesting, *Traffic Flow Dynamics*
+(Springer 2013), chapter 11, with the parameters for city traffic that stand there; the IDM is that
+of Treiber, Hennecke and Helbing (Phys. Rev. E 62, 1805, 2000). It knows leaders and stop lines. To
+people such a driver answers by gap acceptance: somebody who is on its way, or will come onto it at
+the present velocity before the driver has passed, is a leader who stands there; who will have left
+before the driver arrives is none, nor is who arrives later than it has passed and its margin.
+
+It is an example of a controller by the door that is open to everybody:
+:mod:`controller.plug_ins.plug_in`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller._jit import Array
+from controller.parameters import require_not_negative, require_positive
+from controller.plug_ins.plug_in import Acceleration, Setup
+from controller.protocol import Observation
+from controller.reference_drivers.people_ahead import people_ahead
+
+_AT_LINE = 0.5  # [m] before a stop line it stands
+_NEARLY = 0.01  # [m] the shortest gap
+_POSITIVE = {
+    "acceleration": "m/s^2",
+    "deceleration": "m/s^2",
+    "exponent": "-",
+    "half_width": "m",
+    "length": "m",
+}
+_SLOWEST = 1.0  # [m/s] with which it counts when it will be somewhere
+
+
+@dataclass(frozen=True)
+class IdmOptions:
+    """Parameters of the driver.
+
+    Attributes:
+        acceleration: a [m/s^2] of driving off.
+        deceleration: b [m/s^2] in comfort.
+        headway: T [s] to whoever is ahead.
+        standing_gap: s_0 [m] to whoever is ahead, at standstill.
+        exponent: delta, of the free acceleration.
+        half_width: [m] from the middle of its way, nearer than which a person's centre is on it.
+        length: [m] of the vehicle, to have passed somebody.
+        margin: [s] between the vehicle and somebody who passes its way after or before it.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
+    """
+
+    acceleration: float = 1.0
+    deceleration: float = 1.5
+    headway: float = 1.0
+    standing_gap: float = 2.0
+    exponent: float = 4.0
+    half_width: float = 1.4
+    length: float = 4.5
+    margin: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, unit in _POSITIVE.items():
+            require_positive(name, getattr(self, name), unit)
+        for name, unit in {"headway": "s", "standing_gap": "m", "margin": "s"}.items():
+            require_not_negative(name, getattr(self, name), unit)
+
+
+class IntelligentDriver:
+    """A car-following driver who accepts gaps between people.
+
+    Args:
+        setup: of the drive.
+        options: of the driver.
+    """
+
+    Options = IdmOptions
+
+    def __init__(self, setup: Setup, options: IdmOptions) -> None:
+        self._setup, self._options = setup, options
+
+    def control(self, seen: Observation) -> Acceleration:
+        """The acceleration towards the leader that asks for the least."""
+        v, o = seen.speed, self._options
+        wanted, cause = self._setup.reference_speed, "free"
+        if seen.speed_limit < wanted:
+            wanted, cause = max(seen.speed_limit, _NEARLY), "speed limit"
+        best = self._acceleration(v, wanted, inf, 0.0), cause
+        leaders = (
+            (seen.leader_gap, seen.leader_speed, "vehicle"),
+            (seen.stop_gap - _AT_LINE + o.standing_gap, 0.0, "stop line"),
+            (self._nearest_person(seen), 0.0, "person"),
+        )
+        for gap, speed, name in leaders:
+            if gap < inf:
+                best = min(best, (self._acceleration(v, wanted, gap, speed), name))
+        hardest = self._setup.force_limit / self._setup.mass
+        return Acceleration(max(best[0], -hardest), best[1])
+
+    def _acceleration(self, v: float, wanted: float, gap: float, leader: float) -> float:
+        """The improved IDM's [m/s^2] at a ``gap`` [m] to somebody with a speed [m/s]."""
+        o = self._options
+        a, b = o.acceleration, o.deceleration
+        needed = o.standing_gap + max(0.0, v * o.headway + v * (v - leader) / (2.0 * sqrt(a * b)))
+        z = needed / max(gap, _NEARLY)
+        if v <= wanted:
+            free: float = a * (1.0 - (v / wanted) ** o.exponent)
+            if z >= 1.0:
+                return a * (1.0 - z * z)
+            return float(free * (1.0 - z ** (2.0 * a / free))) if free > 0.0 else 0.0
+        free = -b * (1.0 - (wanted / v) ** (a * o.exponent / b))
+        return free + a * (1.0 - z * z) if z >= 1.0 else free
+
+    def _nearest_person(self, seen: Observation) -> float:
+        """The distance [m] along the way to who is on it, or takes it first; inf: nobody."""
+        found = people_ahead(seen)
+        if found is None:
+            return inf
+        blocks = self._takes_the_way(*found, seen.speed)
+        return float(found.distance[blocks & found.in_sight].min(initial=inf))
+
+    def _takes_the_way(
+        self, distance: Array, aside: Array, towards: Array, speed: float
+    ) -> NDArray[np.bool_]:
+        """Who is on the way, or comes onto it and not after the vehicle has passed, (n,).
+
+        Args:
+            distance: (n,) [m] along the way.
+            aside: (n,) [m] from its middle.
+            towards: (n,) [m/s] speed towards that.
+            speed: of the vehicle [m/s].
+        """
+        o, pace = self._options, max(speed, _SLOWEST)
+        comes = towards > 0.0
+        per_metre = 1.0 / np.where(comes, towards, 1.0)
+        enters = np.maximum(aside - o.half_width, 0.0) * per_metre
+        leaves = (aside + o.half_width) * per_metre
+        arrives = np.maximum(distance, 0.0) / pace
+        passed = (np.maximum(distance, 0.0) + o.length) / pace
+        in_time = leaves + o.margin < arrives
+        later = enters > passed + o.margin
+        on_it = aside < o.half_width
+        going = np.maximum(o.half_width - aside, 0.0) / np.maximum(-towards, _NEARLY)
+        gone = np.where(comes, in_time, going + o.margin < arrives)
+        return np.asarray(np.where(on_it, ~gone, comes & ~in_time & ~later))

@@ -1,0 +1,270 @@
+"""The kernels of the safety layer: stopping profiles against what people can reach."""
+
+from math import sqrt
+from typing import NamedTuple
+
+from controller._jit import Array, inner
+
+_BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides the last
+
+
+class Limits(NamedTuple):
+    """What the ego and people can do."""
+
+    time_step: float  # dt [s]
+    slowest_decay: float  # what a step leaves of the speed at most: exp(-alpha dt / M)
+    fastest_decay: float  # and at least: 1 - alpha dt / M
+    gain: float  # dt / M [(m/s)/N], what a step of driving adds at most, of braking takes at most
+    braking_gain: float  # [(m/s)/N] what a step of braking takes at least
+    force_limit: float  # u_max [N]
+    force_rate_limit: float  # [N per step]
+    walking_acceleration: float  # a_max [m/s^2]
+    walking_speed: float  # v_max [m/s]
+    setting_out: float  # a_k [m/s^2] towards the kerb, of who is on a sidewalk
+    half_width: float  # of the ego [m]
+    body_radius: float  # R [m]
+    margin: float  # [m]
+
+
+@inner
+def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
+    """The largest force [N] that may act in step i: a command of the reaction time before.
+
+    The commands are those of the past, then ``force``, then full braking.
+    """
+    delay = commands.shape[0] - 1
+    strongest = -c.force_limit
+    for command in range(i - delay, i + 1):
+        if command < 0:
+            f = commands[commands.shape[0] + command]
+        elif command == 0:
+            f = force
+        else:
+            f = force - command * c.force_rate_limit
+        strongest = max(strongest, f)
+    return strongest
+
+
+@inner
+def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, float, float]:
+    """x, y, cos, sin of the front after ``travel`` [m]."""
+    last = way.shape[0] - 1
+    i = min(int(travel / spacing), last)
+    rest = travel - i * spacing
+    x, y, cos, sin = way[i, 0], way[i, 1], way[i, 2], way[i, 3]
+    if i == last:
+        return x + rest * cos, y + rest * sin, cos, sin
+    w = rest / spacing
+    x, y = x + w * (way[i + 1, 0] - x), y + w * (way[i + 1, 1] - y)
+    cos, sin = cos + w * (way[i + 1, 2] - cos), sin + w * (way[i + 1, 3] - sin)
+    size = sqrt(cos * cos + sin * sin)
+    return x, y, cos / size, sin / size
+
+
+@inner
+def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box: Array) -> None:
+    """Fill ``box`` with the rectangle that holds the front from ``low`` to ``high`` of travel [m].
+
+    Columns: x, y, cos, sin of its frame; its extent along and across [m]; the next is not its.
+    """
+    if way.shape[0] == 1:
+        box[0], box[1], box[2], box[3] = way[0, 0], way[0, 1], way[0, 2], way[0, 3]
+        box[4], box[5], box[6], box[7] = low, high, -half, half
+        return
+    x_0, y_0, cos, sin = _pose(way, spacing, high)
+    box[0], box[1], box[2], box[3] = x_0, y_0, cos, sin
+    box[4], box[5], box[6], box[7] = 0.0, 0.0, -half, half
+    for i in range(_BETWEEN):
+        x, y, c, s = _pose(way, spacing, low + i * (high - low) / _BETWEEN)
+        for side in (-half, half):
+            d_x, d_y = x - side * s - x_0, y + side * c - y_0
+            along, across = d_x * cos + d_y * sin, d_y * cos - d_x * sin
+            box[4], box[5] = min(box[4], along), max(box[5], along)
+            box[6], box[7] = min(box[6], across), max(box[7], across)
+
+
+@inner
+def _clearance(travel: float, c: Limits) -> float:
+    """What keeps a centre from the front at both ends of a step, so that in between it is R [m].
+
+    Relative to the front the centre moves by L at most, on a line but for a_max dt^2/8; a chord of
+    length L between two points outside a circle of radius r comes within sqrt(r^2 - L^2/4).
+    """
+    L = travel + c.walking_speed * c.time_step
+    between = sqrt(c.body_radius * c.body_radius + 0.25 * L * L)
+    between += 0.125 * c.walking_acceleration * c.time_step * c.time_step
+    return max(c.body_radius + c.margin, between)
+
+
+@inner
+def _least_travel(speed: float, after: float, dt: float) -> float:
+    """What a braking step covers at least [m]: no solution slows down faster than at its start."""
+    if after >= 0.0:
+        return 0.5 * dt * (speed + after)
+    return 0.5 * dt * speed * speed / (speed - after)
+
+
+@inner
+def _stop(
+    force: float,
+    speed: float,
+    way: Array,
+    spacing: float,
+    c: Limits,
+    commands: Array,
+    boxes: Array,
+) -> tuple[int, float]:
+    """Fill where the front may have been up to each instant: steps, way [m]; -1 steps: no stop.
+
+    In each step the front is between where it would be under full braking from now on and where
+    it is at most under ``force`` first: so the boxes grow with the force. Row j is for the end of
+    step j - 1 and the start of step j, and keeps the clearance that both of them need; -1: it
+    stands in both, and nobody can be met.
+    """
+    dt, delay = c.time_step, commands.shape[0] - 1
+    low = high = 0.0
+    slowest = fastest = speed
+    _sweep(way, spacing, 0.0, 0.0, c.half_width, boxes[0])
+    boxes[0, 8] = -1.0
+    for j in range(boxes.shape[0] - 1):
+        if fastest <= 0.0 and j > delay and _strongest(j, force, commands, c) <= 0.0:
+            return j, high
+        f = _strongest(j, force, commands, c)
+        after = max(0.0, c.slowest_decay * fastest + f * (c.gain if f > 0.0 else c.braking_gain))
+        travel = 0.5 * dt * (fastest + max(fastest, after))
+        clearance = _clearance(travel, c) if travel > 0.0 else -1.0
+        _sweep(way, spacing, low, high + travel, c.half_width, boxes[j + 1])
+        boxes[j, 8], boxes[j + 1, 8] = max(boxes[j, 8], clearance), clearance
+        slower = c.fastest_decay * slowest - c.gain * c.force_limit
+        if slowest > 0.0:
+            low += _least_travel(slowest, slower, dt)
+        slowest = max(0.0, slower)
+        high, fastest = high + travel, after
+    return -1, high
+
+
+@inner
+def _touches(
+    box: Array, x: float, y: float, radius: float, error: float, slack: float, c: Limits
+) -> bool:
+    """Whether a body whose centre is within ``radius`` of (x, y) may meet the front in its box.
+
+    (x, y) is off by ``error`` [m] at most.
+    """
+    d_x, d_y = x - box[0], y - box[1]
+    along, across = d_x * box[2] + d_y * box[3], d_y * box[2] - d_x * box[3]
+    behind = c.walking_speed * c.time_step + error  # it gets there within the step
+    if along + radius < box[4] - behind:
+        return False  # it can only walk into the side
+    off = max(box[4] - along, 0.0, along - box[5])
+    aside = max(box[6] - across, 0.0, across - box[7])
+    reach = radius + (box[8] + error) + slack
+    touched: bool = off * off + aside * aside <= reach * reach
+    return touched
+
+
+@inner
+def _may_meet(
+    x: float,
+    y: float,
+    v_x: float,
+    v_y: float,
+    error: float,
+    to_x: float,
+    to_y: float,
+    depth: float,
+    steps: int,
+    slack: float,
+    c: Limits,
+    boxes: Array,
+) -> bool:
+    """Whether somebody seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
+
+    Who accelerates by at most a_max is within a_max t^2/2 of x + v t, and who walks at most at
+    v_max is within v_max t of x. Who is on a sidewalk, ``depth`` [m] from the kerb in the direction
+    (to_x, to_y), gets no farther in this direction than :func:`towards_kerb` says.
+    """
+    for j in range(steps + 1):
+        box = boxes[j]
+        if box[8] < 0.0:
+            continue
+        t = j * c.time_step
+        accelerated = 0.5 * c.walking_acceleration * t * t
+        if not _touches(box, x + v_x * t, y + v_y * t, accelerated, error, slack, c):
+            continue
+        if not _touches(box, x, y, c.walking_speed * t, error, slack, c):
+            continue
+        if depth <= error:
+            return True
+        pace = v_x * to_x + v_y * to_y
+        nearer = towards_kerb(t, pace, depth - error, c.setting_out, c.walking_acceleration)
+        between = _nearest(box, to_x, to_y) - (x * to_x + y * to_y)
+        if between - nearer <= box[8] + error + slack:
+            return True
+    return False
+
+
+@inner
+def towards_kerb(t: float, pace: float, depth: float, setting_out: float, most: float) -> float:
+    """How far [m] somebody on a sidewalk gets towards its kerb, and beyond it, within ``t`` [s].
+
+    Args:
+        t: from now on.
+        pace: towards the kerb, now [m/s].
+        depth: to the kerb [m], > 0.
+        setting_out: of the acceleration towards the kerb at most [m/s^2] until they get there ...
+        most: ... and from then on.
+    """
+    fastest = sqrt(pace * pace + 2.0 * setting_out * depth)
+    there = (fastest - pace) / setting_out
+    if t <= there:
+        return pace * t + 0.5 * setting_out * t * t
+    rest = t - there
+    return depth + fastest * rest + 0.5 * most * rest * rest
+
+
+@inner
+def _nearest(box: Array, to_x: float, to_y: float) -> float:
+    """The least of what a box's points have in the direction (to_x, to_y) [m]."""
+    along, across = to_x * box[2] + to_y * box[3], to_y * box[2] - to_x * box[3]
+    least: float = box[0] * to_x + box[1] * to_y
+    least += min(along * box[4], along * box[5]) + min(across * box[6], across * box[7])
+    return least
+
+
+@inner
+def is_safe(
+    force: float,
+    speed: float,
+    way: Array,
+    spacing: float,
+    people: tuple[Array, ...],
+    c: Limits,
+    commands: Array,
+    boxes: Array,
+    slack: float,
+) -> bool:
+    """Whether after ``force`` the ego can stop without moving into anybody.
+
+    ``people`` are their positions, velocities, errors and kerbs.
+    """
+    position, velocity, errors, kerbs = people
+    steps, travel = _stop(force, speed, way, spacing, c, commands, boxes)
+    if steps < 0:
+        return False
+    widest = 0.0
+    for j in range(steps + 1):
+        widest = max(widest, boxes[j, 8])
+    farthest = travel + c.half_width + widest + slack + c.walking_speed * steps * c.time_step
+    for i in range(position.shape[0]):
+        x, y, reach = position[i, 0], position[i, 1], farthest + errors[i]
+        d_x, d_y = x - way[0, 0], y - way[0, 1]
+        if d_x * d_x + d_y * d_y > reach * reach:
+            continue
+        to_x, to_y, depth = 0.0, 0.0, 0.0
+        if i < kerbs.shape[0]:
+            to_x, to_y, depth = kerbs[i, 0], kerbs[i, 1], kerbs[i, 2]
+        v_x, v_y, error = velocity[i, 0], velocity[i, 1], errors[i]
+        if _may_meet(x, y, v_x, v_y, error, to_x, to_y, depth, steps, slack, c, boxes):
+            return False
+    return True

@@ -1,0 +1,117 @@
+"""The controller FMU that a configuration names: read, fitted to its profile, described."""
+
+from __future__ import annotations
+
+import dataclasses
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from controller import Setup
+from fmus import (
+    ControllerProfile,
+    FmuError,
+    PreparedController,
+    choose_controller_profile,
+    describe,
+    prepare_controller,
+    read_controller_profile,
+)
+from giveway.config.run_config import EgoRunConfig
+from giveway.config.tables.basics import DEFAULT_SPEED
+from giveway.errors import ControlError
+
+
+def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
+    """What a controller is told of its drive.
+
+    Args:
+        config: of the ego; its reference speed is a number by the time that it drives.
+        time_step: of the co-simulation [s].
+    """
+    vehicle, regulation = config.vehicle, config.regulation
+    speed = config.reference_speed
+    return Setup(
+        time_step=time_step,
+        mass=vehicle.mass,
+        friction=vehicle.friction,
+        reference_speed=DEFAULT_SPEED if isinstance(speed, str) else speed,
+        safe_distance=regulation.safe_distance,
+        force_limit=config.vehicle.force_limit,
+        comfortable_deceleration=regulation.comfortable_deceleration,
+    )
+
+
+def prepared(config: EgoRunConfig, time_step: float) -> PreparedController:
+    """The controller FMU of one ego, with the run's settings and the user's options.
+
+    Args:
+        config: of the ego.
+        time_step: of the co-simulation [s].
+
+    Raises:
+        ControlError: the file or its profile cannot be read, or they do not fit each other.
+    """
+    try:
+        return prepare_controller(
+            Path(config.controller),
+            step_size=time_step,
+            setup=setup_of(config, time_step)._asdict(),
+            profile=_profile(config),
+            start_values=_start_values(config),
+        )
+    except FmuError as error:
+        raise ControlError(str(error)) from error
+
+
+def fmu_hash(path: str) -> str:
+    """The SHA-256 of a controller FMU.
+
+    Raises:
+        ControlError: it cannot be read.
+    """
+    try:
+        return sha256(Path(path).read_bytes()).hexdigest()
+    except OSError as error:
+        raise ControlError(
+            f"controller = '{path}': cannot be read ({error.strerror}); expected an FMU"
+        ) from None
+
+
+def fmu_described(config: EgoRunConfig) -> dict[str, Any]:
+    """What the manifest says of a controller FMU.
+
+    Raises:
+        ControlError: it cannot be read.
+    """
+    path = Path(config.controller)
+    try:
+        profile = choose_controller_profile(path, _profile(config))
+        return {
+            **dataclasses.asdict(describe(path)),
+            "name": config.controller,
+            "profile": profile.model_dump(exclude_unset=True),
+            "options": dict(config.controller_options),
+        }
+    except FmuError as error:
+        raise ControlError(str(error)) from error
+
+
+def _start_values(config: EgoRunConfig) -> dict[str, Any]:
+    """The options, which are parameters of the FMU.
+
+    Raises:
+        ControlError: one is a table.
+    """
+    for name, value in config.controller_options.items():
+        if isinstance(value, dict) or value is None:
+            raise ControlError(
+                f"[controller_options] {name} = {value}: expected a number, true, false, a text or "
+                f"a list of numbers for a parameter of {config.controller}"
+            )
+    return dict(config.controller_options)
+
+
+def _profile(config: EgoRunConfig) -> ControllerProfile | None:
+    named = config.controller_profile
+    return read_controller_profile(Path(named)) if named else None

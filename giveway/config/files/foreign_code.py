@@ -1,0 +1,138 @@
+"""The code of other packages that a configuration names."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from giveway.config.files.controller_fmu import fmu_described, fmu_hash, prepared
+from giveway.config.run_config import PAPER_STEP
+from giveway.errors import ConfigError
+from giveway.plug_ins.finding import find, is_fmu, load_class, shown
+from giveway.plug_ins.options import plain
+from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
+
+if TYPE_CHECKING:
+    from giveway.config.run_config import EgoRunConfig, RunConfig
+
+
+class Named(NamedTuple):
+    """One plug-in that a run has.
+
+    Attributes:
+        socket: that it is for.
+        whose: the ego's id, or "the crowd".
+        name: as the user wrote it; perhaps a path to an FMU.
+        options: as the user has set them.
+        ego: whose controller it is; None: it is none.
+    """
+
+    socket: Socket
+    whose: str
+    name: str
+    options: Mapping[str, Any]
+    ego: EgoRunConfig | None = None
+
+    @property
+    def key(self) -> str:
+        """By which the inputs of a study's cell know it, wherever a file lies."""
+        return f"{self.socket.what} of {self.whose}: {shown(self.name)}"
+
+    @property
+    def sha256(self) -> str:
+        """Of its package, or of its file.
+
+        Raises:
+            ControlError: it is not there.
+        """
+        if is_fmu(self.name):
+            return fmu_hash(self.name)
+        return find(self.name, self.socket).sha256
+
+
+_PLACES = ((CONTROLLER, "in the controller at"), (MODEL, "in the crowd's step from"))
+"""As a heartbeat tells them."""
+
+
+def foreign_code(config: RunConfig) -> list[Named]:
+    """All plug-ins of a run: of its egos, and of its crowd."""
+    named = [
+        Named(CONTROLLER, ego.ego_id, ego.controller, ego.controller_options, ego)
+        for ego in config.each_ego()
+        if ego.plugged_in
+    ]
+    if config.crowd.plugged_in:
+        named.append(Named(MODEL, "the crowd", config.crowd.model, config.model_options))
+    return named
+
+
+def code_hashes(
+    config: RunConfig, sockets: Collection[Socket] = (CONTROLLER, MODEL)
+) -> dict[str, str]:
+    """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
+
+    Args:
+        config: of the run.
+        sockets: those that count.
+
+    Raises:
+        ControlError: one is not installed.
+    """
+    code = [one for one in foreign_code(config) if one.socket in sockets]
+    return {one.key: one.sha256 for one in code}
+
+
+def named_in(failure: str, config: RunConfig) -> str:
+    """What is said of a process that died in somebody else's code, with that code's name.
+
+    Args:
+        failure: as the supervisor tells it.
+        config: of the run.
+    """
+    code = foreign_code(config)
+    for socket, place in _PLACES:
+        names = dict.fromkeys(shown(one.name) for one in code if one.socket is socket)
+        if names:
+            these = " or ".join(f"'{name}'" for name in names)
+            failure = failure.replace(place, f"in the {socket.what} {these} at")
+    return failure
+
+
+def require_code(config: RunConfig, time_step: float = PAPER_STEP) -> None:
+    """Make sure, before anything runs, that every plug-in is there and takes its options.
+
+    Args:
+        config: of the run.
+        time_step: of the co-simulation [s].
+
+    Raises:
+        ConfigError: one has no such option.
+        ControlError: one is not installed, or cannot be imported or read.
+    """
+    for one in foreign_code(config):
+        if one.ego is not None and is_fmu(one.name):
+            prepared(one.ego, time_step)
+        else:
+            _loaded(one)
+
+
+def provenance(config: RunConfig) -> dict[str, dict[str, dict[str, Any]]]:
+    """For the manifest: distribution, version, hash and all options of each plug-in."""
+    told: dict[str, dict[str, dict[str, Any]]] = {}
+    for one in foreign_code(config):
+        if one.ego is not None and is_fmu(one.name):
+            described = fmu_described(one.ego)
+        else:
+            _, options = _loaded(one)
+            described = find(one.name, one.socket).described() | {"options": plain(options)}
+        told.setdefault(one.socket.manifest, {})[one.whose] = described
+    return told
+
+
+def _loaded(one: Named) -> tuple[Any, Any]:
+    try:
+        return load_class(one.name, one.socket, one.options)
+    except ConfigError as error:
+        whose = one.whose if one.socket is MODEL else f"ego '{one.whose}'"
+        error.args = (f"{whose}: {error}",)
+        raise

@@ -1,0 +1,272 @@
+"""From layers of settings (scenario, TOML file, flags) to one validated configuration, and back."""
+
+import difflib
+import os
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+
+from giveway.config.files.schema_names import RUN, with_schema
+from giveway.config.files.toml import read_toml_file
+from giveway.config.option import Section, declared, expectation
+from giveway.config.renamed import advice, renamed_in
+from giveway.config.run_config import RunConfig
+from giveway.errors import ConfigError
+from giveway.plug_ins.finding import same_name
+from giveway.plug_ins.sockets import CONTROLLER, SOCKETS
+
+Location = tuple[str, ...]
+
+
+PLUGGED = {socket.options: socket for socket in SOCKETS}
+"""The tables whose keys are somebody else's (--set)."""
+
+NO_FLAGS = frozenset({"egos", "measure", "flow", *PLUGGED})
+"""Lists of tables, and those."""
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Settings from one origin; a later layer overrides an earlier one key by key."""
+
+    origin: str
+    values: Mapping[str, Any]
+    from_flags: bool = False
+    results: Path | None = None  # the folder of results that it was read from; None: from none
+
+    def holds(self, location: Location) -> bool:
+        """Whether this layer sets the key at ``location``."""
+        node: Any = self.values
+        for key in location:
+            if not isinstance(node, Mapping) or key not in node:
+                return False
+            node = node[key]
+        return True
+
+    def name(self, location: Location) -> str:
+        """How the user calls the key at ``location`` in this layer."""
+        if self.from_flags:
+            if len(location) > 1 and location[0] in PLUGGED:
+                return f"{PLUGGED[location[0]].set_flag} {location[1]}"
+            return flag_of(location)
+        *table, key = location
+        heading = f"[{'.'.join(table)}] " if table else ""
+        return f"{self.origin}: {heading}{key}"
+
+
+@dataclass(frozen=True)
+class Option:
+    """One leaf of the configuration, as the command line and the documentation present it."""
+
+    location: Location
+    field: FieldInfo
+
+    @property
+    def extra(self) -> dict[str, Any]:
+        """Unit, flag and limits as declared beside the field."""
+        return declared(self.field)
+
+    @property
+    def unit(self) -> str | None:
+        """The unit, or None for a name, a choice or a switch."""
+        return self.extra.get("unit")
+
+    @property
+    def flag(self) -> str:
+        """The command line's name of this option."""
+        return self.extra.get("flag") or "--" + "-".join(self.location).replace("_", "-")
+
+
+def options(model: type[Section] = RunConfig, prefix: Location = ()) -> Iterator[Option]:
+    """Every leaf option of the configuration, in declaration order."""
+    for name, field in model.model_fields.items():
+        if name in NO_FLAGS:
+            continue
+        annotation = field.annotation
+        if isinstance(annotation, type) and issubclass(annotation, Section):
+            yield from options(annotation, (*prefix, name))
+        else:
+            yield Option((*prefix, name), field)
+
+
+def flag_of(location: Location) -> str:
+    """The flag of the option at ``location``."""
+    known = {option.location: option.flag for option in options()}
+    return known.get(location, "--" + "-".join(location).replace("_", "-"))
+
+
+def read_toml(path: Path) -> Layer:
+    """The settings in a TOML file; paths in it are relative to its folder.
+
+    Raises:
+        ConfigError: the file is missing, unreadable or not TOML.
+    """
+    values = read_toml_file(path, "a giveway configuration")
+    results = results_of(path)
+    return Layer(str(path), anchored(values, path.parent.absolute()), results=results)
+
+
+def results_of(path: Path) -> Path | None:
+    """The results folder that a file of settings was written into; None: it is a user's."""
+    written = path.name in {"config.toml", "study.toml"}
+    return path.parent if written and path.with_name("manifest.json").is_file() else None
+
+
+def read_toml_text(text: str, origin: str) -> Layer:
+    """The settings in a TOML text that giveway itself has written."""
+    return Layer(origin, tomllib.loads(text))
+
+
+def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """``values`` with those files that exist relative to ``folder`` named absolutely."""
+    tables = [values]
+    if isinstance(values.get("egos"), list):
+        tables += [ego for ego in values["egos"] if isinstance(ego, dict)]
+    places: list[tuple[Any, str]] = [(values, "scenario"), (values.get("crowd"), "preset")]
+    places += [(table, key) for table in tables for key in ("controller", "controller_profile")]
+    places += [(table.get("perception"), "preset") for table in tables]
+    places += [(table.get("vehicle"), key) for table in tables for key in ("fmu", "profile")]
+    for table, key in places:
+        if isinstance(table, dict) and isinstance(table.get(key), str):
+            named = Path(table[key])
+            is_path = len(named.parts) > 1 or named.suffix  # a bare word is a bundled name
+            if is_path and os.path.exists(folder / named):  # noqa: PTH110 - also of too long a name
+                table[key] = str(folder / named)
+    return values
+
+
+def merge(layers: Sequence[Layer]) -> dict[str, Any]:
+    """One nested dictionary in which the last layer to set a key wins."""
+    merged: dict[str, Any] = {}
+    for layer in layers:
+        for table, socket in PLUGGED.items():
+            before = same_name(_at(merged, socket.location))
+            named = same_name(_at(layer.values, socket.location))
+            if before is not None and named not in {None, before}:
+                merged.pop(table, None)  # they are those of another one
+                if socket is CONTROLLER:
+                    merged.pop("controller_profile", None)
+        _merge_into(merged, layer.values)
+    return merged
+
+
+def _at(values: Any, location: Location) -> Any:
+    """The value at ``location``; None where there is none."""
+    for key in location:
+        values = values.get(key) if isinstance(values, Mapping) else None
+    return values
+
+
+def undotted(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings as tables: ``{"crowd.preset": p}`` is ``{"crowd": {"preset": p}}``."""
+    tables: dict[str, Any] = {}
+    for name, value in settings.items():
+        nested: Any = value
+        for key in reversed(str(name).split(".")):
+            nested = {key: nested}
+        _merge_into(tables, nested)
+    return tables
+
+
+def _merge_into(target: dict[str, Any], values: Mapping[str, Any]) -> None:
+    for key, value in values.items():
+        if isinstance(value, Mapping) and isinstance(target.get(key), dict):
+            _merge_into(target[key], value)
+        else:
+            target[key] = dict(value) if isinstance(value, Mapping) else value
+
+
+def build_config(layers: Sequence[Layer]) -> RunConfig:
+    """The validated configuration that the layers amount to.
+
+    Raises:
+        ConfigError: one line naming origin, key, value, what was expected and, for an unknown
+            key, the one probably meant.
+    """
+    for layer in layers:
+        for old, new in renamed_in(layer.values):
+            instead = advice(new, as_flag=layer.from_flags)
+            raise ConfigError(f"{layer.name(old)}: no longer exists; {instead}")
+    merged = merge(layers)
+    try:
+        return RunConfig.model_validate(merged)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise ConfigError(_explain(first, layers)) from None
+
+
+def _explain(error: Any, layers: Sequence[Layer]) -> str:
+    location = _known_part(tuple(str(part) for part in error["loc"]))
+    if len(location) > 1 and location[0] in PLUGGED:
+        location = location[:2]
+    holders = [layer for layer in layers if location and layer.holds(location)]
+    name = holders[-1].name(location) if holders else ".".join(location) or "configuration"
+    if error["type"] == "extra_forbidden":
+        return f"{name}: unknown key; {_did_you_mean(location)}"
+    if error["type"] == "value_error":
+        origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
+        table = f"[{'.'.join(location)}] " if location else ""
+        return f"{origin}{table}{error['ctx']['error']}"  # of several keys
+    if len(location) > 1 and location[0] in PLUGGED:
+        return f"{name} = {error['input']!r}: expected a finite number, a word, a list or a table"
+    option = next((o for o in options() if o.location == location), None)
+    if option is None:
+        return f"{name} = {error['input']!r}: expected a table of options"
+    return f"{name} = {error['input']!r}: {expectation(error, option.field)}"
+
+
+def _known_part(location: Location) -> Location:
+    """``location`` without what pydantic appends: positions in tuples, branches of unions."""
+    known = {option.location for option in options()}
+    for end in range(len(location), 0, -1):
+        if location[:end] in known:
+            return location[:end]
+    return location
+
+
+def _did_you_mean(location: Location) -> str:
+    siblings = sorted(
+        {o.location[len(location) - 1] for o in options() if o.location[:-1] == location[:-1]}
+        | ({o.location[0] for o in options()} if len(location) == 1 else set())
+    )
+    close = difflib.get_close_matches(location[-1], siblings, n=1, cutoff=0.5)
+    return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(siblings)}"
+
+
+def dump_toml(config: RunConfig) -> str:
+    """The whole configuration as TOML, each key followed by its unit and meaning."""
+    document = tomlkit.document()
+    for entry in options():
+        *tables, key = entry.location
+        node: Any = document
+        value: Any = config
+        for table in tables:
+            node = node.setdefault(table, tomlkit.table())
+            value = getattr(value, table)
+        value = getattr(value, key)
+        if value is None:
+            continue  # TOML has no null: an absent key is the default
+        item = tomlkit.item(list(value) if isinstance(value, tuple) else value)
+        unit = f"[{entry.unit}] " if entry.unit else ""
+        node.add(key, item.comment(f"{unit}{entry.field.description}"))
+    for table in PLUGGED:
+        if own := getattr(config, table):
+            document.add(table, tomlkit.item(own))
+    crowd: Any = document["crowd"]
+    for where, key, entries in (
+        (crowd, "flow", [flow.settings() for flow in config.crowd.flow]),
+        (document, "egos", list(config.egos)),
+        (document, "measure", [measure.settings() for measure in config.measure]),
+    ):
+        if entries:
+            array = tomlkit.aot()
+            for settings in entries:
+                array.append(tomlkit.item(settings))
+            where.add(key, array)
+    return with_schema(tomlkit.dumps(document), RUN)

@@ -1,0 +1,153 @@
+"""The numbers of the pedestrian model by name, or from a preset file (TOML) of your own."""
+
+import difflib
+import functools
+from collections.abc import Mapping
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from giveway.config.files.schema_names import PRESET, with_schema
+from giveway.config.files.toml import read_toml_file
+from giveway.errors import ConfigError
+from pedestrian_model import PRESETS, ParameterError, VciParameters, require_steady
+
+SUFFIX = ".toml"
+NAMES = tuple(field.name for field in fields(VciParameters))
+"""The parameters of the model, in the order of their declaration."""
+
+_TABLES = frozenset({"name", "base", "parameters", "provenance"})
+
+
+def parameters_of(preset: str) -> VciParameters:
+    """The parameters of a preset: one that is built in, or a preset file.
+
+    Args:
+        preset: a name (SIM, TABLE2) or the path of a ``.toml`` file.
+
+    Raises:
+        ConfigError: naming the preset or the file, the key, the value and what was expected.
+    """
+    if preset in PRESETS:
+        return PRESETS[preset]
+    require_preset_name(preset)
+    path = Path(preset)
+    try:
+        status = path.stat()
+    except OSError as error:
+        raise ConfigError(
+            f"{path}: no preset file can be read there ({error.strerror}); see giveway calibrate"
+        ) from error
+    return _read(path, (status.st_mtime_ns, status.st_size))
+
+
+def require_steady_preset(preset: str, time_step: float, where: str) -> None:
+    """Make sure that people do not tremble by the parameters of ``preset``.
+
+    Args:
+        preset: a name or a file, as for :func:`parameters_of`.
+        time_step: of the crowd [s].
+        where: the option that names the preset; the message begins with it.
+
+    Raises:
+        ConfigError: they do, or the preset cannot be read.
+    """
+    try:
+        require_steady(parameters_of(preset), time_step)
+    except ParameterError as error:
+        raise ConfigError(
+            f"{where} {preset}: {error}; correct the preset, or fit it anew with giveway calibrate"
+        ) from error
+
+
+def require_preset_name(preset: str) -> None:
+    """Make sure that ``preset`` may name a preset; whether its file is there is not looked at.
+
+    Raises:
+        ConfigError: it cannot.
+    """
+    if preset in PRESETS or preset.endswith(SUFFIX):
+        return
+    close = difflib.get_close_matches(preset.upper(), PRESETS, n=1)
+    hint = f"; did you mean '{close[0]}'?" if close else ""
+    expected = ", ".join(PRESETS)
+    raise ConfigError(
+        f"preset '{preset}': expected one of {expected}, or a preset file ({SUFFIX}){hint}"
+    )
+
+
+def require_parameter(name: str, where: str) -> None:
+    """Make sure that ``name`` is a parameter of the model.
+
+    Raises:
+        ConfigError: it is not; the message begins with ``where``.
+    """
+    if name not in NAMES:
+        close = difflib.get_close_matches(name, NAMES, n=1)
+        hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(NAMES)}"
+        raise ConfigError(f"{where} {name}: unknown parameter; {hint}")
+
+
+def is_preset_file(preset: str) -> bool:
+    """Whether ``preset`` names a file, not a preset that is built in."""
+    return preset not in PRESETS and preset.endswith(SUFFIX)
+
+
+def preset_text(name: str, parameters: VciParameters, provenance: Mapping[str, Any]) -> str:
+    """A preset file: every parameter, and where the numbers come from.
+
+    Args:
+        name: of the preset.
+        parameters: all of them are written, to the last digit.
+        provenance: what was fitted, on what, how well: text, numbers, lists of them.
+    """
+    document = tomlkit.document()
+    document.add(tomlkit.comment("Parameters of the VCI pedestrian model; giveway's docs tell"))
+    document.add(tomlkit.comment("their meaning: [crowd] preset and [perception] preset take it."))
+    document["name"] = name
+    document["parameters"] = asdict(parameters)
+    document["provenance"] = dict(provenance)
+    return with_schema(tomlkit.dumps(document), PRESET)
+
+
+@functools.lru_cache(maxsize=64)
+def _read(path: Path, _stamp: object) -> VciParameters:
+    values = read_toml_file(path, "a preset file")
+    unknown = sorted(set(values) - _TABLES)
+    if unknown:
+        raise ConfigError(
+            f"{path}: unknown key '{unknown[0]}'; expected {', '.join(sorted(_TABLES))}"
+        )
+    given = values.get("parameters", {})
+    if not isinstance(given, dict):
+        raise ConfigError(f"{path}: parameters = {given!r}: expected a table [parameters]")
+    known = {**_base(path, values.get("base")), **given}
+    _require_names(path, known)
+    try:
+        return VciParameters(**known)
+    except ParameterError as error:
+        raise ConfigError(f"{path}: [parameters] {error}") from error
+
+
+def _base(path: Path, base: object) -> dict[str, float]:
+    """What a file that names a ``base`` need not repeat."""
+    if base is None:
+        return {}
+    if not isinstance(base, str) or base not in PRESETS:
+        raise ConfigError(
+            f"{path}: base = {base!r}: expected one of {', '.join(PRESETS)}, or no such key"
+        )
+    return asdict(PRESETS[base])
+
+
+def _require_names(path: Path, given: Mapping[str, object]) -> None:
+    for name in given:
+        require_parameter(name, f"{path}: [parameters]")
+    missing = [name for name in NAMES if name not in given]
+    if missing:
+        raise ConfigError(
+            f"{path}: [parameters] {missing[0]} is missing; give all {len(NAMES)} parameters, or "
+            'take the others from a preset: base = "SIM"'
+        )

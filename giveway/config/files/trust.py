@@ -1,0 +1,100 @@
+"""Code that a results folder names: what is imported without the user's own word, and what is not.
+
+Somebody else's results are data. A name that an installed package declares may be followed, if the
+package is the one that the results were made with; ``module:Class`` could be anything installed,
+and is imported only if the user has named it too.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from giveway.config.files.foreign_code import Named, foreign_code
+from giveway.config.files.layers import Layer
+from giveway.config.run_config import RunConfig
+from giveway.errors import ConfigError
+from giveway.plug_ins.finding import find, is_fmu, is_reference, same_name, shown
+from giveway.plug_ins.sockets import Socket
+
+
+def require_trusted(
+    config: RunConfig, layers: Sequence[Layer], trusted: Collection[str] = ()
+) -> None:
+    """Make sure that no results folder alone decides on what is imported.
+
+    Args:
+        config: what the layers amount to.
+        layers: of settings.
+        trusted: code that the user has named apart from the layers.
+
+    Raises:
+        ConfigError: one does, or names code that has changed since.
+        ControlError: something is not installed.
+    """
+    for code in sorted(foreign_code(config), key=lambda code: code.key):
+        socket, name = code.socket, same_name(code.name)
+        naming = [layer for layer in layers if name in _named_in(layer.values, socket)]
+        said = name in {same_name(one) for one in trusted}
+        said |= any(layer.results is None for layer in naming)
+        told = [(layer.origin, layer.results) for layer in naming if layer.results is not None]
+        if not told or (said and not is_fmu(name)):
+            continue
+        origin, folder = told[0]
+        if not said and (is_reference(name) or is_fmu(name)):
+            raise ConfigError(
+                f"{origin}: {socket.setting} = '{name}': a results folder names code, which is "
+                f"imported only if you say so: run it with {socket.flag} {name}, rerun and report "
+                f"a study with --trust {name}"
+            )
+        _require_same(code, origin, folder)
+
+
+def _require_same(code: Named, origin: str, folder: Path) -> None:
+    socket, name = code.socket, code.name
+    now = code.sha256
+    for known in hashes_in(folder, name, socket):
+        if known != now and is_fmu(name):
+            raise ConfigError(
+                f"{origin}: {socket.setting} = '{name}': the results were made with another "
+                f"content of this file (SHA-256 {known[:12]}, now {now[:12]}); put that one back, "
+                "or give the new one a name of its own"
+            )
+        if known != now:
+            found = find(name, socket)
+            raise ConfigError(
+                f"{origin}: {socket.setting} = '{name}': the results were made with another "
+                f"content of {found.distribution} (SHA-256 {known[:12]}, installed is "
+                f"{found.version}, {now[:12]}); install that one, or name it yourself "
+                f"with {socket.flag} {name} (of studies --trust {name})"
+            )
+
+
+def hashes_in(folder: Path, name: str, socket: Socket) -> set[str]:
+    """The SHA-256 of a plug-in that the manifest of a results folder tells; perhaps none."""
+    try:
+        manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+        told = manifest.get(socket.manifest, {}).values()  # of a run
+        inputs = [cell["inputs"] for cell in manifest.get("cells", ())]  # of a study
+        return {str(one["sha256"]) for one in told if same_name(one["name"]) == same_name(name)} | {
+            str(hash_)
+            for files in inputs
+            for key, hash_ in files.items()
+            if key.startswith(f"{socket.what} of ") and key.endswith(f": {shown(name)}")
+        }
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return set()
+
+
+def _named_in(values: Mapping[str, Any], socket: Socket) -> set[str]:
+    """What settings plug in, of the run and of its egos."""
+    egos = values.get("egos")
+    named = set()
+    for node in (values, *(egos if isinstance(egos, list | tuple) else ())):
+        for key in socket.location:
+            node = node.get(key) if isinstance(node, Mapping) else None
+        if isinstance(node, str):
+            named.add(same_name(node))
+    return named

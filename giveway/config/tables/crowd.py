@@ -1,0 +1,209 @@
+"""The crowd's table of the configuration.
+
+Defaults are the reproduction of Yang & Özgüner 2019 (arXiv 1907.05178), their table 1, read as
+docs/reproduction.md explains.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Final, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from giveway.config.option import (
+    Displacement,
+    Preset,
+    Rectangle,
+    Section,
+    TextOrNumber,
+    option,
+)
+from giveway.config.plug_in_names import BUNDLED_MODELS, ModelName
+from giveway.config.reasons import GAP, MILLIMETRE
+from giveway.config.tables.flows import FlowConfig, read_flows
+from giveway.config.tables.people import DISTRACTED, SHARE, PeopleConfig
+
+WALKING = "the model's people walk with 2.5 m/s at most, and somebody below 0.01 m/s stands"
+ENCOUNTERS: Final = "encounters"
+_NEAREST = 0.01  # [m] a shorter side of an area, or a shorter walk, is none
+_FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
+
+
+class CrowdConfig(Section):
+    """The pedestrians that giveway adds: how many, where, where to and how fast."""
+
+    pedestrians: int = option(
+        0,
+        "persons",
+        "pedestrians to add",
+        flag="--pedestrians",
+        ge=0,
+        le=20_000,
+        because="nobody fits more of them round one vehicle",
+    )
+    sampler: Literal["area", "encounters"] = option(
+        "area",
+        None,
+        "area: they start anywhere in spawn_area; encounters: in groups that meet the ego's free "
+        "drive from both sides, whatever spawn_area, walk and two_sided say",
+        flag="--sampler",
+    )
+    spawn_area: Rectangle = option(
+        (23.3, -23.4, 33.2, -12.0),
+        "m",
+        "x_min,y_min,x_max,y_max of the rectangle they start in",
+        flag="--spawn-area",
+    )
+    walk: Displacement = option(
+        (0.0, 30.0), "m", "dx,dy from each one's start to the destination", flag="--walk"
+    )
+    two_sided: bool = option(
+        False, None, "every second pedestrian comes from the other side", flag="--two-sided"
+    )
+    desired_speed_mean: float = option(
+        1.394, "m/s", "mean desired speed", gt=0, le=2.5, least=0.01, because=WALKING
+    )
+    desired_speed_sd: float = option(
+        0.26,
+        "m/s",
+        "its standard deviation",
+        ge=0,
+        le=2,
+        because="the speeds of people who walk are closer to each other",
+    )
+    desired_speed_min: float = option(
+        0.5, "m/s", "its lower truncation", gt=0, le=2.5, least=0.01, because=WALKING
+    )
+    desired_speed_max: float = option(
+        2.2, "m/s", "its upper truncation", gt=0, le=2.5, least=0.01, because=WALKING
+    )
+    groups: float = option(
+        0.0,
+        None,
+        "share of the added people who walk in groups of two to five; encounters are groups anyway",
+        flag="--groups",
+        ge=0,
+        le=1,
+        because=SHARE,
+    )
+    acceleration_noise: float = option(
+        0.0,
+        "m/s^2",
+        "random acceleration in each step (standard deviation per axis, cut off at twice that)",
+        ge=0,
+        le=5,
+        because="the model's people accelerate with 5 m/s^2 at most",
+    )
+    minimum_spacing: float = option(
+        0.5, "m", "no two start closer than this", ge=0, le=10, least=MILLIMETRE, because=GAP
+    )
+    host_edge: str = option(
+        "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
+    )
+    model: ModelName = option(
+        "vci",
+        None,
+        "what moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance (they stop "
+        "for vehicles that come too soon); orca (van den Berg et al. 2011); constant-velocity; two "
+        "of JuPedSim's, jupedsim:...; or somebody else's, by the name that a package declares or "
+        "as module:Class. What controllers believe in is [perception] model",
+        flag="--crowd-model",
+    )
+    preset: Preset = option(
+        "SIM",
+        None,
+        "parameters of the VCI model: SIM, TABLE2, or a preset file (TOML)",
+        min_length=1,
+    )
+    zone: TextOrNumber = option(
+        "50",
+        None,
+        "where the scenario's own walkers follow the VCI model: metres round each ego, "
+        "'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
+        flag="--zone",
+    )
+    walls: bool = option(
+        False,
+        None,
+        "the edges of sidewalks, crossings and walkingareas hold people back",
+        flag="--walls",
+    )
+    detour: bool = option(
+        True,
+        None,
+        "people see the way round a standing car; else they may walk into its side and stay there",
+    )
+    creep: bool = option(
+        True,
+        None,
+        "below 0.2 m/s the angle of a car's force has its true speed; else it stands for that too",
+    )
+    threads: int = option(
+        1,
+        None,
+        "processor threads that step a crowd of 1,000 or more; the results do not depend on them",
+        flag="--threads",
+        ge=1,
+        le=256,
+        because="more than a machine has processors slow it down",
+    )
+
+    flow_scale: float = option(
+        1.0,
+        None,
+        "the rate of every flow times this",
+        flag="--flow-scale",
+        ge=0,
+        le=10,
+        least=1e-3,
+        because="rates themselves go up to 50,000 persons an hour",
+    )
+    people: PeopleConfig = PeopleConfig()
+    flow: Annotated[tuple[FlowConfig, ...], BeforeValidator(read_flows)] = Field(
+        default=(), description="streams of people, so many an hour from here to there"
+    )
+
+    @property
+    def adds_people(self) -> bool:
+        """Whether giveway adds anybody."""
+        return self.pedestrians > 0 or bool(self.flow and self.flow_scale)
+
+    @property
+    def has_distracted(self) -> bool:
+        """Whether anybody may be distracted."""
+        each = (self.people, *(flow.people for flow in self.flow if flow.people is not None))
+        return any(people.shares[DISTRACTED] for people in each)
+
+    @property
+    def has_groups(self) -> bool:
+        """Whether anybody may walk in a group that stays together."""
+        return self.groups > 0.0 or any(flow.groups for flow in self.flow)
+
+    @property
+    def plugged_in(self) -> bool:
+        """Whether the model of people is somebody else's."""
+        return self.model not in BUNDLED_MODELS
+
+    @model_validator(mode="after")
+    def _ordered(self) -> CrowdConfig:
+        if max(map(abs, (*self.spawn_area, *self.walk))) > _FARTHEST:
+            raise ValueError(f"spawn_area and walk: expected numbers within +-{_FARTHEST:g} [m]")
+        x_min, y_min, x_max, y_max = self.spawn_area
+        if not (x_min < x_max and y_min < y_max):
+            raise ValueError("spawn_area: expected x_min < x_max and y_min < y_max [m]")
+        if min(x_max - x_min, y_max - y_min) < _NEAREST:
+            raise ValueError(
+                f"spawn_area: {x_max - x_min:g} by {y_max - y_min:g} m: expected sides of at least "
+                f"{_NEAREST:g} m: a body has to fit"
+            )
+        if 0.0 < math.hypot(*self.walk) < _NEAREST:
+            raise ValueError(
+                f"walk = {self.walk}: expected at least {_NEAREST:g} m, or 0,0 for people who "
+                "stand: a shorter way is no walk"
+            )
+        if not self.desired_speed_min <= self.desired_speed_mean <= self.desired_speed_max:
+            raise ValueError(
+                "desired_speed_mean: expected between desired_speed_min and _max [m/s]"
+            )
+        return self

@@ -1,0 +1,206 @@
+"""``[[crowd.flow]]``: streams of people, so many an hour from here to there."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Final
+
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
+
+from giveway.config.option import Section, expectation, is_number, option
+from giveway.config.tables.people import SHARE, PeopleConfig
+
+_FARTHEST = 1e7  # [m] a coordinate; beyond it a millimetre is lost in rounding
+_SHORTEST = 0.01  # [m] a side of a rectangle, a line: a shorter one is a point
+_LONGEST_BEFORE: Final = 3600.0  # [s]
+_MOST = 100  # flows
+
+Point = tuple[float, float]
+Line = tuple[Point, Point]
+Box = tuple[float, float, float, float]
+Place = Point | Line | Box
+"""A point x, y; a line between two points; a rectangle x_min, y_min, x_max, y_max. All in m."""
+
+
+def is_line(place: Place) -> bool:
+    """Whether a place is a line."""
+    return not isinstance(place[0], int | float)
+
+
+def _refused(expected: str) -> PydanticCustomError:
+    return PydanticCustomError("place", "{expected}", {"expected": expected})
+
+
+def _point(value: Any) -> Point | None:
+    """``value`` as a point; None: it is none."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        return None
+    if not all(is_number(c) and abs(c) <= _FARTHEST for c in value):
+        return None
+    return float(value[0]), float(value[1])
+
+
+def _line(value: Any) -> Line | None:
+    """``value`` as a line; None: it is none."""
+    ends = [_point(end) for end in value] if isinstance(value, list | tuple) else []
+    if len(ends) != 2 or ends[0] is None or ends[1] is None:
+        return None
+    if max(abs(a - b) for a, b in zip(*ends, strict=True)) < _SHORTEST:
+        raise _refused(f"expected two ends, {_SHORTEST:g} apart or more")
+    return ends[0], ends[1]
+
+
+def _box(value: Any) -> Box | None:
+    """``value`` as a rectangle; None: it is none."""
+    if not isinstance(value, list | tuple) or len(value) != 4:
+        return None
+    if not all(is_number(c) and abs(c) <= _FARTHEST for c in value):
+        return None
+    x_min, y_min, x_max, y_max = map(float, value)
+    if x_max - x_min < _SHORTEST or y_max - y_min < _SHORTEST:
+        raise _refused(f"expected x_min < x_max and y_min < y_max, {_SHORTEST:g} apart or more")
+    return x_min, y_min, x_max, y_max
+
+
+def _origin(value: Any) -> Place:
+    """Where people come from: somewhere with room for several."""
+    found = _line(value) or _box(value)
+    if found is None:
+        raise _refused("expected a line or a rectangle")
+    return found
+
+
+def _destination(value: Any) -> Place:
+    """Where people go to."""
+    found = _point(value) or _line(value) or _box(value)
+    if found is None:
+        raise _refused(
+            "expected a point, a line [[x, y], [x, y]] or a rectangle [x_min, y_min, x_max, y_max]"
+        )
+    return found
+
+
+def _via(value: Any) -> tuple[Point | Line, ...]:
+    """Where people come through, one after the other."""
+    places = value if isinstance(value, list | tuple) else [value]
+    found = [_point(place) or _line(place) for place in places]
+    if not all(found):
+        raise _refused("expected a list of points [x, y] and lines [[x, y], [x, y]]")
+    return tuple(place for place in found if place)
+
+
+class FlowConfig(Section):
+    """One stream of people, in network coordinates."""
+
+    model_config = ConfigDict(serialize_by_alias=True)
+
+    name: str = option(
+        "",
+        None,
+        "of the flow, letters and digits; its people are called name.0, name.1, ...",
+        pattern=r"^[A-Za-z0-9_.-]{1,60}$",
+    )
+    start: Annotated[Line | Box, BeforeValidator(_origin)] = Field(
+        alias="from",
+        description="where they appear: a line [[x, y], [x, y]] or a rectangle [x_min, y_min, "
+        "x_max, y_max]",
+        json_schema_extra={"unit": "m"},
+    )
+    to: Annotated[Point | Line | Box, BeforeValidator(_destination)] = Field(
+        description="where each is bound for: a point [x, y], or somewhere on a line or in a "
+        "rectangle",
+        json_schema_extra={"unit": "m"},
+    )
+    via: Annotated[tuple[Point | Line, ...], BeforeValidator(_via)] = option(
+        (), "m", "points and lines that they come through on the way, in this order"
+    )
+    rate: float = Field(
+        gt=0,
+        le=50_000,
+        description="how many there are, on average",
+        json_schema_extra={
+            "unit": "persons/h",
+            "because": "0 is no flow, and a way 10 m wide carries no more than 50,000",
+        },
+    )
+    begin: float = option(
+        0.0,
+        "s",
+        "after the run's start, when the flow begins; < 0: it has been going on, and people are on "
+        "their way already",
+        ge=-_LONGEST_BEFORE,
+        le=_FARTHEST,
+        because="nobody is on the way for longer than an hour, and no run for 1e7 s",
+    )
+    end: float | None = option(
+        None, "s", "after the run's start, when it ends; none: with the run", le=_FARTHEST
+    )
+    people: PeopleConfig | None = option(None, None, "who they are; none: as in [crowd.people]")
+    groups: float | None = option(
+        None,
+        None,
+        "share of them who walk in groups; none: as in [crowd]",
+        ge=0,
+        le=1,
+        because=SHARE,
+    )
+
+    @model_validator(mode="after")
+    def _ordered(self) -> FlowConfig:
+        if self.end is not None and self.end <= self.begin:
+            raise ValueError(f"end = {self.end:g}: expected later than begin = {self.begin:g} [s]")
+        return self
+
+    def settings(self) -> dict[str, Any]:
+        """As a table of a TOML file has it."""
+        values: dict[str, Any] = self.model_dump(mode="json", exclude_defaults=True)
+        return values
+
+
+def read_flows(value: Any) -> tuple[FlowConfig, ...]:
+    """The flows that a TOML file or a dictionary holds.
+
+    Raises:
+        ValueError: one cannot be; the message names it.
+    """
+    if not isinstance(value, list | tuple) or not all(
+        isinstance(entry, dict | FlowConfig) for entry in value
+    ):
+        raise ValueError(f"flow = {value!r}: expected tables, each headed [[crowd.flow]]")
+    if len(value) > _MOST:
+        raise ValueError(f"{len(value)} flows: expected {_MOST} at most")
+    read = tuple(
+        entry if isinstance(entry, FlowConfig) else _read(entry, number)
+        for number, entry in enumerate(value)
+    )
+    names = [flow.name for flow in read]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"flow '{name}': two have this name; give each its own")
+    return read
+
+
+def _read(entry: dict[str, Any], number: int) -> FlowConfig:
+    name = entry.get("name") or f"flow{number}"
+    try:
+        return FlowConfig.model_validate({**entry, "name": name})
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise ValueError(f"flow '{name}': {_explain(first)}") from None
+
+
+def _explain(error: Any) -> str:
+    """One line on what pydantic refuses in a flow."""
+    where = [str(part) for part in error["loc"]]
+    keys = {field.alias or name: field for name, field in FlowConfig.model_fields.items()}
+    if error["type"] == "value_error":
+        return str(error["ctx"]["error"])
+    if error["type"] == "missing":
+        return f"{where[0]} is missing: expected {keys[where[0]].description}"
+    if error["type"] == "extra_forbidden":
+        known = PeopleConfig.model_fields if where[0] == "people" else keys
+        return f"unknown key '{where[-1]}'; expected one of {', '.join(known)}"
+    field = keys[where[0]]
+    if where[0] == "people" and where[-1] in PeopleConfig.model_fields:
+        field = PeopleConfig.model_fields[where[-1]]
+    return f"{'.'.join(where[:2])} = {error['input']!r}: {expectation(error, field)}"

@@ -1,0 +1,104 @@
+"""The table of the configuration about the road: how fast, how close, and who goes first."""
+
+from typing import Literal
+
+from giveway.config.option import Section, SpeedOrLane, option
+from giveway.config.reasons import MILLIMETRE, TYRES
+from giveway.config.tables.basics import DEFAULT_SPEED
+
+CORRIDOR_MARGIN = 0.25
+"""[m] The corridor of a vehicle is wider than its body by this much on each side."""
+
+
+class RegulationConfig(Section):
+    """What both controllers aim at, and who counts as being in front."""
+
+    reference_speed: SpeedOrLane | None = option(
+        None,
+        "m/s",
+        "desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends. Left "
+        f"out: lane, but {DEFAULT_SPEED:g} m/s for the paper's controllers",
+        least=0.1,
+        because="slower than that nobody says whether it drives; no car is faster",
+    )
+    safe_distance: float = option(
+        8.0,
+        "m",
+        "distance d_safe to keep to who is in front",
+        ge=0,
+        le=500,
+        least=MILLIMETRE,
+        because="a gap is a millimetre at least, and nobody is seen half a kilometre ahead",
+    )
+    corridor_half_width: float | None = option(
+        None,
+        "m",
+        "in front: the body centre is this close to the ego's path; none: half its width + "
+        f"{CORRIDOR_MARGIN:g}",
+        gt=0,
+        le=20,
+        least=0.1,
+        because="it holds a vehicle and its lane",
+    )
+    gap_from: Literal["bumper", "centre"] = option(
+        "bumper", None, "where the distance to who is in front starts"
+    )
+    vehicles: bool = option(
+        True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
+    )
+    traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
+    priority: Literal["road", "none"] | None = option(
+        None,
+        None,
+        "road: the ego gives way to people at crossings and to vehicles at junctions; none: the "
+        "paper's open space. Left out: road, but not for the paper's controllers",
+        flag="--priority",
+    )
+    kerb_distance: float = option(
+        1.5,
+        "m",
+        "who heads for a crossing and is this close to its kerb is about to enter it",
+        flag="--kerb-distance",
+        ge=0,
+        le=10,
+        least=MILLIMETRE,
+        because="farther away nobody can tell",
+    )
+    kerb_time: float = option(
+        2.5,
+        "s",
+        "who heads for a crossing and is this soon at its kerb is about to enter it as well",
+        flag="--kerb-time",
+        ge=0,
+        le=10,
+        least=0.001,
+        because="longer before nobody can tell",
+    )
+    critical_gap: float | None = option(
+        None,
+        "s",
+        "to the next vehicle with priority, in which the ego goes first; none: by manoeuvre, as in "
+        "the Highway Capacity Manual",
+        flag="--critical-gap",
+        ge=0.5,
+        le=60,
+        because="nobody crosses in half a second, and nobody waits for a minute's gap",
+    )
+    follow_up_gap: float | None = option(
+        None,
+        "s",
+        "after the vehicle before it has gone through the same gap; none: likewise",
+        flag="--follow-up-gap",
+        ge=0.1,
+        le=60,
+        because="it is a headway of vehicles that start one after the other",
+    )
+    comfortable_deceleration: float = option(
+        2.0,
+        "m/s^2",
+        "of the approach to a red light, a slower vehicle, a lower limit or a bend",
+        gt=0,
+        le=10,
+        least=0.1,
+        because=TYRES,
+    )

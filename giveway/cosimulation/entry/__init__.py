@@ -1,0 +1,1 @@
+"""How egos enter the road."""

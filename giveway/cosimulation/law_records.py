@@ -1,0 +1,151 @@
+"""What the tables need besides tracks to be judged by the law of the road.
+
+The network's crossings, stop lines and junctions on each ego's way, the states of the traffic
+lights there, and where people mean to walk. Nothing of it depends on what the ego heeds.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from giveway.crowd.roster import Roster
+from giveway.ego.stops import Stop
+from giveway.geometry.path import EgoPath
+from giveway.journal.recorder import Recorder
+from giveway.run_data.way import CrossingOnWay, EgoWay, Halt, JunctionOnWay, StopLine
+from giveway.sumo.crossings import Crossing
+from giveway.sumo.lane_path import Light
+from giveway.sumo.session import SumoSession
+
+_SAMPLE = 0.5  # [m] between the points of the path that are looked at
+_BESIDE = 4.0  # [m] from the path's line to the kerb of a crossing that a body on it may touch
+_BEFORE = 1.5  # [m] from there to the crossing's marking
+_DECIMALS = 6  # micrometres, as in all tables
+
+
+def way_of(
+    ego_id: str,
+    path: EgoPath,
+    departure: float,
+    length: float,
+    *,
+    crossings: Sequence[Crossing],
+    lights: Sequence[Light],
+    junctions: Sequence[JunctionOnWay] = (),
+    stops: Sequence[Stop] = (),
+) -> EgoWay:
+    """What stands on an ego's way.
+
+    Args:
+        ego_id: SUMO's.
+        path: the ego's.
+        departure: station [m] of the front bumper where the ego's position is 0.
+        length: of the ego's body [m].
+        crossings: of the network.
+        lights: on the path.
+        junctions: on the path.
+        stops: that it serves.
+    """
+    return EgoWay(
+        ego=ego_id,
+        points=tuple((_rounded(x), _rounded(y)) for x, y in path.vertices.tolist()),
+        departure=_rounded(departure),
+        crossings=_near(path, departure - length, crossings),
+        lines=tuple(
+            StopLine(_rounded(light.station), light.system, light.link) for light in lights
+        ),
+        junctions=tuple(
+            place._replace(
+                entry=_rounded(place.entry),
+                exit=_rounded(place.exit),
+                waiting=tuple(map(_rounded, place.waiting)),
+            )
+            for place in junctions
+        ),
+        halts=tuple(Halt(_rounded(stop.start), _rounded(stop.end)) for stop in stops),
+    )
+
+
+def _near(path: EgoPath, begin: float, crossings: Sequence[Crossing]) -> tuple[CrossingOnWay, ...]:
+    """The crossings that the path leads over or close by from station ``begin`` [m] on."""
+    if not crossings:
+        return ()
+    begin = max(0.0, begin)
+    count = 2 + round((path.length - begin) / _SAMPLE)
+    stations = np.linspace(begin, path.length, count)
+    x, y = path.points(stations).T
+    found: list[tuple[float, CrossingOnWay]] = []
+    for crossing in crossings:
+        (x_0, y_0), (x_1, y_1) = crossing.ends.tolist()
+        length = float(np.hypot(x_1 - x_0, y_1 - y_0))
+        if length <= 0.0:
+            continue
+        c, s = (x_1 - x_0) / length, (y_1 - y_0) / length
+        u = (x - x_0) * c + (y - y_0) * s
+        w = (y - y_0) * c - (x - x_0) * s
+        near = (u >= -_BESIDE) & (u <= length + _BESIDE)
+        near &= np.abs(w) <= crossing.width / 2 + _BEFORE
+        if near.any():
+            ends = (_rounded(x_0), _rounded(y_0)), (_rounded(x_1), _rounded(y_1))
+            place = CrossingOnWay(
+                crossing.lane,
+                ends,
+                _rounded(crossing.width),
+                crossing.zebra,
+                crossing.system,
+                crossing.link,
+            )
+            found.append((float(stations[np.argmax(near)]), place))
+    return tuple(place for _, place in sorted(found, key=lambda item: item[0]))
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), _DECIMALS) + 0.0
+
+
+class LawRecords:
+    """Records what the judgement needs, from the first ego on on whose way the law has a say.
+
+    Args:
+        session: the running simulation.
+        recorder: gathers the rows.
+
+    Attributes:
+        ruled: there is anything on any ego's way that the law speaks of.
+    """
+
+    def __init__(self, session: SumoSession, recorder: Recorder) -> None:
+        self._session = session
+        self._recorder = recorder
+        self.ruled = False
+        self._states: dict[str, str] = {}
+
+    def depart(self, way: EgoWay) -> None:
+        """Note an ego's way, if the law of the road has a say on it."""
+        if not way.is_ruled:
+            return
+        self.ruled = True
+        self._recorder.way(way)
+        self._states |= dict.fromkeys(sorted(way.systems - self._states.keys()), "")
+
+    def signals(self, time: float) -> None:
+        """Once after each SUMO step, at ``time`` [s]: which lights have changed."""
+        for system, before in self._states.items():
+            state = self._session.light_state(system)
+            if state != before:
+                self._states[system] = state
+                self._recorder.signal(time, system, state)
+
+    def walks(self, roster: Roster) -> None:
+        """Once at each control instant: who has joined the crowd, and means to walk where."""
+        if not self.ruled or not roster.newcomers:
+            return
+        crowd, recorder = roster.crowd, self._recorder
+        new = set(roster.newcomers)
+        roster.newcomers.clear()
+        for row, pedestrian in enumerate(roster.present.tolist()):
+            if pedestrian in new:
+                begin = crowd.waypoint_start[row] + crowd.waypoint_index[row]
+                ahead = crowd.waypoints[begin : crowd.waypoint_start[row + 1]]
+                places = np.concatenate([crowd.position[row : row + 1], ahead])
+                recorder.walk(pedestrian, float(crowd.desired_speed[row]), places)

@@ -1,0 +1,48 @@
+"""People who come in during a run, and the persons of SUMO that they become."""
+
+import math
+from collections.abc import Sequence
+
+from giveway.config import RunConfig
+from giveway.crowd.generation.flows import Flows
+from giveway.errors import ConfigError
+from giveway.sumo.session import SumoSession
+
+
+class Arrivals:
+    """Lets the people of all flows in.
+
+    Args:
+        flows: into our crowd.
+        session: the running simulation.
+        hosts: the edge that hosts each flow's people inside SUMO.
+    """
+
+    def __init__(self, flows: Flows, session: SumoSession, hosts: Sequence[str]) -> None:
+        self.flows = flows
+        self._session = session
+        self._hosts = tuple(hosts)
+
+    def update(self, step: int) -> None:
+        """Once after each SUMO step, at the control step ``step``: who comes in."""
+        for names, host in zip(self.flows.enter(step), self._hosts, strict=True):
+            if names:
+                self._session.add_persons(names, host)
+
+
+def require_end(config: RunConfig, end: float) -> None:
+    """Make sure that a run without an ego ends though people keep coming.
+
+    Args:
+        config: the run's.
+        end: the scenario's [s]; infinite where it names none.
+
+    Raises:
+        ConfigError: it does not.
+    """
+    endless = [flow.name for flow in config.crowd.flow if flow.end is None]
+    if config.ego.none and endless and end == math.inf and config.time_limit is None:
+        raise ConfigError(
+            f"flow '{endless[0]}': its people keep coming, no ego is to arrive and the scenario "
+            "has no end: the run would not end; name an end of the flow [s], or --time-limit"
+        )

@@ -1,0 +1,25 @@
+"""The drive that the first ego would make with nobody about: whom the sampler's people meet."""
+
+from giveway.config import RunConfig
+from giveway.config.option import LANE
+from giveway.config.tables.basics import DEFAULT_SPEED
+from giveway.crowd.generation.encounters import FreeDrive
+from giveway.geometry.path import EgoPath
+
+
+def free_drive(config: RunConfig, path: EgoPath | None) -> FreeDrive | None:
+    """The free drive along ``path``; None: there is no path.
+
+    Where the lanes say how fast, the speed at departure stands for the reference speed.
+
+    Args:
+        config: of the run; also of one in which nobody drives.
+        path: of the first ego that is inserted, or would be.
+    """
+    if path is None:
+        return None
+    own = next((ego for ego in config.each_ego() if not ego.ego.take_over), config)
+    ego, wanted = own.ego, own.reference_speed
+    speed = (ego.initial_speed or DEFAULT_SPEED) if wanted == LANE else float(wanted)
+    distance = ego.travel_distance or path.length - ego.depart_position
+    return FreeDrive(path, ego.depart_position, distance, speed)

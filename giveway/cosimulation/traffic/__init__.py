@@ -1,0 +1,1 @@
+"""How background vehicles, egos and people interact."""

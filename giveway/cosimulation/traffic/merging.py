@@ -1,0 +1,82 @@
+"""Who merges with an ego: the vehicles whose lanes lead onto one that the ego comes to as well."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from giveway.cosimulation.traffic.lane_paths import LanePaths
+from giveway.ego.ego import Ego
+from giveway.ego.merges import Behind, Place, Rival
+from giveway.sumo.background import BackgroundVehicles
+from giveway.sumo.lanes import Lanes
+from giveway.sumo.vehicles import SumoVehicles
+
+_NEAR = 150.0  # [m] from an ego, where others are looked at
+
+
+class Merging:
+    """Finds those who merge with egos, once after each SUMO step.
+
+    Args:
+        vehicles: of the running simulation.
+        lanes: of its network.
+    """
+
+    def __init__(self, vehicles: SumoVehicles, lanes: Lanes) -> None:
+        self._vehicles = vehicles
+        self._lanes = lanes
+        self._lane_paths = LanePaths(vehicles)
+
+    def update(
+        self, background: BackgroundVehicles, egos: Sequence[Ego]
+    ) -> list[dict[str, Behind]]:
+        """Let each ego take note of those it merges with; who keeps behind each.
+
+        Args:
+            background: the background vehicles now.
+            egos: on the road now.
+        """
+        found = []
+        for ego in egos:
+            places = () if ego.way.merges is None else ego.way.merges.in_sight(ego.front)
+            if ego.way.merges is None or not places:
+                continue
+            near = self._near(background, ego, [other for other in egos if other is not ego])
+            rivals = self._rivals(places, near)
+            found.append(ego.way.merges.see(rivals, ego.front, ego.vehicle.speed))
+        return found
+
+    @staticmethod
+    def _near(
+        background: BackgroundVehicles, ego: Ego, others: Sequence[Ego]
+    ) -> list[tuple[str, float, float]]:
+        """Id, speed [m/s] and length [m] of each vehicle near an ego."""
+        x, y, _ = ego.pose
+        rows = np.flatnonzero(np.hypot(background.x - x, background.y - y) <= _NEAR)
+        near = [
+            (background.ids[i], float(background.speed[i]), float(background.length[i]))
+            for i in rows
+        ]
+        return near + [(other.id, other.vehicle.speed, other.shape.length) for other in others]
+
+    def _rivals(
+        self, places: Sequence[Place], near: Sequence[tuple[str, float, float]]
+    ) -> dict[Place, dict[str, Rival]]:
+        """Those whose lanes lead onto the lane that begins at each place."""
+        rivals: dict[Place, dict[str, Rival]] = {place: {} for place in places}
+        names = [name for name, _, _ in near]
+        numbers, positions = self._lane_paths.of(names, [_NEAR] * len(names))
+        self._lane_paths.forget(names)
+        for (name, speed, length), number, at in zip(near, numbers, positions, strict=True):
+            if number < 0:
+                continue
+            lanes = self._lane_paths.lanes[number]
+            share = float(at) / self._vehicles.lane_length(lanes[0])
+            for place in places:
+                k = lanes.index(place.lane) if place.lane in lanes else -1
+                if k < 0 or (place.over and (k == 0 or lanes[k - 1] not in place.over)):
+                    continue
+                before = sum(map(self._lanes.length, lanes[:k]))
+                position = share * self._lanes.length(lanes[0]) - before
+                rivals[place][name] = Rival(position, speed, length)
+        return rivals

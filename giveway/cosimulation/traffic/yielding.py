@@ -1,0 +1,276 @@
+"""Background vehicles brake for the pedestrians and egos that giveway moves.
+
+SUMO's vehicles look for persons on lanes and crossings. A person that is moved from outside is on
+none of them, so SUMO's vehicles would drive through it. Therefore each vehicle's speed is limited
+to one from which it stops before the next pedestrian in its corridor, with the deceleration of its
+own type: Krauss's safe speed (Krauss 1998, eq. 2.24, with a standing leader). Who has priority on a
+crossing is expected to walk on over it.
+
+An ego is on the lane that SUMO finds at its front's middle. Where it changes lanes or cuts a
+corner, part of its body is on another one, whose vehicles do not see it; they keep behind it
+likewise. Who follows it by SUMO's own model is left alone, and so is who stands beside a standing
+ego or in contact with one: the two would wait for each other for ever.
+"""
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
+
+import numpy as np
+
+from giveway.config.tables.regulation import CORRIDOR_MARGIN
+from giveway.cosimulation.traffic.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
+from giveway.ego.ego import Ego
+from giveway.ego.merges import Behind
+from giveway.geometry.kernel import Array
+from giveway.geometry.overlap import rectangles_overlap
+from giveway.sumo.background import BackgroundVehicles
+from giveway.sumo.vehicles import SumoVehicles
+from pedestrian_model import Crowd, targets
+
+_LOOK_AHEAD = 1.0  # [s] for which pedestrians are expected to keep their velocity
+_WALKING_ON = (1.0, 2.0)  # [s] ahead, those with priority are on the way to where they want to be
+_DISTANCE = 2.0  # Distance [m] before a pedestrian at which vehicles want to stop
+_REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
+_BESIDE_EGO = 0.1  # [m] that vehicles keep beside an ego at least
+_BEHIND_EGO = 0.5  # [m] at which they stand behind one
+_BEFORE_LINE = 1.0  # [m] at which vehicles wait before theirs
+_STANDING = 0.2  # [m/s]
+_PULLING_AWAY = 2.0  # [m/s]
+_APART = 0.5  # [m] at most between the points of an ego's outline that are looked at
+NOBODY: Mapping[str, float] = MappingProxyType({})
+
+
+class Yielding:
+    """Slows background vehicles down for pedestrians.
+
+    Args:
+        vehicles: of the running simulation.
+        step_length: SUMO's step [s], in which a limit holds.
+
+    Attributes:
+        limited: the speed [m/s] of those that yield at present, by their ids.
+    """
+
+    limited: dict[str, float]
+
+    def __init__(self, vehicles: SumoVehicles, step_length: float) -> None:
+        self._vehicles = vehicles
+        self._reaction = max(step_length, _REACTION)
+        self._distance = _DISTANCE
+        self.limited = {}
+        self._lane_paths = LanePaths(vehicles)
+        self._ever: set[str] = set()
+        self._step_length = step_length
+        self._time = 0.0
+        self._pulling: set[str] = set()
+
+    @property
+    def report(self) -> dict[str, float]:
+        """How many vehicles ever yielded, and for how long [s] in all."""
+        return {"vehicles_that_yielded": len(self._ever), "time_yielding": round(self._time, 6)}
+
+    def update(
+        self,
+        background: BackgroundVehicles,
+        crowd: Crowd,
+        egos: Sequence[Ego] = (),
+        rooms: Mapping[str, float] = NOBODY,
+        merging: Sequence[Mapping[str, Behind]] = (),
+    ) -> None:
+        """Once after each SUMO step: limit vehicles with somebody ahead, release the others.
+
+        Args:
+            background: the background vehicles now.
+            crowd: the pedestrians now.
+            egos: on the road now.
+            rooms: [m] up to the lines of those that wait there for an ego, by their names.
+            merging: who keeps behind each ego that they come onto one lane with.
+        """
+        limits = self._limits(background, crowd) if background.ids and len(crowd) else {}
+        if background.ids and egos:
+            for name, limit in self._behind_egos(background, egos).items():
+                limits[name] = min(limit, limits.get(name, math.inf))
+            for name, limit in self._merging(background, merging).items():
+                limits[name] = min(limit, limits.get(name, math.inf))
+        for name, room in rooms.items():
+            b = self._vehicles.deceleration(name)
+            limit = _safe_speed(room - _BEFORE_LINE, 0.0, b, self._reaction)
+            limits[name] = min(limit, limits.get(name, math.inf))
+        before = self.limited
+        if before and before.keys() - limits.keys():
+            gone = before.keys() - set(background.ids)
+            for name in sorted(before.keys() - limits.keys() - gone):
+                self._vehicles.release(name)
+        for name, limit in limits.items():
+            if before.get(name) != limit:
+                self._vehicles.limit(name, limit)
+        self._separate(background, egos, limits.keys())
+        self.limited = limits
+        self._ever.update(limits)
+        self._time += self._step_length * len(limits)
+
+    def _limits(self, background: BackgroundVehicles, crowd: Crowd) -> dict[str, float]:
+        """The speed limit [m/s] of each vehicle with a pedestrian ahead."""
+        # decelerations are at least 2 m/s^2, so this is how far a vehicle has to look
+        sight = (
+            background.speed * self._reaction + background.speed**2 / 4.0 + self._distance + 10.0
+        )
+        pedestrians = _expected(crowd)
+        numbers, positions = self._lane_paths.of(background.ids, sight.tolist())
+        self._lane_paths.forget(background.ids)
+        gaps = np.full(len(background.ids), np.inf)
+        if (numbers >= 0).any():
+            gaps_ahead(
+                np.column_stack([background.x, background.y]),
+                positions,
+                numbers,
+                self._lane_paths.pool,
+                sight,
+                background.width / 2 + CORRIDOR_MARGIN,
+                pedestrians,
+                sort_pedestrians(pedestrians),
+                gaps,
+            )
+        limits = {}
+        for i in np.flatnonzero(gaps <= sight):
+            b = self._vehicles.deceleration(background.ids[i])
+            safe = _safe_speed(float(gaps[i]) - self._distance, 0.0, b, self._reaction)
+            if safe < background.speed[i] + b * self._step_length:
+                limits[background.ids[i]] = safe
+        return limits
+
+    def _separate(
+        self, background: BackgroundVehicles, egos: Sequence[Ego], held: Collection[str]
+    ) -> None:
+        """Let those that stand in contact with an ego, ahead of its front, pull away from it.
+
+        SUMO takes the ego for their leader, and they would stand there for ever. Those that are
+        ``held`` have somebody in front of them.
+        """
+        stuck = set()
+        slow = np.flatnonzero(background.speed <= 1.1 * _PULLING_AWAY)
+        for ego in egos if len(slow) else ():
+            x, y, heading = ego.pose
+            own = np.array([x, y, heading, ego.shape.length, ego.shape.width])
+            near = slow[
+                np.hypot(background.x[slow] - x, background.y[slow] - y)
+                <= ego.shape.length + background.length[slow]
+            ]
+            touching = near[rectangles_overlap(own, background.bodies[near])]
+            ahead = (background.x[touching] - x) * math.cos(heading)
+            ahead += (background.y[touching] - y) * math.sin(heading)
+            stuck |= {background.ids[i] for i in touching[ahead > 0.0]}
+        stuck -= set(held)
+        for name in sorted(stuck - self._pulling):
+            self._vehicles.pull_away(name, _PULLING_AWAY)
+        for name in sorted((self._pulling - stuck) & set(background.ids)):
+            self._vehicles.heed_leaders(name)
+        self._pulling = stuck
+
+    def _behind_egos(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> dict[str, float]:
+        """The speed limit [m/s] of each vehicle with an ego ahead that SUMO does not let it see."""
+        fronts = np.column_stack([background.x, background.y])
+        sight = background.speed * self._reaction + background.speed**2 / 4.0 + 10.0
+        limits: dict[str, float] = {}
+        for ego in egos:
+            x, y, heading = ego.pose
+            apart = np.hypot(fronts[:, 0] - x, fronts[:, 1] - y)
+            near = np.flatnonzero(apart <= sight + ego.shape.length)
+            if not len(near):
+                continue
+            points = _outline(ego)
+            names = [background.ids[i] for i in near]
+            numbers, positions = self._lane_paths.of(names, sight[near].tolist())
+            gaps = np.full(len(near), np.inf)
+            if not (numbers >= 0).any():
+                continue
+            gaps_ahead(
+                fronts[near],
+                positions,
+                numbers,
+                self._lane_paths.pool,
+                sight[near],
+                background.width[near] / 2 + _BESIDE_EGO,
+                points,
+                sort_pedestrians(points),
+                gaps,
+            )
+            for k in np.flatnonzero(gaps <= sight[near]):
+                i, name = near[k], names[k]
+                along = ego.vehicle.speed * math.cos(background.heading[i] - heading)
+                b = self._vehicles.deceleration(name)
+                safe = _safe_speed(float(gaps[k]) - _BEHIND_EGO, max(0.0, along), b, self._reaction)
+                if safe >= background.speed[i] + b * self._step_length:
+                    continue
+                if self._vehicles.leader(name, float(sight[i])) == ego.id:
+                    continue
+                if _are_stuck(ego, background, int(i)):
+                    continue
+                limits[name] = min(safe, limits.get(name, math.inf))
+        return limits
+
+    def _merging(
+        self,
+        background: BackgroundVehicles,
+        merging: Sequence[Mapping[str, Behind]],
+    ) -> dict[str, float]:
+        """The speed limit [m/s] of each vehicle that lets an ego merge before it."""
+        limits: dict[str, float] = {}
+        rows = {name: i for i, name in enumerate(background.ids)}
+        for others in merging:
+            for name, behind in others.items():
+                if name not in rows:
+                    continue  # another ego
+                speed = float(background.speed[rows[name]])
+                b = self._vehicles.deceleration(name)
+                firm = min(b, behind.braking)
+                safe = max(
+                    _safe_speed(behind.room, behind.speed, firm, self._reaction),
+                    _safe_speed(behind.to_wait, 0.0, firm, self._reaction),
+                    speed - firm * self._step_length,
+                )
+                if safe < speed + b * self._step_length:
+                    limits[name] = min(safe, limits.get(name, math.inf))
+        return limits
+
+
+def _expected(crowd: Crowd) -> Array:
+    """(k, 2) [m] where people are and where they are expected to be."""
+    places = [crowd.position, crowd.position + _LOOK_AHEAD * crowd.velocity]
+    relying = np.flatnonzero(crowd.priority)
+    if len(relying):
+        place = crowd.position[relying]
+        way = targets(crowd, relying) - place
+        pace = crowd.desired_speed[relying] / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
+        places += [place + (time * pace)[:, None] * way for time in _WALKING_ON]
+    return np.concatenate(places)
+
+
+def _safe_speed(room: float, leader: float, deceleration: float, reaction: float) -> float:
+    """Krauss's safe speed [m/s] at ``room`` [m] behind a leader [m/s] that brakes as hard."""
+    b = deceleration * reaction
+    return -b + math.sqrt(b * b + leader * leader + 2.0 * deceleration * max(0.0, room))
+
+
+def _are_stuck(ego: Ego, background: BackgroundVehicles, i: int) -> bool:
+    """Whether the vehicle ``i`` has to go on for the ego to get away from it."""
+    x, y, heading = ego.pose
+    own = np.array([x, y, heading, ego.shape.length, ego.shape.width])
+    if rectangles_overlap(own, background.bodies[i]):
+        return True
+    ahead = (background.x[i] - x) * math.cos(heading) + (background.y[i] - y) * math.sin(heading)
+    return ego.vehicle.speed < _STANDING and ahead > -ego.shape.length
+
+
+def _outline(ego: Ego) -> Array:
+    """(n, 2) [m] points on the outline of an ego."""
+    x, y, heading = ego.pose
+    length, width = ego.shape.length, ego.shape.width
+    along = np.linspace(0.0, -length, max(2, math.ceil(length / _APART) + 1))
+    across = np.linspace(-width / 2, width / 2, max(2, math.ceil(width / _APART) + 1))
+    sides = [np.column_stack([along, np.full(len(along), side)]) for side in across[[0, -1]]]
+    ends = [np.column_stack([np.full(len(across), end), across]) for end in along[[0, -1]]]
+    points = np.concatenate([*sides, *ends])
+    cos, sin = math.cos(heading), math.sin(heading)
+    return np.ascontiguousarray(points @ np.array([[cos, sin], [-sin, cos]]) + (x, y))

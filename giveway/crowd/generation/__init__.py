@@ -1,0 +1,1 @@
+"""How people are generated: places, groups, kinds, flows, encounters."""

@@ -1,0 +1,140 @@
+"""Crowds that an ego meets: groups from both sides, timed against its drive with nobody about.
+
+Sizes and formation of groups are those of groups.py, also for those who walk alone. The
+distributions, and what comes of them: docs/encounter.md.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from giveway.config.tables.crowd import CrowdConfig
+from giveway.crowd.generation.groups import LARGEST, RATE, formation
+from giveway.crowd.generation.kinds import desired_speeds
+from giveway.errors import CrowdError
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
+
+_JITTER = 0.1  # [m] on each axis about the place in the formation
+_SKEW, _MOST_SKEW = 10.0, 25.0  # [deg] of a group's heading about the square crossing
+_FIRST, _LAST = 12.0, 4.0  # [m] of the way before the first, and behind the last crossing place
+_MEETING = (-2.5, 0.5)  # [s] later than the free ego: who is on its way, or just about to be
+_ANY = (-4.0, 8.0)  # [s] of all others: before it, with it, or with one who has been held up
+_SHARE_MEETING = 0.4  # of the groups, and at least one
+_EARLIEST = 2.5  # [s] nobody starts nearer to the way than this
+_BEYOND = 15.0  # [m] from the way to the destination
+_ATTEMPTS = 2_000  # to place one group
+
+
+@dataclass(frozen=True)
+class FreeDrive:
+    """The drive that an ego would make with nobody about.
+
+    Attributes:
+        path: of its front bumper.
+        departure: station [m] at which it begins.
+        distance: [m] to its goal.
+        speed: [m/s] its reference speed.
+    """
+
+    path: EgoPath
+    departure: float
+    distance: float
+    speed: float
+
+
+def meet(
+    config: CrowdConfig, drive: FreeDrive, kinds: Sequence[str], random: np.random.Generator
+) -> tuple[Array, Array, Array, list[int]]:
+    """Draw ``config.pedestrians`` people in groups that cross the way of a free drive.
+
+    Args:
+        config: how many, how fast, and how far apart they start.
+        drive: that they meet.
+        kinds: (n,) of people they are.
+        random: of the draws.
+
+    Returns:
+        (n, 2) [m] where they start, (n, 2) [m] their destinations, (n,) [m/s] desired speeds, and
+        the sizes of their groups.
+
+    Raises:
+        CrowdError: the drive is too short, or there is no room for so many.
+    """
+    if drive.distance < _FIRST + _LAST:
+        raise CrowdError(
+            f"--sampler encounters: the ego drives {drive.distance:g} m: expected at least "
+            f"{_FIRST + _LAST:g} m of way on which people meet it; raise --ego-travel-distance"
+        )
+    sizes = _sizes(config.pedestrians, random)
+    sides = np.resize([1.0, -1.0], len(sizes))
+    random.shuffle(sides)
+    meeting = np.arange(len(sizes)) < max(1, round(_SHARE_MEETING * len(sizes)))
+    random.shuffle(meeting)
+    position, destination = np.empty((0, 2)), np.empty((0, 2))
+    speeds: list[float] = []
+    for size, side, meets in zip(sizes, sides, meeting, strict=True):
+        for _ in range(_ATTEMPTS):
+            first = len(position)
+            speed = _speed(config, kinds[first : first + int(size)], random)
+            starts, ends = _group(drive, int(size), side, speed, bool(meets), random)
+            if _has_room(starts, position, config.minimum_spacing):
+                break
+        else:
+            raise CrowdError(
+                f"--pedestrians {config.pedestrians}: only {len(position)} find room on a way of "
+                f"{drive.distance:g} m at a spacing of {config.minimum_spacing} m; lower the "
+                "number or [crowd] minimum_spacing"
+            )
+        position, destination = np.vstack([position, starts]), np.vstack([destination, ends])
+        speeds += [speed] * int(size)
+    return position, destination, np.array(speeds), sizes
+
+
+def _sizes(people: int, random: np.random.Generator) -> list[int]:
+    """Sizes of groups, zero-truncated Poisson up to the largest; the last is what is left."""
+    sizes: list[int] = []
+    while (left := people - sum(sizes)) > 0:
+        size = int(random.poisson(RATE))
+        if 1 <= size <= LARGEST:
+            sizes.append(min(size, left))
+    return sizes
+
+
+def _speed(config: CrowdConfig, kinds: Sequence[str], random: np.random.Generator) -> float:
+    """The desired speed [m/s] that the members of a group share; of a mixed one the slowest's."""
+    members = kinds if any(kinds) else kinds[:1]
+    return float(desired_speeds(config, members, random).min())
+
+
+def _group(
+    drive: FreeDrive,
+    size: int,
+    side: float,
+    speed: float,
+    meets: bool,
+    random: np.random.Generator,
+) -> tuple[Array, Array]:
+    """(size, 2) [m] starts and destinations of a group that walks to the left (1) or right (-1)."""
+    along = float(random.uniform(_FIRST, drive.distance - _LAST))
+    delay = float(random.uniform(*(_MEETING if meets else _ANY)))
+    skew = float(np.clip(random.normal(0.0, _SKEW), -_MOST_SKEW, _MOST_SKEW))
+    arrival = max(along / drive.speed + delay, _EARLIEST)
+    pose = drive.path.pose(drive.departure + along)
+    heading = pose.heading + side * np.pi / 2.0 + np.radians(skew)
+    ahead = np.array([np.cos(heading), np.sin(heading)])
+    beside = np.array([-ahead[1], ahead[0]])
+    place = np.array([pose.x, pose.y]) + formation(size) @ np.vstack([beside, ahead])
+    place += random.uniform(-_JITTER, _JITTER, (size, 2))
+    return place - speed * arrival * ahead, place + _BEYOND * ahead
+
+
+def _has_room(starts: Array, others: Array, spacing: float) -> bool:
+    """Whether each of ``starts`` keeps ``spacing`` [m] from all the rest and all ``others``."""
+    everybody = np.vstack([others, starts])
+    offsets = everybody[None] - starts[:, None]
+    squares = np.einsum("ijk,ijk->ij", offsets, offsets)
+    own = np.arange(len(starts))
+    squares[own, len(others) + own] = np.inf
+    return bool((squares >= spacing**2).all())

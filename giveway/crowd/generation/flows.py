@@ -1,0 +1,227 @@
+"""Streams of people: who arrives when, where each appears, and which way each takes.
+
+Everything about a party, one person or a group, is drawn from a stream of its own, by the run's
+seed, the flow and the party's number. So who arrives, when and bound for where depends on nothing
+that happens in the run: no ego, controller or model of people, and no other flow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from giveway.config import RunConfig
+from giveway.crowd.generation.groups import facing, of_parties, parties_per_person, party_size
+from giveway.crowd.generation.kinds import desired_speeds, draw_kinds
+from giveway.crowd.generation.spawn import has_room
+from giveway.crowd.roster import ARRIVAL_RADIUS, Roster, Trait
+from giveway.crowd.ways import Gate, LitCrossing, gates_of, longest_way, somewhere, with_lights
+from giveway.geometry.kernel import Array
+from pedestrian_model import Crowd
+
+_STREAM = 0xF70  # tells these draws from others of the same seed
+_TRIES = 20  # places at which a party looks for room, at each of SUMO's instants
+_HOUR = 3600.0  # [s]
+
+
+class Party(NamedTuple):
+    """Those who arrive together."""
+
+    due: float  # [s] after the run's start
+    names: tuple[str, ...]
+    kinds: tuple[str, ...]
+    speed: float  # [m/s] at which they like to walk together; of one who is alone the own
+    random: np.random.Generator  # of its places
+
+
+class Walk(NamedTuple):
+    """Where the members of a party are when they appear, and where they go."""
+
+    position: Array  # (k, 2) [m]
+    velocity: Array  # (k, 2) [m/s]
+    destination: Array  # (k, 2) [m]
+    gates: tuple[Gate, ...]  # that are still ahead
+
+
+class Flow:
+    """One stream.
+
+    Args:
+        config: the run's.
+        number: of the flow in it.
+        prefix: of its people's ids; a number follows.
+        lit: crossings at which they wait for their light.
+    """
+
+    def __init__(
+        self, config: RunConfig, number: int, prefix: str, lit: Sequence[LitCrossing]
+    ) -> None:
+        flow, crowd = config.crowd.flow[number], config.crowd
+        self._flow, self._crowd = flow, crowd
+        self._seed = (config.seed, _STREAM, number)
+        self._prefix = prefix
+        self._people = crowd.people if flow.people is None else flow.people
+        self._groups = crowd.groups if flow.groups is None else flow.groups
+        parties = flow.rate * crowd.flow_scale * parties_per_person(self._groups)  # an hour
+        self._headway = _HOUR / parties
+        self._random = np.random.default_rng(self._seed)
+        # Whoever came before has arrived, and a Poisson process may begin to be looked at anywhere.
+        begin = max(flow.begin, -longest_way(flow) / crowd.desired_speed_min)
+        self._next = begin + self._random.exponential(self._headway)
+        self._parties = self._persons = 0
+        self._gates, self._lit = gates_of(flow), lit
+        self.waiting: deque[Party] = deque()
+
+    def come(self, until: float) -> None:
+        """Let those who arrive up to ``until`` [s] after the run's start wait for their entry."""
+        end = math.inf if self._flow.end is None else self._flow.end
+        while self._next <= min(until, end):
+            self.waiting.append(self._party(self._next))
+            self._next += self._random.exponential(self._headway)
+
+    def _party(self, due: float) -> Party:
+        random = np.random.default_rng((*self._seed, self._parties))
+        size = party_size(self._groups, random)
+        names = tuple(f"{self._prefix}{self._persons + i}" for i in range(size))
+        self._parties += 1
+        self._persons += size
+        kinds = draw_kinds(self._people, size, random)
+        speed = float(desired_speeds(self._crowd, kinds, random).min())
+        return Party(due, names, kinds, speed, random)
+
+    def walk(self, party: Party, ahead: float) -> Walk | None:
+        """Somewhere for a party to be, ``ahead`` [m] of its start; None: it has arrived there."""
+        place = somewhere(self._flow.start, party.random)
+        end = somewhere(self._flow.to, party.random)
+        gates = list(with_lights(place, self._gates, end, self._lit))
+        while True:
+            goal = gates[0].aim(place) if gates else end
+            way = goal - place
+            length = math.hypot(*way)
+            if ahead < length or not gates:
+                break
+            ahead -= length
+            place = goal
+            del gates[0]
+        if ahead > max(length - ARRIVAL_RADIUS, 0.0):
+            return None
+        direction = way / length if length > 0.0 else np.zeros(2)
+        shape = facing(len(party.names), way)
+        return Walk(
+            position=place + ahead * direction + shape,
+            velocity=np.tile(party.speed * direction, (len(shape), 1)),
+            destination=end + shape,
+            gates=tuple(gates),
+        )
+
+
+class Flows:
+    """All streams of a run, and the crowd that they join.
+
+    Args:
+        config: the run's.
+        roster: the crowd.
+        prefixes: of the ids of each flow's people.
+        time_step: of the co-simulation [s].
+        lit: crossings at which they wait for their light.
+    """
+
+    def __init__(
+        self,
+        config: RunConfig,
+        roster: Roster,
+        prefixes: Sequence[str],
+        time_step: float,
+        lit: Sequence[LitCrossing] = (),
+    ) -> None:
+        self._config = config
+        self._roster = roster
+        self._prefixes = tuple(prefixes)
+        self._time_step = time_step
+        self._lit = tuple(lit)
+        self._flows = [Flow(config, i, prefix, lit) for i, prefix in enumerate(prefixes)]
+        self._step = -1
+        self._longest = [0.0] * len(prefixes)  # [s] that anybody waited for room
+
+    def afresh(self, roster: Roster) -> Self:
+        """The same streams from their beginning, into another crowd."""
+        return type(self)(self._config, roster, self._prefixes, self._time_step, self._lit)
+
+    def enter(self, step: int) -> list[list[str]]:
+        """Let people in at the control step ``step``; for each flow the names of those.
+
+        The second time at one step nobody comes.
+        """
+        names: list[list[str]] = [[] for _ in self._flows]
+        if step <= self._step:
+            return names
+        first, self._step = self._step < 0, step
+        time = step * self._time_step
+        for number, flow in enumerate(self._flows):
+            flow.come(time)
+            while flow.waiting:
+                party = flow.waiting[0]
+                early = max(-party.due, 0.0) if first else 0.0  # [s] that it walks already
+                entered = self._enter(flow, party, party.speed * early)
+                if entered is None and not early:
+                    self._longest[number] = max(self._longest[number], time - party.due)
+                    break
+                flow.waiting.popleft()
+                names[number] += entered or ()
+        return names
+
+    def _enter(self, flow: Flow, party: Party, ahead: float) -> tuple[str, ...] | None:
+        """Let a party in, ``ahead`` [m] of its start; who has come in, None: there is no room."""
+        roster, spacing = self._roster, self._config.crowd.minimum_spacing
+        for _ in range(_TRIES):
+            walk = flow.walk(party, ahead)
+            if walk is None:
+                return ()
+            if has_room(walk.position, roster.crowd.position, spacing):
+                groups = of_parties([len(party.names)], party.names)
+                told = zip(party.names, party.kinds, groups, strict=True)
+                traits = {name: Trait(kind, group) for name, kind, group in told if kind or group}
+                roster.add(party.names, _crowd(walk, party.speed), traits)
+                return party.names
+        return None
+
+    @property
+    def keeps_coming(self) -> bool:
+        """Whether a flow with an end has not reached it, or somebody waits for room."""
+        time = self._step * self._time_step
+        ends = [flow.end for flow in self._config.crowd.flow if flow.end is not None]
+        return any(time < end for end in ends) or any(flow.waiting for flow in self._flows)
+
+    @property
+    def remarks(self) -> list[str]:
+        """Where it backed up."""
+        found = []
+        for config, flow, longest in zip(
+            self._config.crowd.flow, self._flows, self._longest, strict=True
+        ):
+            if longest > 1.0:
+                waiting = sum(len(party.names) for party in flow.waiting)
+                found.append(
+                    f"flow '{config.name}': it backed up where it enters: somebody waited "
+                    f"{longest:.0f} s for room, and {waiting} still do; a larger 'from' has more"
+                )
+        return found
+
+
+def _crowd(walk: Walk, speed: float) -> Crowd:
+    """A party as a crowd."""
+    count = len(walk.position)
+    through = np.array([gate.middle for gate in walk.gates]).reshape(-1, 2)
+    lines = np.array([(*gate.across, gate.half_width) for gate in walk.gates]).reshape(-1, 3)
+    return Crowd.create(
+        walk.position,
+        walk.velocity,
+        np.full(count, speed),
+        [np.vstack([through, end]) for end in walk.destination],
+        passages=[np.vstack([lines, np.zeros(3)])] * count,
+        signals=[np.array([*(gate.signal for gate in walk.gates), -1])] * count,
+    )

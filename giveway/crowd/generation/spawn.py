@@ -1,0 +1,147 @@
+"""The pedestrians of a run, drawn from its seed: where each starts, goes, and how fast."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from giveway.config.tables.crowd import ENCOUNTERS, CrowdConfig
+from giveway.crowd.generation.encounters import FreeDrive, meet
+from giveway.crowd.generation.groups import facing, of_parties, party_sizes, slowest
+from giveway.crowd.generation.kinds import desired_speeds, draw_kinds
+from giveway.crowd.roster import Trait
+from giveway.errors import CrowdError
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath, Pose
+
+_ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
+
+_KINDS = 0x41D  # tells draws of who they are from others of the same seed
+
+PREFIX = "ped"  # of the ids of the pedestrians that giveway adds
+
+
+@dataclass(frozen=True)
+class Spawned:
+    """Drawn pedestrians, in the order of their ids."""
+
+    ids: tuple[str, ...]
+    position: Array  # (n, 2) [m]
+    destination: Array  # (n, 2) [m]
+    desired_speed: Array  # (n,) [m/s]
+    kinds: tuple[str, ...]  # (n,) as in kinds.py; empty: of no kind
+    groups: tuple[str, ...]  # (n,) the id of the first in each one's group; empty: alone
+
+    @property
+    def traits(self) -> dict[str, Trait]:
+        """Who of them is what, by their ids."""
+        told = zip(self.ids, self.kinds, self.groups, strict=True)
+        return {name: Trait(kind, group) for name, kind, group in told if kind or group}
+
+
+def spawn(
+    config: CrowdConfig,
+    path: EgoPath | None,
+    seed: int,
+    prefix: str = PREFIX,
+    drive: FreeDrive | None = None,
+) -> Spawned:
+    """Draw ``config.pedestrians`` pedestrians, none closer to another than allowed.
+
+    They start uniform in the spawn area; with the sampler ``encounters`` so as to meet ``drive``.
+
+    With ``two_sided`` every second party stands on, and walks to, the mirror image about the ego's
+    path where it passes the spawn area. The first k of a larger crowd of the same seed are not the
+    same people: the spacing rule couples them.
+
+    Args:
+        config: how many, where, where to, how fast.
+        path: the ego's, for ``two_sided``; None where no ego is inserted.
+        seed: of the draw.
+        prefix: of their ids; a number follows.
+        drive: that is met, for the sampler ``encounters``; None where no way is known.
+
+    Raises:
+        CrowdError: there is no room for so many at this spacing, or no ego about whose path to
+            mirror, or whom to meet.
+    """
+    random = np.random.default_rng(seed)
+    ids = tuple(f"{prefix}{i}" for i in range(config.pedestrians))
+    kinds = draw_kinds(config.people, len(ids), np.random.default_rng((seed, _KINDS)))
+    if config.sampler == ENCOUNTERS:
+        if drive is None:
+            raise CrowdError(
+                "--sampler encounters: people meet an ego on its route, and there is none; name "
+                "one (--ego-route)"
+            )
+        position, destination, desired_speed, sizes = meet(config, drive, kinds, random)
+        return Spawned(ids, position, destination, desired_speed, kinds, of_parties(sizes, ids))
+    axis = None
+    if config.two_sided:
+        if path is None:
+            raise CrowdError(
+                "--two-sided: mirrors about the way of an inserted ego; name it (--ego-route)"
+            )
+        axis = _axis(config, path)
+    sizes = party_sizes(len(ids), config.groups, random)
+    position = _scatter(config, sizes, random, axis)
+    desired_speed = slowest(desired_speeds(config, kinds, random), sizes)
+    destination = position + np.asarray(config.walk)
+    if axis is not None:
+        across = np.repeat(np.arange(len(sizes)) % 2 == 1, sizes)
+        unmirrored = _mirror(position[across], axis)
+        destination[across] = _mirror(unmirrored + np.asarray(config.walk), axis)
+    return Spawned(ids, position, destination, desired_speed, kinds, of_parties(sizes, ids))
+
+
+def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
+    """The ego's path where it is nearest to the middle of the spawn area."""
+    x_min, y_min, x_max, y_max = config.spawn_area
+    stations, _ = path.project([((x_min + x_max) / 2, (y_min + y_max) / 2)])
+    return path.pose(float(stations[0]))
+
+
+def _scatter(
+    config: CrowdConfig, sizes: Sequence[int], random: np.random.Generator, axis: Pose | None
+) -> Array:
+    """(n, 2) places of parties, no two people of different ones closer than the minimum spacing.
+
+    All in the spawn area, or every second party in its mirror image about ``axis``.
+    """
+    x_min, y_min, x_max, y_max = config.spawn_area
+    low, high = np.array([x_min, y_min]), np.array([x_max, y_max])
+    places = np.empty((config.pedestrians, 2))
+    count = 0
+    for number, size in enumerate(sizes):
+        shape = facing(size, np.asarray(config.walk))
+        for _ in range(_ATTEMPTS_PER_PERSON):
+            candidate = random.uniform(low, high) + shape
+            if size > 1 and not ((candidate >= low) & (candidate <= high)).all():
+                continue
+            if axis is not None and number % 2:
+                candidate = _mirror(candidate, axis)
+            if has_room(candidate, places[:count], config.minimum_spacing):
+                places[count : count + size] = candidate
+                count += size
+                break
+        else:
+            area = (x_max - x_min) * (y_max - y_min)
+            raise CrowdError(
+                f"--pedestrians {config.pedestrians}: only {count} fit into the spawn area of "
+                f"{area:.0f} m2 at a spacing of {config.minimum_spacing} m; enlarge --spawn-area "
+                "or lower the number or [crowd] minimum_spacing"
+            )
+    return places
+
+
+def has_room(places: Array, others: Array, spacing: float) -> bool:
+    """Whether each of ``places`` (k, 2) keeps ``spacing`` [m] from all ``others`` (n, 2)."""
+    offsets = others[None] - places[:, None]
+    return not (np.einsum("ijk,ijk->ij", offsets, offsets) < spacing**2).any()
+
+
+def _mirror(points: Array, axis: Pose) -> Array:
+    """The mirror image of ``points`` (n, 2) about the line through ``axis``."""
+    origin = np.array([axis.x, axis.y])
+    normal = np.array([-np.sin(axis.heading), np.cos(axis.heading)])
+    return points - 2.0 * np.outer((points - origin) @ normal, normal)

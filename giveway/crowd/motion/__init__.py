@@ -1,0 +1,1 @@
+"""What disturbs or guides how people walk."""

@@ -1,0 +1,66 @@
+"""People who look at a phone notice a vehicle late, whatever model moves them.
+
+A distracted person walks as if there were no vehicle, until one is within 2 m; then as everybody
+else. That they look less for traffic is on record (Thompson et al., Injury Prevention 19, 2013:
+"failing to look both ways"); how near a vehicle has to be is not: 2 m are an assumption of ours.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.crowd.motion.neighbours import AroundModel
+from giveway.geometry.kernel import Array
+from pedestrian_model import (
+    OPEN_GROUND,
+    Crowd,
+    PedestrianModel,
+    Surroundings,
+    Vehicles,
+)
+
+NOTICED = 2.0  # [m] between the middle of a body and a vehicle
+_NONE = Vehicles.empty()
+
+
+class Inattentive(AroundModel):
+    """A model whose distracted people notice vehicles late.
+
+    Where somebody does not notice, the crowd is stepped twice: the bundled models have no memory.
+
+    Args:
+        model: that moves everybody.
+        distracted: (n,) who of the crowd is.
+    """
+
+    def __init__(self, model: PedestrianModel, distracted: Callable[[], NDArray[np.bool_]]) -> None:
+        super().__init__(model)
+        self._distracted = distracted
+
+    def advance(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> None:
+        """Change the crowd in place, a time step on."""
+        unaware = self._distracted()
+        if len(vehicles) and unaware.any():
+            unaware &= distance_to_next(crowd.position, vehicles) > NOTICED
+        if not (len(vehicles) and unaware.any()):
+            self._model.advance(crowd, vehicles, surroundings)
+            return
+        alone = crowd.copy()
+        self._model.advance(alone, _NONE, surroundings)
+        self._model.advance(crowd, vehicles, surroundings)
+        for now, instead in zip(crowd.state, alone.state, strict=True):
+            now[unaware] = instead[unaware]
+
+
+def distance_to_next(position: Array, vehicles: Vehicles) -> Array:
+    """(n,) [m] from each of ``position`` (n, 2) [m] to the nearest vehicle's rectangle."""
+    x, y, heading, _, front, rear, width = vehicles.array.T
+    d_x, d_y = position[:, :1] - x, position[:, 1:] - y
+    along = d_x * np.cos(heading) + d_y * np.sin(heading)
+    beside = np.abs(d_y * np.cos(heading) - d_x * np.sin(heading)) - width / 2.0
+    beyond = np.maximum(along - front, -rear - along)
+    apart = np.hypot(np.maximum(beyond, 0.0), np.maximum(beside, 0.0))
+    return np.asarray(apart.min(axis=1))

@@ -1,0 +1,77 @@
+"""Groups stay together: who has fallen behind is drawn to the middle of the group.
+
+Moussaïd et al. 2010 (groups.py): an acceleration of 3 m/s^2 towards the centre of mass of a group
+of N, beyond (N - 1)/2 m from it. Here it rises to that over another metre (ours), so that nobody
+trembles at the threshold. The paper's turning of heads and repulsion within a group are left out:
+the models' own repulsion keeps people apart. Of the models those have it whose people obey forces.
+"""
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.crowd.motion.disturbance import pushed
+from giveway.crowd.motion.neighbours import AroundModel
+from giveway.geometry.kernel import Array
+from pedestrian_model import (
+    OPEN_GROUND,
+    Crowd,
+    PedestrianModel,
+    Surroundings,
+    Vehicles,
+)
+
+BY_FORCES: Final = frozenset({"vci", "social-force"})
+"""The models in which groups are drawn together."""
+
+_ATTRACTION = 3.0  # [m/s^2]
+_RISE = 1.0  # [m]
+
+
+class Cohesive(AroundModel):
+    """A model whose groups stay together.
+
+    Args:
+        model: that moves everybody.
+        groups: (n,) the number of each one's group in the crowd; -1: alone.
+    """
+
+    def __init__(self, model: PedestrianModel, groups: Callable[[], NDArray[np.int64]]) -> None:
+        super().__init__(model)
+        self._groups = groups
+
+    def advance(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> None:
+        """Change the crowd in place, a time step on."""
+        pull = attraction(crowd.position, self._groups())
+        if not pull.any():
+            self._model.advance(crowd, vehicles, surroundings)
+            return
+        before = crowd.velocity.copy()
+        self._model.advance(crowd, vehicles, surroundings)
+        pushed(self._model, crowd, before, pull * self._model.time_step)
+
+
+def attraction(position: Array, groups: NDArray[np.int64]) -> Array:
+    """(n, 2) [m/s^2] that draws each of ``position`` (n, 2) [m] to the middle of its group.
+
+    Args:
+        position: of each.
+        groups: (n,) the number of its group; -1: alone.
+    """
+    pull = np.zeros_like(position)
+    rows = np.flatnonzero(groups >= 0)
+    if not len(rows):
+        return pull
+    _, member_of, size = np.unique(groups[rows], return_inverse=True, return_counts=True)
+    middle = np.zeros((len(size), 2))
+    np.add.at(middle, member_of, position[rows])
+    way = (middle / size[:, None])[member_of] - position[rows]
+    distance = np.hypot(way[:, 0], way[:, 1])
+    beyond = distance - (size[member_of] - 1) / 2.0
+    strength = _ATTRACTION * np.clip(beyond / _RISE, 0.0, 1.0)
+    pull[rows] = (strength / np.maximum(distance, 1e-9))[:, None] * way
+    return pull

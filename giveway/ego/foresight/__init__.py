@@ -1,0 +1,1 @@
+"""What an ego expects of the people ahead under each of its manoeuvres."""

@@ -1,0 +1,276 @@
+"""A race between manoeuvres in one compiled call: the cheapest so far is rolled out by a step.
+
+A manoeuvre's cost never falls along its way, nor by what comes beyond it, so that one whose cost so
+far exceeds another's whole cost need not be looked at any farther: branch and bound, best first.
+Manoeuvres that begin alike share the crowd's answer until they part. Neither changes a number
+of the winner.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller import add_cost_of_others, later_cost, own_cost
+from giveway.ego.corridor import set_pose
+from giveway.ego.foresight.assessment import View, assess_step, interval_of
+from giveway.ego.foresight.intent import walk_up
+from giveway.ego.foresight.later_crossings import fill_crossers
+from giveway.ego.foresight.workspace import Arrays
+from giveway.geometry.kernel import Array, inlined, inner, kernel
+from pedestrian_model import borrowed, leap, start, wish
+
+_FINE = -1  # no pedestrian whose state is not finite
+
+
+@kernel
+def run_race(
+    path: Arrays,
+    people: Arrays,
+    law: tuple[Any, ...],
+    poses: Array,
+    row: int,
+    front: float,
+    view: tuple[float, ...],
+    alarm: tuple[Any, ...],
+    trials: Arrays,
+    memory: Arrays,
+    entrants: NDArray[np.int64],
+    lead: bool,
+    allowed: Array,
+    wanted: float,
+    weights: tuple[Any, ...],
+) -> tuple[int, bool, int]:
+    """The row of the cheapest entrant, which has finished; -1: no cost is a number.
+
+    Also whether nobody is in the way of the first, and how many have been compared.
+
+    Args:
+        path: vertices, stations and headings of the ego's.
+        people: what :func:`pedestrian_model.start` takes.
+        law: the numbers of the model, and :attr:`Beliefs.halting`.
+        poses: (M, m, 7) of all vehicles; the ego's row is changed.
+        row: the ego's.
+        front: its front bumper's station [m].
+        view: the numbers of a ``View``.
+        alarm: the numbers of an ``Alarm``.
+        trials: of ``Trials``.
+        memory: of :class:`giveway.ego.foresight.workspace.Lanes`.
+        entrants: see :meth:`giveway.ego.foresight.workspace.Lanes.line_up`.
+        lead: the first runs until somebody is in its way, and wins if nobody is.
+        allowed: (N,) [m].
+        wanted: the speed [m/s] that time is lost against.
+        weights: of the cost.
+    """
+    path, people, trials, memory = borrowed((path, people, trials, memory))
+    poses, alarm, entrants, allowed = borrowed((poses, alarm, entrants, allowed))
+    distance, speed, acceleration, handicap = trials
+    sums, steps, alike, _, ends, crossers, bad = memory[3:]
+    M, time_step = poses.shape[0], View(*view).time_step
+    ahead, scene, scratch = start(people)
+    n = ahead.state.position.shape[0]
+    bad[0] = _FINE
+    steps[:] = -1
+    running = np.empty(entrants.shape[1], dtype=np.int64)
+    count, tried, best, first = 0, 0, -1, entrants[0, 0]
+    for heat in range(2):
+        row_of = 0
+        if heat == 1:
+            running[0], count = best, 1
+            row_of = 1 if sums[2, best] <= 0.0 else 2
+        for k in entrants[row_of]:
+            if k < 0:
+                break
+            enter(k, distance, speed, steps, alike)
+            sums[3, k] = own_cost(speed[k], acceleration[k], wanted, time_step, weights)
+            ending = distance[k, -1], speed[k, -1], wanted, allowed, time_step, weights
+            sums[0, k] = sums[3, k] + later_cost(crossers[:0], *ending)  # nobody comes later
+            sums[1, k], sums[2, k] = 0.0, 0.0
+            running[count] = k
+            count += 1
+            tried += 1
+        leads = lead and heat == 0
+        while True:
+            best, least = -1, np.inf
+            if leads:
+                best = first
+                if time_step * sums[1, first] > 0.0:
+                    leads = False
+                    continue
+                if steps[1, first] == M:
+                    return first, True, tried
+            else:
+                for e in range(count):
+                    k = running[e]
+                    bound = sums[0, k] + time_step * sums[1, k] + handicap[k]
+                    if bound < least:
+                        best, least = k, bound
+                if best < 0 or steps[1, best] == M:
+                    break
+            bad[0] = advance(
+                best,
+                path,
+                people,
+                ahead,
+                scene,
+                scratch,
+                law,
+                poses,
+                row,
+                front,
+                view,
+                alarm,
+                distance,
+                speed,
+                memory,
+                allowed,
+                weights,
+            )
+            if bad[0] != _FINE:
+                return -1, False, tried
+            if steps[1, best] == M:
+                fill_ends(memory[0], memory[1], best * M + M - 1, scene, ends[:n])
+                end = front + distance[best, -1]
+                half_width = View(*view).half_width
+                fill_crossers(path[0], path[1], end, half_width, ends[:n], crossers[:n])
+                ending = distance[best, -1], speed[best, -1], wanted, allowed, time_step, weights
+                sums[0, best] = sums[3, best] + later_cost(crossers[:n], *ending)
+        if best < 0:
+            break
+    return best, False, tried
+
+
+@inlined
+def fill_ends(state: Array, index: NDArray[np.int64], row: int, scene: Any, ends: Array) -> None:
+    """Fill ``ends`` (n, 5): where people are in a ``row`` of the memory, and what they wish."""
+    n = ends.shape[0]
+    for p in range(n):
+        at = row * n + p
+        x, y = state[4 * at], state[4 * at + 1]
+        w_x, w_y, until = wish(x, y, index[at], p, scene)
+        ends[p, 0], ends[p, 1], ends[p, 2], ends[p, 3], ends[p, 4] = x, y, w_x, w_y, until
+
+
+@inner
+def enter(
+    k: int, distance: Array, speed: Array, steps: NDArray[np.int64], alike: NDArray[np.int64]
+) -> None:
+    """Set a manoeuvre to its start, and find how long it is like those that have started."""
+    steps[0, k] = steps[1, k] = 0
+    for other in range(steps.shape[1]):
+        if other == k or steps[0, other] < 0:
+            continue
+        same, N = 0, distance.shape[1] - 1
+        while (
+            same <= N
+            and distance[k, same] == distance[other, same]
+            and speed[k, same] == speed[other, same]
+        ):
+            same += 1
+        alike[k, other] = alike[other, k] = same
+
+
+@inlined
+def advance(
+    k: int,
+    path: Arrays,
+    people: Arrays,
+    ahead: Any,
+    scene: Any,
+    scratch: Any,
+    law: tuple[Any, ...],
+    poses: Array,
+    row: int,
+    front: float,
+    view: tuple[float, ...],
+    alarm: tuple[Any, ...],
+    distance: Array,
+    speed: Array,
+    memory: Arrays,
+    allowed: Array,
+    weights: tuple[Any, ...],
+) -> int:
+    """Roll manoeuvre k out by one step; -1, or a pedestrian whose state is not finite."""
+    vertices, stations, headings = path
+    state, index, prospects, sums, steps, alike, between = memory[:7]
+    x, v, at = ahead.state
+    M, n, N, every = poses.shape[0], x.shape[0], distance.shape[1] - 1, int(View(*view).every)
+    j = steps[0, k]
+    here, step = (k * M + j) * n, j * every
+    late = step + every - 1
+    donor = -1
+    for other in range(steps.shape[1]):
+        if other != k and steps[0, other] > j and alike[k, other] > late:
+            donor = other
+    if donor >= 0:
+        there = (donor * M + j) * n
+        for i in range(4 * n):
+            state[4 * here + i] = state[4 * there + i]
+        for p in range(n):
+            index[here + p] = index[there + p]
+    else:
+        if j == 0:
+            start(people)
+        else:
+            before = here - n
+            for p in range(n):
+                base = 4 * (before + p)
+                x[p, 0], x[p, 1] = state[base], state[base + 1]
+                v[p, 0], v[p, 1] = state[base + 2], state[base + 3]
+                at[p] = index[before + p]
+        station = front + 0.5 * (distance[k, step] + distance[k, late])
+        pace = 0.5 * (speed[k, step] + speed[k, late])
+        set_pose(vertices, stations, headings, station, pace, View(*view).length, poses[j, row])
+        bad = leap(ahead, scene, poses[j], scratch, *law[:-1])
+        if bad != _FINE:
+            return bad
+        if j > 0:  # the first step tells who yields: it is the model's
+            walk_up(law[-1], 4 * (here - n), state, scene, x, v)
+        for p in range(n):
+            base = 4 * (here + p)
+            state[base], state[base + 1] = x[p, 0], x[p, 1]
+            state[base + 2], state[base + 3] = v[p, 0], v[p, 1]
+            index[here + p] = at[p]
+    steps[0, k] = j + 1
+    predicted = state[4 * k * M * n : 4 * (k + 1) * M * n].reshape(M, n, 4)
+    begin, end = interval_of(j, every, M, N)
+    donor = -1
+    for other in range(steps.shape[1]):
+        if other != k and steps[1, other] > j and alike[k, other] > end:
+            donor = other
+    if donor >= 0:
+        for which in range(3):
+            for i in range(begin, end):
+                prospects[which, k, i] = prospects[which, donor, i]
+    else:
+        assess_step(
+            vertices,
+            stations,
+            headings,
+            predicted[j - 1] if j > 0 else people[0],
+            predicted[j],
+            j,
+            M,
+            between[:n],
+            front,
+            distance[k],
+            speed[k],
+            view,
+            alarm,
+            prospects[0, k],
+            prospects[1, k],
+            prospects[2, k],
+        )
+    for i in range(begin, end):
+        sums[1, k], sums[2, k] = add_cost_of_others(
+            sums[1, k],
+            sums[2, k],
+            speed[k, i + 1],
+            prospects[0, k, i],
+            prospects[1, k, i],
+            prospects[2, k, i],
+            distance[k, i + 1] - allowed[i],
+            weights,
+        )
+    steps[1, k] = j + 1
+    return _FINE

@@ -1,0 +1,334 @@
+"""What a manoeuvre would lead to: the crowd predicted under it, as seen from the ego."""
+
+from math import inf
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
+from giveway.ego.corridor import fill_poses
+from giveway.ego.foresight.assessment import View, assess
+from giveway.ego.foresight.branch_and_bound import run_race
+from giveway.ego.foresight.contingency import BRANCHES, hedged
+from giveway.ego.foresight.intent import Beliefs, Halting, Otherwise
+from giveway.ego.foresight.later_crossings import fill_crossers
+from giveway.ego.foresight.threats import Alarm
+from giveway.ego.foresight.workspace import Lanes
+from giveway.ego.kerbs import NO_KERBS, kerb_lines
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
+from giveway.metrics.conflicts import CRITICAL_TTC
+from pedestrian_model import (
+    LONGEST_STEP,
+    Crowd,
+    CrowdPredictor,
+    ParameterError,
+    Predictor,
+    Surroundings,
+    VciParameters,
+    require_steady,
+)
+
+_STEP = 0.1  # [s] of the crowd under a manoeuvre, at most: twice the one in which it is simulated
+
+_Judged = tuple[Array, float, tuple[Any, ...]]  # what is allowed, the speed wanted, the weights
+
+
+def steps_at_once(time_step: float, horizon: int) -> int:
+    """How many steps of a manoeuvre make one of the crowd under it."""
+    return min(max(1, int(_STEP / time_step + 1e-9)), horizon)
+
+
+def plan_predictor(
+    parameters: VciParameters, time_step: float, horizon: int, **readings: bool
+) -> Predictor:
+    """Predicts the crowd for plans of ``horizon`` steps of ``time_step`` [s], some at once.
+
+    A step is as long as it can be up to 0.1 s. It is integrated at once, or where people's speeds
+    would swing in steps of the crowd's length.
+
+    Args:
+        parameters: the model by which people are believed to walk.
+        time_step: of the manoeuvres [s].
+        horizon: N of them.
+        readings: options of :class:`pedestrian_model.Predictor`.
+    """
+    every = steps_at_once(time_step, horizon)
+    step, longest = every * time_step, _STEP
+    try:
+        require_steady(parameters, step, longest)
+    except ParameterError:
+        longest = LONGEST_STEP
+    return Predictor(parameters, step, horizon // every, longest_step=longest, **readings)
+
+
+class CrowdForesight:
+    """Predicts the crowd under one manoeuvre after the other.
+
+    The manoeuvres are tried in poses of its own: what other egos see does not change by them.
+
+    Args:
+        predictor: of M steps, each of them some of a manoeuvre's.
+        path: the ego's.
+        shape: of its body.
+        horizon: N [steps] of a manoeuvre.
+        time_step: of a manoeuvre [s]; the predictor's is some of them.
+        half_width: of the corridor [m].
+        clearance: [m] that the safety layer keeps to pedestrians' bodies.
+        braking: [m/s^2] of the ego at most.
+        worst: what the safety layer takes people to do; None: there is none.
+        conflict_time: time to collision of a conflict [s] (FHWA-HRT-08-051).
+        beliefs: who yields; None: everybody walks on.
+    """
+
+    def __init__(
+        self,
+        predictor: CrowdPredictor,
+        path: EgoPath,
+        shape: VehicleShape,
+        *,
+        horizon: int,
+        time_step: float,
+        half_width: float,
+        clearance: float,
+        braking: float,
+        worst: WorstMotion | None,
+        conflict_time: float = CRITICAL_TTC,
+        beliefs: Beliefs | None = None,
+    ) -> None:
+        N, M = horizon, predictor.horizon
+        every = round(predictor.time_step / time_step)
+        self._predictor, self._every = predictor, every
+        self._way = path.vertices, path.stations, path.headings
+        # Plain tuples: each call would look the class of a named one up anew (2 us).
+        self._view = tuple(
+            View(shape.length, shape.width, half_width, conflict_time, time_step, every)
+        )
+        walking = predictor.parameters
+        able = worst or WorstMotion(walking.max_acceleration, walking.max_speed)
+        self._limits = Alarm(
+            walking.body_radius,
+            clearance,
+            able.acceleration,
+            able.speed,
+            braking,
+            worst is not None,
+            min(able.setting_out, able.acceleration),
+        )
+        self._alarm = tuple(self._limits)
+        self._clearance, self._off = clearance, 0.0
+        self._beliefs, self._soon = beliefs, np.empty(0)
+        self._length = shape.length
+        self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
+        self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
+        self._predicted = np.empty((M, 0, 2))
+        self._best = np.empty((M, 0, 2))
+        self._poses = np.empty((M, 0, 7))
+        self._copied, self._preferred = False, False
+        self._otherwise: Otherwise | None = None
+        self._winner = -1  # of the latest race, whose lanes hold it
+        self._lanes = self._aside = Lanes(0, N, M, 0)
+        # Only VCI is part of the compiled search: else manoeuvres are judged one by one.
+        self._vci = predictor if isinstance(predictor, Predictor) else None
+        self.race = self._race if self._vci is not None else None
+
+    def look(
+        self,
+        pedestrians: Crowd,
+        surroundings: Surroundings,
+        poses: Array,
+        row: int,
+        front: float,
+        off: float = 0.0,
+        kerbs: Array = NO_KERBS,
+        numbers: NDArray[np.int64] | None = None,
+    ) -> None:
+        """Begin an instant.
+
+        Args:
+            pedestrians: to be predicted; the ways of those who are believed to yield are changed.
+            surroundings: the walls and lights that they heed.
+            poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
+            row: the ego's.
+            front: the front bumper's station [m].
+            off: [m] how far people's positions are off at most, beside what the clearance has.
+            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
+            numbers: (n,) one for each person, which the person keeps; None: nobody is known again.
+        """
+        if off != self._off:
+            self._off = off
+            self._limits = self._limits._replace(clearance=self._clearance + off)
+        self._alarm = (*self._limits[:-1], kerb_lines(pedestrians.position, kerbs))
+        if self._beliefs is not None and numbers is not None:
+            self._otherwise = self._beliefs.weigh(pedestrians, numbers, front, self._soon)
+            self._halting, self._soon = self._beliefs.halting, self._soon[:0]
+        else:
+            self._otherwise = None
+            self._halting = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
+        self._pedestrians, self._surroundings = pedestrians, surroundings
+        self._given, self._row, self._front = poses, row, front
+        self._copied, self._preferred = False, False
+        self._winner = -1
+
+    @property
+    def best(self) -> Array | None:
+        """(N, n, 2) [m] positions at steps 1 ... N under the preferred manoeuvre, if any was.
+
+        Those between the steps of the prediction lie on straight lines between these.
+        """
+        if self._winner < 0 and not self._preferred:
+            return None
+        people, row = self._pedestrians.position, self._winner
+        known = self._best if row < 0 else self._lanes.positions(row, len(people))
+        known = np.concatenate([people[None], known])
+        after = np.minimum(np.arange(1, len(self._distance)) / self._every, len(known) - 1.0)
+        before = np.minimum(after.astype(np.int64), len(known) - 2)
+        share = (after - before)[:, None, None]
+        return np.asarray((1.0 - share) * known[before] + share * known[before + 1])
+
+    def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
+        """What a manoeuvre would lead to; valid until the next call."""
+        self._predict(manoeuvre.distance, manoeuvre.speed)
+        gap, conflicts, calm, _ = self._prospect
+        assess(
+            *self._way,
+            self._pedestrians.position,
+            self._predicted,
+            self._front,
+            manoeuvre.distance,
+            manoeuvre.speed,
+            self._view,
+            self._alarm,
+            gap,
+            conflicts,
+            calm,
+        )
+        wishes = self._predictor.wishes(self._pedestrians, self._surroundings)
+        crossers = np.empty((len(wishes), 4))
+        fill_crossers(
+            *self._way[:2],
+            self._front + manoeuvre.distance[-1],
+            self._view[2],
+            np.column_stack([self._predicted[-1], wishes]),
+            crossers,
+        )
+        return self._prospect._replace(crossers=crossers)
+
+    def _race(
+        self,
+        trials: Trials,
+        heats: Heats,
+        lead: bool,
+        allowed: Array,
+        wanted: float,
+        weights: tuple[Any, ...],
+    ) -> Verdict:
+        """The cheapest of some manoeuvres, see :class:`controller.foresight.RacingForesight`.
+
+        Raises:
+            DivergenceError: a predicted state is not finite.
+        """
+        if not self._copied:
+            self._copy()
+        n, lanes = len(self._pedestrians), self._lanes
+        if lanes.people < n or lanes.count < len(trials.handicap):
+            lanes = self._lanes = Lanes(len(trials.handicap), len(allowed), len(self._poses), n)
+        raced, whom = (lanes, trials, heats), (self._pedestrians, self._halting)
+        judged, other = (allowed, wanted, weights), self._otherwise
+        if other is not None:
+            best, clear, tried = self._hedge(*raced, judged, other)
+        else:
+            best, clear, tried = self._run(*raced, lead, judged, *whom)
+        if best >= 0:
+            self._winner = best
+            self._soon = lanes.soon(best, n)
+        return lanes.verdict(best, clear, tried)
+
+    def _run(
+        self,
+        lanes: Lanes,
+        trials: Trials,
+        heats: Heats,
+        lead: bool,
+        judged: _Judged,
+        people: Crowd,
+        halting: Halting,
+    ) -> tuple[int, bool, int]:
+        """As :func:`run_race`, with people who do as either hypothesis says."""
+        vci = self._vci
+        assert vci is not None  # else there is no race
+        ended: tuple[int, bool, int] = run_race(
+            self._way,
+            vci.arrays(people, self._surroundings),
+            (*vci.law, halting),
+            self._poses,
+            self._row,
+            self._front,
+            self._view,
+            self._alarm,
+            tuple(trials),
+            lanes.arrays,
+            lanes.line_up(heats),
+            lead,
+            *judged,
+        )
+        if lanes.bad >= 0:
+            raise vci.divergence(people, lanes.bad)
+        return ended
+
+    def _hedge(
+        self, lanes: Lanes, trials: Trials, heats: Heats, judged: _Judged, other: Otherwise
+    ) -> tuple[int, bool, int]:
+        """As :meth:`_run`: of all trials the best one where either hypothesis may be true."""
+        time_step, n = View(*self._view).time_step, len(other.people)
+        if self._aside.people < n:  # what the trials lead to stays in their own lanes
+            self._aside = Lanes(BRANCHES, len(judged[0]), len(self._poses), n)
+        likelier, less = (lanes, self._pedestrians, self._halting), (self._aside, *other[:2])
+
+        def cost(trials: Trials, rows: list[int], otherwise: bool) -> float:
+            among, people, halting = less if otherwise else likelier
+            raced = among, trials, Heats(rows, [], [])
+            best, _, _ = self._run(*raced, False, judged, people, halting)
+            own, others = among.arrays[3][:2, best]
+            return float(own + time_step * others + trials.handicap[best]) if best >= 0 else inf
+
+        rows = list(dict.fromkeys([*heats.first, *heats.content, *heats.wanting]))
+        return hedged(cost, trials, rows, other.likely, judged[1], time_step), False, 1
+
+    def prefer(self) -> None:
+        """Keep the positions under the latest manoeuvre as those of the preferred one."""
+        if self._best.shape != self._predicted.shape:
+            self._best = np.empty_like(self._predicted)
+        self._best[:] = self._predicted
+        self._preferred = True
+
+    def _predict(self, distance: Array, speed: Array) -> None:
+        if not self._copied:
+            self._copy()
+        fill_poses(
+            *self._way,
+            self._front,
+            self._middle(distance),
+            self._middle(speed),
+            self._length,
+            self._row,
+            self._poses,
+        )
+        self._predicted = self._predictor.predict(
+            self._pedestrians, self._poses, self._surroundings
+        )
+
+    def _middle(self, values: Array) -> Array:
+        """(M,) the mean over each step of the prediction of what acts on people in it."""
+        every, end = self._every, len(self._poses) * self._every
+        return np.asarray(0.5 * (values[:end:every] + values[every - 1 : end : every]))
+
+    def _copy(self) -> None:
+        """Take over the poses of this instant."""
+        M, vehicles = len(self._poses), self._given.shape[1]
+        if self._poses.shape[1] != vehicles:
+            self._poses = np.empty((M, vehicles, 7))
+        self._poses[:] = self._given[: M * self._every : self._every]
+        self._copied = True

@@ -1,0 +1,53 @@
+"""What predicts the crowd for an ego: the model that its controller believes in."""
+
+from __future__ import annotations
+
+from controller import Controller
+from giveway.config import EgoRunConfig
+from giveway.crowd.models import believed_model
+from giveway.ego.foresight.crowd_foresight import plan_predictor, steps_at_once
+from pedestrian_model import (
+    JUPEDSIM_MODELS,
+    CrowdPredictor,
+    Predictor,
+    StepwisePredictor,
+    VciParameters,
+    unmoved,
+)
+
+
+def predictor_of(
+    config: EgoRunConfig, controller: Controller, time_step: float, parameters: VciParameters
+) -> CrowdPredictor | None:
+    """What predicts the crowd for a controller; None: it looks at the present only.
+
+    VCI is compiled into the planner's race between manoeuvres, and so is constant velocity, as VCI
+    of people whom nothing moves; any other model is asked step by step.
+
+    Args:
+        config: of the ego.
+        controller: that looks ahead.
+        time_step: of the co-simulation [s].
+        parameters: bodies and limits that people are believed to have.
+
+    Raises:
+        ConfigError: an option of somebody else's model cannot be used.
+        ControlError: somebody else's model is not installed.
+        CrowdError: it cannot be made.
+    """
+    horizon, believed = controller.horizon, config.perception.model
+    if not horizon:
+        return None
+    if believed in {"vci", "constant-velocity"}:
+        readings = {"detour": config.crowd.detour, "creep": config.crowd.creep}
+        if believed != "vci":
+            parameters, readings["detour"] = unmoved(parameters), False
+        make = plan_predictor if controller.foresees else Predictor
+        return make(parameters, time_step, horizon, **readings)
+    # Ours divide a longer step themselves; somebody else's is asked at the step that it is for.
+    hosted = config.perception.plugged_in or believed in JUPEDSIM_MODELS
+    own = hosted or not controller.foresees
+    every = 1 if own else steps_at_once(time_step, horizon)
+    return StepwisePredictor(
+        believed_model(config, every * time_step, parameters), horizon // every
+    )

@@ -1,0 +1,1 @@
+"""What an ego perceives: sensors, and what is in front on its path."""

@@ -1,0 +1,85 @@
+"""How an ego is made ready before it departs: its vehicle FMU, its predictor, its safety layer."""
+
+from contextlib import ExitStack
+from math import sqrt
+
+from controller import Controller, SafetyParameters
+from fmus import FmuError
+from giveway.config import EgoRunConfig
+from giveway.config.files.presets import parameters_of
+from giveway.ego.foresight.predictors import predictor_of
+from giveway.ego.people_assumed import people_at_worst
+from giveway.ego.recorded_ego import NoController, RecordedVehicle
+from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
+from giveway.ego.waiting_ego import WaitingEgo
+from giveway.errors import VehicleError
+from giveway.run_data.tracks import EgoTrack
+
+_MARGIN = 0.05  # Distance [m] between the front bumper and whoever may get there; docs/safety.md
+_WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
+
+
+def make_waiting_ego(
+    config: EgoRunConfig,
+    controller: Controller,
+    time_step: float,
+    stack: ExitStack,
+) -> WaitingEgo:
+    """Load one ego's vehicle FMU and join it with its controller.
+
+    Args:
+        config: of the ego.
+        controller: decides on its force.
+        time_step: of the co-simulation [s].
+        stack: closes the FMU.
+
+    Raises:
+        VehicleError: the FMU cannot be loaded.
+    """
+    crowd = parameters_of(config.crowd.preset)
+    expected = parameters_of(config.perception.preset or config.crowd.preset)
+    try:
+        vehicle, description = open_for(config, time_step, stack)
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    predictor = predictor_of(config, controller, time_step, expected)
+    fastest = max(crowd.max_speed, expected.max_speed)
+    safety = safety_parameters(config, time_step) if config.safety_layer else None
+    ego = WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)
+    stack.callback(ego.close)
+    return ego
+
+
+def recorded_ego(config: EgoRunConfig, track: EgoTrack, time_step: float) -> WaitingEgo:
+    """An ego that will drive as it did in a run that is over.
+
+    Args:
+        config: of the ego.
+        track: its rows.
+        time_step: of the co-simulation [s].
+    """
+    vehicle = RecordedVehicle(track, time_step)
+    fastest = parameters_of(config.crowd.preset).max_speed
+    return WaitingEgo(config, vehicle, {}, NoController(), None, fastest, None)
+
+
+def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameters:
+    """The limits that the safety layer counts on; the body's width is not known yet.
+
+    Args:
+        config: of the ego.
+        time_step: of the co-simulation [s].
+    """
+    safety, walking = config.safety, parameters_of(config.crowd.preset)
+    worst = people_at_worst(safety.people, config.crowd.preset)
+    reaction = safety.reaction_time
+    return SafetyParameters(
+        walking_acceleration=worst.acceleration,
+        walking_speed=worst.speed,
+        setting_out=worst.setting_out,
+        body_radius=walking.body_radius,
+        margin=_MARGIN + model_margin(config, time_step),
+        position_error=_WITHIN * config.perception.position_noise,
+        force_limit=config.vehicle.force_limit,
+        reaction_time=identified_reaction_time(config) if reaction is None else reaction,
+    )

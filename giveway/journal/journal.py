@@ -1,0 +1,253 @@
+"""The rows of a run in a file that outlives its process.
+
+Native code (SUMO, the FMU, a solver) can end the process at any instruction. What has been handed
+to the operating system by then outlives it. So the run's tables live in memory, and once per
+control step everything new is appended to one file by one write:
+
+    magic | record | record | ... ;  record = kind, table, bytes | payload
+
+A ``COMMIT`` record closes each write: a reader takes whole steps or nothing, whatever the end of
+the file looks like. The file is written and not memory-mapped, for four reasons: a wild pointer,
+which is how native code dies, cannot reach rows that have been written; a full disk is an error
+number instead of a SIGBUS; it works on every disk and system; and rows are filled at the speed of
+plain memory. A mapped window was tried: it was as fast for small crowds, and slower for large ones.
+
+A journal is a safety net and never ends a run itself: when it cannot be written it says so in
+:attr:`Journal.failure`, and the run goes on from memory.
+"""
+
+import contextlib
+import enum
+import json
+import struct
+from collections.abc import Sequence
+from io import FileIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.processes.heartbeat import Heartbeat
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.void]
+"""(n,) rows of float64 whose columns have names: ``rows["speed"]`` is one of them."""
+
+ROWS_FILE = "rows"
+META_FILE = "meta.json"
+MAGIC = b"giveway3"  # another number for another format; which columns a table has, it says itself
+RECORD = struct.Struct("=IIQ")  # kind, table, bytes of payload; 16 bytes
+_FIRST_ROWS = 1024  # a table's first size; it doubles from there
+
+
+class Kind(enum.IntEnum):
+    """What a record holds."""
+
+    ROWS_TABLE = 1  # payload: JSON, name and names of columns
+    NAME_TABLE = 2  # payload: JSON, name
+    ROWS = 3  # payload: float64
+    NAMES = 4  # payload: JSON, the new names in order
+    COMMIT = 5  # no payload
+
+
+_COMMIT = RECORD.pack(Kind.COMMIT, 0, 0)
+
+
+def row_type(columns: Sequence[str]) -> np.dtype[np.void]:
+    """Return the type of a row of float64 with these columns."""
+    return np.dtype([(name, np.float64) for name in columns])
+
+
+class JournalRows:
+    """A table of float64 that grows by doubling.
+
+    Args:
+        columns: Names of the columns, in order.
+        number: of the table in its journal.
+    """
+
+    def __init__(self, columns: Sequence[str], number: int = 0) -> None:
+        self._number = number
+        self._count = 0
+        self._journalled = 0
+        self._type = row_type(columns)
+        self._row_bytes = self._type.itemsize
+        self._fill = struct.Struct(f"={len(columns)}d").pack_into
+        self._hold(np.empty((_FIRST_ROWS, len(columns))))
+
+    def _hold(self, buffer: Array) -> None:
+        self._buffer, self._room = buffer, len(buffer)
+        self._bytes = buffer.data.cast("B")
+
+    def block(self, rows: int) -> Array:
+        """A view of the next ``rows`` rows, to be filled before the next block or commit."""
+        start, self._count = self._count, self._count + rows
+        if self._count > self._room:
+            self._grow(start)
+        return self._buffer[start : self._count]
+
+    def add(self, *values: float) -> None:
+        """Fill the next row: three times as fast as by a block of one."""
+        start = self._count
+        self._count = start + 1
+        if start >= self._room:
+            self._grow(start)
+        self._fill(self._bytes, start * self._row_bytes, *values)
+
+    def _grow(self, filled: int) -> None:
+        """Make room for all that is counted, and keep the rows that have been ``filled``."""
+        more = np.empty((max(self._count, 2 * self._room), self._buffer.shape[1]))
+        more[:filled] = self._buffer[:filled]  # the system gives the rest when it is filled
+        self._hold(more)
+
+    def give_back(self, rows: int) -> None:
+        """Take back the last ``rows`` rows of the latest block, which have not been filled."""
+        self._count -= rows
+
+    @property
+    def filled(self) -> Rows:
+        """The rows filled so far (a view), with columns by name."""
+        return self._buffer[: self._count].view(self._type)[:, 0]
+
+    def append_new(self, records: list[bytes | memoryview]) -> None:
+        """Append what the journal does not have yet."""
+        start, end = self._journalled * self._row_bytes, self._count * self._row_bytes
+        if end > start:
+            records.append(RECORD.pack(Kind.ROWS, self._number, end - start))
+            records.append(self._bytes[start:end])
+            self._journalled = self._count
+
+
+class NameTable:
+    """Strings as row entries: each gets the index of its first appearance.
+
+    Args:
+        number: of the table in its journal.
+    """
+
+    def __init__(self, number: int = 0) -> None:
+        self._number = number
+        self._indices: dict[str, int] = {}
+        self._new: list[str] = []
+
+    def index(self, name: str) -> int:
+        """The index of ``name``, a new one if it has none."""
+        known = self._indices.get(name)
+        if known is not None:
+            return known
+        self._new.append(name)
+        return self._indices.setdefault(name, len(self._indices))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names, by index."""
+        return tuple(self._indices)
+
+    def append_new(self, records: list[bytes | memoryview]) -> None:
+        """Append what the journal does not have yet."""
+        if self._new:
+            records += _json_record(Kind.NAMES, self._number, self._new)
+            self._new.clear()
+
+
+class Journal:
+    """The tables of one run.
+
+    Args:
+        folder: where the journal is kept; with None nothing is kept.
+        heartbeat: the one in use; None makes one in the folder.
+
+    Attributes:
+        heartbeat: where the run stands.
+        failure: why nothing is journalled any more; empty while all is well.
+    """
+
+    def __init__(self, folder: Path | None, heartbeat: Heartbeat | None = None) -> None:
+        self.failure = ""
+        self._folder = folder
+        self._names: list[NameTable] = []
+        self._rows: list[JournalRows] = []
+        self._file: FileIO | None = None
+        self._records: list[bytes | memoryview] = [MAGIC]
+        try:
+            self.heartbeat = heartbeat or Heartbeat(folder)
+            if folder is not None:
+                self._file = (folder / ROWS_FILE).open("xb", buffering=0)
+        except OSError as error:
+            self.heartbeat = Heartbeat(None)
+            self._give_up(error)
+
+    def rows(self, name: str, columns: Sequence[str]) -> JournalRows:
+        """Add a table of rows with these columns."""
+        rows = JournalRows(columns, len(self._rows))
+        declaration = {"name": name, "columns": list(columns)}
+        self._records += _json_record(Kind.ROWS_TABLE, len(self._rows), declaration)
+        self._rows.append(rows)
+        return rows
+
+    def names(self, name: str) -> NameTable:
+        """A new table of names."""
+        names = NameTable(len(self._names))
+        self._records += _json_record(Kind.NAME_TABLE, len(self._names), name)
+        self._names.append(names)
+        return names
+
+    def write_meta(self, meta: dict[str, Any]) -> None:
+        """Keep what the rows belong to, as JSON; a later call replaces it whole."""
+        if self._folder is None:
+            return
+        new = self._folder / f"{META_FILE}.new"
+        try:
+            new.write_text(json.dumps(meta), encoding="utf-8")
+            new.replace(self._folder / META_FILE)
+        except OSError as error:
+            self._give_up(error)
+
+    def commit(self) -> None:
+        """Hand everything new to the operating system; once per control step."""
+        if self._file is None:
+            return
+        records = self._records
+        for names in self._names:  # before the rows that refer to them
+            names.append_new(records)
+        for rows in self._rows:
+            rows.append_new(records)
+        if not records:
+            return
+        records.append(_COMMIT)
+        try:
+            _write(self._file, b"".join(records))
+        except OSError as error:
+            self._give_up(error)
+        records.clear()
+
+    def close(self) -> None:
+        """Commit, and let go of the file."""
+        self.commit()
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _give_up(self, error: OSError) -> None:
+        self.failure = (
+            f"{error.filename or self._folder}: the journal cannot be written ({error.strerror}); "
+            "the run goes on, but a crash would lose its rows; free the disk or set TMPDIR"
+        )
+        file, self._file = self._file, None
+        if file is not None:
+            with contextlib.suppress(OSError):
+                file.close()
+
+
+def _json_record(kind: Kind, table: int, content: object) -> list[bytes]:
+    payload = json.dumps(content).encode("ascii")
+    return [RECORD.pack(kind, table, len(payload)), payload]
+
+
+def _write(file: FileIO, content: bytes) -> None:
+    """Write all of it: the system may take less at a time."""
+    written = file.write(content)
+    while written < len(content):
+        content = content[written:]
+        written = file.write(content)

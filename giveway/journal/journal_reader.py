@@ -1,0 +1,122 @@
+"""A journal read back, whatever became of the process that wrote it."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from giveway.errors import ResultsError
+from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind, Rows, row_type
+from giveway.processes.heartbeat import Heartbeat, Pulse
+
+
+@dataclass(frozen=True)
+class JournalContents:
+    """What a journal holds.
+
+    Attributes:
+        meta: what the rows belong to; empty if the run ended before it was written.
+        tables: (n,) rows each, by name; so are the columns of a row.
+        names: by name, each by index.
+        commits: whole steps found.
+        pulse: where the run stood.
+    """
+
+    meta: dict[str, Any]
+    tables: dict[str, Rows]
+    names: dict[str, tuple[str, ...]]
+    commits: int
+    pulse: Pulse
+
+
+def read_journal(folder: Path) -> JournalContents:
+    """Read a journal up to its last whole step, whatever became of its writer.
+
+    Raises:
+        ResultsError: the folder holds something else.
+        OSError: it cannot be read.
+    """
+    meta_file, rows_file = folder / META_FILE, folder / ROWS_FILE
+    try:
+        meta = json.loads(meta_file.read_text(encoding="utf-8")) if meta_file.exists() else {}
+    except ValueError:
+        meta = None
+    if not isinstance(meta, dict):
+        raise _broken(meta_file)
+    pulse = Heartbeat(folder).read()
+    if not rows_file.exists() or not rows_file.stat().st_size:
+        return JournalContents(meta, {}, {}, 0, pulse)
+    content = np.memmap(rows_file, np.uint8, mode="r").data
+    begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")  # the process may have died within it
+    if not MAGIC.startswith(begun):
+        raise ResultsError(
+            f"{rows_file}: is not a journal of giveway, or another version's ({MAGIC.decode()} "
+            "expected at its start); the run has to be made again"
+        )
+    reader = _Reader()
+    try:
+        for step in _steps(content):
+            reader.take(step)
+        return JournalContents(meta, *reader.contents(), pulse)
+    except (ValueError, LookupError, TypeError):
+        raise _broken(rows_file) from None
+
+
+def _broken(file: Path) -> ResultsError:
+    return ResultsError(
+        f"{file}: is broken, or another version of giveway wrote it; the run has to be made again"
+    )
+
+
+_Record = tuple[Kind, int, memoryview]
+
+
+def _steps(content: memoryview) -> Iterator[list[_Record]]:
+    """The records of each whole step; a torn end is not one."""
+    at, step = len(MAGIC), list[_Record]()
+    while at + RECORD.size <= len(content):
+        kind, table, size = RECORD.unpack_from(content, at)
+        at += RECORD.size
+        if kind == Kind.COMMIT:
+            yield step
+            step = []
+            continue
+        if kind not in Kind.__members__.values() or at + size > len(content):
+            return
+        step.append((Kind(kind), table, content[at : at + size]))
+        at += size
+
+
+class _Reader:
+    """Puts the tables together again."""
+
+    def __init__(self) -> None:
+        self._columns: list[tuple[str, list[str]]] = []
+        self._blocks: list[list[memoryview]] = []
+        self._names: list[tuple[str, list[str]]] = []
+        self._commits = 0
+
+    def take(self, step: list[_Record]) -> None:
+        self._commits += 1
+        for kind, table, payload in step:
+            if kind is Kind.ROWS:
+                self._blocks[table].append(payload)
+                continue
+            value = json.loads(bytes(payload))
+            if kind is Kind.ROWS_TABLE:
+                self._columns.append((value["name"], value["columns"]))
+                self._blocks.append([])
+            elif kind is Kind.NAME_TABLE:
+                self._names.append((value, []))
+            else:
+                self._names[table][1].extend(value)
+
+    def contents(self) -> tuple[dict[str, Rows], dict[str, tuple[str, ...]], int]:
+        tables = {
+            name: np.frombuffer(bytearray().join(blocks), row_type(columns))
+            for (name, columns), blocks in zip(self._columns, self._blocks, strict=True)
+        }
+        return tables, {name: tuple(names) for name, names in self._names}, self._commits

@@ -1,0 +1,184 @@
+"""The rows of a run, as a recorder or a journal hands them over, and as tracks."""
+
+import json
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.bodies import VehicleShape
+from giveway.journal.journal import Array, Rows
+from giveway.journal.layout import EGO_COUNTS, EGO_NUMBERS, EGO_TEXTS, ROWS
+from giveway.run_data.outputs import Output
+from giveway.run_data.rows import LEDGER
+from giveway.run_data.tracks import (
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PeopleTrack,
+    PredictionTrack,
+    SignalTrack,
+    Timings,
+)
+from giveway.run_data.way import EgoWay
+
+_NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
+_MOST = 2.0**53  # beyond it a number of 64 bits has no exact integers
+
+
+class RecordedEgo(NamedTuple):
+    """One ego's rows."""
+
+    id: str
+    shape: VehicleShape
+    goal: float  # [m]
+    first: int  # the control instant at which it departed
+    track: EgoTrack
+    predictions: PredictionTrack
+    outputs: tuple[Output, ...] = ()
+    hasty: NDArray[np.int64] = _NOBODY  # indices of who set out for the road too suddenly
+
+
+class RecordedRows:
+    """Recorded rows, from a recorder or from the journal of a run that died.
+
+    Args:
+        rows: by table, with the columns of :data:`giveway.journal.layout.ROWS`.
+        names: what their indices mean.
+    """
+
+    def __init__(self, rows: dict[str, Rows], names: dict[str, tuple[str, ...]]) -> None:
+        self._rows = rows
+        self._names = names
+        instants = len(rows["clock"])  # rows of an instant without a row here are left out
+        self.time = np.ascontiguousarray(rows["clock"]["time"])  # (T,) [s]
+        self._ego = rows["ego"][rows["ego"]["step"] < instants]
+        self._background: BackgroundTrack | None = None
+
+    @property
+    def ledger(self) -> dict[str, int]:
+        """How many pedestrians were where at the latest of SUMO's instants."""
+        rows = self._rows["ledger"]
+        return {name: int(rows[name][-1]) for name in LEDGER} if len(rows) else {}
+
+    def egos(self) -> Iterator[RecordedEgo]:
+        """Every ego that has rows, in the order of departure."""
+        for number, length, width, goal in self._rows["drives"]:
+            rows = self._ego[self._ego["ego"] == number]
+            if len(rows):
+                name = self._names["egos"][int(number)]
+                shape = VehicleShape(float(length), float(width))
+                yield RecordedEgo(
+                    name,
+                    shape,
+                    float(goal),
+                    int(rows["step"][0]),
+                    self._track(rows),
+                    self._predictions_of(number),
+                    self._outputs_of(name, rows),
+                    self._hasty_of(number),
+                )
+
+    def _track(self, rows: Rows) -> EgoTrack:
+        columns: dict[str, Any] = {
+            name: _indices(rows[name]) if name in EGO_COUNTS else np.ascontiguousarray(rows[name])
+            for name in EGO_NUMBERS
+        }
+        texts = {name: self._words(rows[name]) for name in EGO_TEXTS}
+        return EgoTrack(**columns | texts)
+
+    def _predictions_of(self, number: float) -> PredictionTrack:
+        rows = self._rows["predictions"]
+        rows = rows[(rows["step"] < len(self.time)) & (rows["ego"] == number)]
+        return PredictionTrack(
+            time=self.time[_indices(rows["step"])],
+            pedestrian=_indices(rows["pedestrian"]),
+            look_ahead=rows["look_ahead"],
+            x=rows["x"],
+            y=rows["y"],
+        )
+
+    def _outputs_of(self, ego: str, rows: Rows) -> tuple[Output, ...]:
+        """What the profile of an ego's FMU wanted to have recorded, at each of its instants."""
+        recorded, found = self._rows["outputs"], list[Output]()
+        for key, text in enumerate(self._names["outputs"]):
+            whose, name, unit, description = json.loads(text)
+            if whose == ego:
+                own = recorded[recorded["output"] == key]
+                values = np.full(len(self.time), np.nan)
+                known = own[own["step"] < len(values)]
+                values[_indices(known["step"])] = known["value"]
+                found.append(Output(name, unit, description, values[_indices(rows["step"])]))
+        return tuple(found)
+
+    def _hasty_of(self, number: float) -> NDArray[np.int64]:
+        """Who set out for the road more suddenly than an ego's safety layer assumes."""
+        rows = self._rows["hasty"]
+        return np.unique(_indices(rows["pedestrian"][rows["ego"] == number]))
+
+    def _words(self, indices: Array) -> NDArray[np.str_]:
+        return np.array(self._names["words"], dtype=np.str_)[_indices(indices)]
+
+    def crowd_track(self) -> CrowdTrack:
+        """The crowd's rows as arrays."""
+        rows = self._rows["crowd"]
+        rows = rows[: np.searchsorted(rows["step"], len(self.time))]  # no copy: RAM
+        told = {name: about for name, *about in map(json.loads, self._names.get("traits", ()))}
+        traits = [told.get(name, ("", "")) for name in self._names["pedestrians"]]
+        return CrowdTrack(
+            step=_indices(rows["step"]),
+            pedestrian=_indices(rows["pedestrian"]),
+            **{name: np.ascontiguousarray(rows[name]) for name in ("x", "y", "vx", "vy")},
+            ids=self._names["pedestrians"],
+            kinds=tuple(kind for kind, _ in traits),
+            groups=tuple(group for _, group in traits),
+        )
+
+    def background_track(self) -> BackgroundTrack:
+        """The background vehicles' rows as arrays, the same for the run and each ego."""
+        if self._background is None:
+            rows, names = self._rows["background"], np.array(self._names["vehicles"], dtype=np.str_)
+            columns: dict[str, Any] = {
+                name: np.ascontiguousarray(rows[name]) for name in ROWS["background"]
+            }
+            texts = {name: names[_indices(columns[name])] for name in ("id", "type")}
+            self._background = BackgroundTrack(**columns | texts)
+        return self._background
+
+    def ways(self) -> dict[str, EgoWay]:
+        """The ways of those egos on whose way the law of the road has a say, by their ids."""
+        ways = (EgoWay.from_dict(json.loads(text)) for text in self._names["ways"])
+        return {way.ego: way for way in ways}
+
+    def signal_track(self) -> SignalTrack:
+        """The rows of traffic lights as arrays."""
+        rows = self._rows["signals"]
+        system, state = self._words(rows["system"]), self._words(rows["state"])
+        return SignalTrack(time=rows["time"].copy(), system=system, state=state)
+
+    def people_track(self) -> PeopleTrack:
+        """The rows of where people mean to walk as arrays."""
+        rows = self._rows["people"]
+        rows = rows[rows["step"] < len(self.time)]
+        return PeopleTrack(
+            step=rows["step"].astype(np.int64),
+            pedestrian=rows["pedestrian"].astype(np.int64),
+            **{name: rows[name].copy() for name in ("desired_speed", "x", "y")},
+        )
+
+    def timings(self) -> Timings:
+        """The computing times as an array."""
+        rows = self._rows["timing"]
+        return Timings(np.column_stack([rows[name] for name in Timings.NAMES]))
+
+
+def _indices(numbers: Array) -> NDArray[np.int64]:
+    """Numbers that stand for indices or counts.
+
+    Raises:
+        ValueError: one does not; a broken journal holds anything.
+    """
+    if not (np.abs(numbers) < _MOST).all():  # nor is nan
+        raise ValueError("no index")
+    return numbers.astype(np.int64)

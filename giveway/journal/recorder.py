@@ -1,0 +1,213 @@
+"""The rows of a run, gathered step by step, from our own state and not SUMO's mirror of it."""
+
+import json
+from collections.abc import Mapping, Sequence
+from operator import attrgetter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array, kernel
+from giveway.journal.journal import Journal
+from giveway.journal.layout import EGO_NUMBERS, EGO_TEXTS, NAMES, ROWS
+from giveway.journal.recorded import RecordedRows
+from giveway.run_data.rows import LEDGER
+from giveway.run_data.tracks import EgoRow
+from giveway.run_data.way import EgoWay
+from giveway.sumo.background import BackgroundVehicles
+
+Indices = NDArray[np.int64]
+_numbers, _texts = attrgetter(*EGO_NUMBERS), attrgetter(*EGO_TEXTS)  # of a row, by name
+
+
+class Recorder:
+    """Collects what the loop knows at each control instant.
+
+    Args:
+        journal: keeps the rows where they outlive this process.
+    """
+
+    def __init__(self, journal: Journal | None = None) -> None:
+        self.journal = journal or Journal(None)
+        self._rows = {name: self.journal.rows(name, columns) for name, columns in ROWS.items()}
+        self._names = {name: self.journal.names(name) for name in NAMES}
+        self._word = self._names["words"].index
+        self._ego, self._crowd = self._rows["ego"], self._rows["crowd"]
+        self._keys: dict[tuple[str, str], int] = {}
+        self._counts: Mapping[str, int] = {}
+        self._steps = 0
+
+    def instant(self, time: float) -> None:
+        """Begin the next control instant, at ``time`` [s]."""
+        self._rows["clock"].add(time)
+        self._steps += 1
+
+    def name_pedestrians(
+        self, ids: Sequence[str], traits: Mapping[str, tuple[str, str]] | None = None
+    ) -> None:
+        """Note the names of pedestrians, in the order of their indices.
+
+        Args:
+            ids: of them.
+            traits: the kind and the group of those who have any.
+        """
+        for name in ids:
+            self._names["pedestrians"].index(name)
+            if traits and name in traits:
+                self._names["traits"].index(json.dumps([name, *traits[name]]))
+
+    def drive(self, ego_id: str, shape: VehicleShape, goal: float) -> None:
+        """Note an ego that departs: its body and the distance [m] it is to drive."""
+        self._rows["drives"].add(self._names["egos"].index(ego_id), shape.length, shape.width, goal)
+
+    def outputs(
+        self, ego_id: str, record: Sequence[tuple[str, str, str]], values: Sequence[float]
+    ) -> None:
+        """Record what an FMU's profile wants to have recorded at the present control instant.
+
+        Args:
+            ego_id: the ego that it drives.
+            record: name, unit and description of each variable.
+            values: of them.
+        """
+        block = self._rows["outputs"].block(len(record))
+        for row, (about, value) in enumerate(zip(record, values, strict=True)):
+            key = self._keys.get((ego_id, about[0]))
+            if key is None:
+                key = self._names["outputs"].index(json.dumps([ego_id, *about]))
+                self._keys[ego_id, about[0]] = key
+            block[row] = self._steps - 1, key, value
+
+    def way(self, way: EgoWay) -> None:
+        """Note what the law of the road speaks of on the way of an ego that departs."""
+        self._names["ways"].index(way.to_json())
+
+    def signal(self, time: float, system: str, state: str) -> None:
+        """Record the state that a traffic light has from ``time`` [s] on."""
+        self._rows["signals"].add(time, self._word(system), self._word(state))
+
+    def walk(self, pedestrian: int, desired_speed: float, places: Array) -> None:
+        """Record where a pedestrian means to walk from the present instant on.
+
+        Args:
+            pedestrian: its index.
+            desired_speed: [m/s].
+            places: (k, 2) [m] where it is and its way-points.
+        """
+        block = self._rows["people"].block(len(places))
+        block[:, 0] = self._steps - 1
+        block[:, 1] = pedestrian
+        block[:, 2] = desired_speed
+        block[:, 3:] = places
+
+    def ledger(self, counts: Mapping[str, int]) -> None:
+        """Note how many pedestrians are where, if that has changed: the latest row counts."""
+        if counts != self._counts:
+            self._counts = counts
+            self._rows["ledger"].add(*(counts[name] for name in LEDGER))
+
+    def ego(self, ego_id: str, row: EgoRow) -> None:
+        """Record an ego at the present control instant."""
+        self._ego.add(
+            self._steps - 1,
+            self._names["egos"].index(ego_id),
+            *_numbers(row),
+            *map(self._word, _texts(row)),
+        )
+
+    def hasty(self, ego_id: str, pedestrians: Indices) -> None:
+        """Note who set out for the road more suddenly than an ego's safety layer assumes."""
+        block = self._rows["hasty"].block(len(pedestrians))
+        block[:, 0], block[:, 1] = self._names["egos"].index(ego_id), pedestrians
+
+    def crowd(
+        self, present: Indices, position: Array, velocity: Array, egos: Array, within: float
+    ) -> None:
+        """Record the pedestrians ``present`` at the present control instant.
+
+        Args:
+            present: (n,) their indices.
+            position: (n, 2) [m].
+            velocity: (n, 2) [m/s].
+            egos: (e, 2) [m] where the egos are.
+            within: [m] from an ego; pedestrians farther from every ego are left out.
+        """
+        block = self._crowd.block(len(present))
+        filled = fill_near(self._steps - 1, present, position, velocity, egos, within, block)
+        self._crowd.give_back(len(present) - filled)
+
+    def predictions(
+        self, ego_id: str, pedestrians: Indices, look_ahead: Array, positions: Array
+    ) -> None:
+        """Record what an ego's controller expects of the crowd from the present instant on.
+
+        Args:
+            ego_id: the ego whose controller it is.
+            pedestrians: (n,) the indices of those predicted.
+            look_ahead: (m,) [s].
+            positions: (m, n, 2) [m] then.
+        """
+        block = self._rows["predictions"].block(look_ahead.size * pedestrians.size)
+        block[:, 0] = self._steps - 1
+        block[:, 1] = self._names["egos"].index(ego_id)
+        block[:, 2] = np.tile(pedestrians, look_ahead.size)
+        block[:, 3] = np.repeat(look_ahead, pedestrians.size)
+        block[:, 4:] = positions.reshape(-1, 2)
+
+    def background(
+        self, time: float, vehicles: BackgroundVehicles, egos: Array, within: float
+    ) -> None:
+        """Record SUMO's own vehicles at ``time`` [s], ``egos`` and ``within`` as for the crowd."""
+        near = np.full(len(vehicles.ids), np.isinf(within))
+        for x, y in egos:
+            near |= np.hypot(vehicles.x - x, vehicles.y - y) <= within
+        wanted = np.flatnonzero(near)
+        if not len(wanted):
+            return
+        index = self._names["vehicles"].index
+        block = self._rows["background"].block(len(wanted))
+        block[:, 0] = time
+        block[:, 1] = [index(vehicles.ids[i]) for i in wanted]
+        block[:, 2] = [index(vehicles.types[i]) for i in wanted]
+        for column, values in enumerate(vehicles.numbers, start=3):
+            block[:, column] = values[wanted]
+
+    def timing(self, *seconds: float) -> None:
+        """Record the computing times of one control step, in the order of ``Timings.NAMES``."""
+        self._rows["timing"].add(*seconds)
+
+    def rows(self) -> RecordedRows:
+        """Everything recorded so far."""
+        return RecordedRows(
+            {name: rows.filled for name, rows in self._rows.items()},
+            {name: names.names for name, names in self._names.items()},
+        )
+
+
+@kernel
+def fill_near(
+    step: int,
+    present: Indices,
+    position: Array,
+    velocity: Array,
+    egos: Array,
+    within: float,
+    block: Array,
+) -> int:
+    """Fill the crowd's rows of one step with the pedestrians near an ego; returns how many."""
+    count = 0
+    for i in range(len(present)):
+        near = np.isinf(within)
+        for j in range(len(egos)):
+            d_x, d_y = position[i, 0] - egos[j, 0], position[i, 1] - egos[j, 1]
+            near |= d_x * d_x + d_y * d_y <= within * within
+        if near:
+            block[count, 0] = step
+            block[count, 1] = present[i]
+            block[count, 2] = position[i, 0]
+            block[count, 3] = position[i, 1]
+            block[count, 4] = velocity[i, 0]
+            block[count, 5] = velocity[i, 1]
+            count += 1
+    return count

@@ -1,0 +1,166 @@
+"""How people get on with their ways, gathered step by step in this process's memory.
+
+The rows of a run outlive a crash in its journal; these need not: without the twin that comes after
+the run they say nothing.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from giveway.geometry.kernel import Array, kernel
+from giveway.journal.journal import JournalRows
+from giveway.run_data.walks import WalkTrack
+from pedestrian_model import Crowd, remaining_distance
+
+REACH = 30.0
+"""[m] from an ego's way: who comes no closer is not looked at."""
+_LOOKS = 0.5  # [s] between two looks at who comes close
+_SWAY = 0.1  # [m] who stands may sway by less, which is no way
+_NUMBERS = ("x", "y", "vx", "vy", "remaining", "walked")
+_COLUMNS = ("step", "pedestrian", *_NUMBERS)  # as the kernel fills them
+
+
+class WalkLog:
+    """Notes where people are on their ways.
+
+    Args:
+        time_step: [s] between two control instants.
+        counts: whether somebody of that name is noted from the beginning; None: whoever comes
+            close to a way given to :meth:`add_way`, from then on.
+    """
+
+    def __init__(self, time_step: float, counts: Callable[[str], bool] | None = None) -> None:
+        self._time_step = time_step
+        self._counts = counts
+        self._every = max(1, round(_LOOKS / time_step))
+        self._ways: list[shapely.LineString] = []
+        self._rows = JournalRows(_COLUMNS)
+        self._arrivals: list[tuple[int, int]] = []
+        self._ids: list[str] = []
+        self._near = np.zeros(0, dtype=np.bool_)
+        self._memory = np.zeros((0, 4))  # x, y, walked till there [m], desired speed [m/s]; or nan
+        self._last = -1
+
+    def add_way(self, way: Array) -> None:
+        """Look from now on at who comes close to an ego's way, (k, 2) [m]."""
+        line = shapely.LineString(way)
+        shapely.prepare(line)
+        self._ways.append(line)
+
+    def stop_looking(self) -> None:
+        """The egos have gone: who comes close from now on was not in their way."""
+        self._ways.clear()
+
+    def note(self, step: int, ids: Sequence[str], present: NDArray[np.int64], crowd: Crowd) -> None:
+        """Note where those who are ``present`` are at a control instant; the second time nothing.
+
+        Args:
+            step: the instant.
+            ids: of all that ever were in the crowd.
+            present: (n,) index into ``ids`` of those in the crowd.
+            crowd: n pedestrians.
+        """
+        if step <= self._last:
+            return
+        self._last = step
+        if len(ids) > len(self._ids):
+            self._learn(ids[len(self._ids) :])
+        if self._ways and step % self._every == 0:
+            self._look(present, crowd.position)
+        if not len(present):
+            return
+        block = self._rows.block(len(present))
+        filled = _fill(
+            step,
+            present,
+            crowd.position,
+            crowd.velocity,
+            crowd.desired_speed,
+            remaining_distance(crowd),
+            self._near,
+            self._memory,
+            block,
+        )
+        self._rows.give_back(len(present) - filled)
+
+    def _learn(self, ids: Sequence[str]) -> None:
+        self._ids += ids
+        near = [self._counts is not None and self._counts(name) for name in ids]
+        self._near = np.concatenate([self._near, np.array(near, dtype=np.bool_)])
+        unseen = np.full((len(ids), self._memory.shape[1]), np.nan)
+        self._memory = np.concatenate([self._memory, unseen])
+
+    def _look(self, present: NDArray[np.int64], position: Array) -> None:
+        far = np.flatnonzero(~self._near[present])
+        if not len(far):
+            return
+        points = shapely.points(position[far])
+        for way in self._ways:
+            self._near[present[far[shapely.dwithin(way, points, REACH)]]] = True
+
+    def arrive(self, step: int, pedestrians: NDArray[np.int64]) -> None:
+        """Note that pedestrians, by their indices, reached the last way-point at ``step``."""
+        self._arrivals += [(step, int(pedestrian)) for pedestrian in pedestrians]
+
+    def awaits(self, present: NDArray[np.int64]) -> bool:
+        """Whether anybody who counts is among those ``present``."""
+        return bool(self._near[present].any())
+
+    @property
+    def near(self) -> frozenset[str]:
+        """The names of those who count."""
+        return frozenset(self._ids[i] for i in np.flatnonzero(self._near))
+
+    @property
+    def track(self) -> WalkTrack:
+        """Everything noted so far."""
+        rows = self._rows.filled
+        arrivals = np.array(self._arrivals, dtype=np.int64).reshape(-1, 2)
+        return WalkTrack(
+            step=rows["step"].astype(np.int64),
+            pedestrian=rows["pedestrian"].astype(np.int64),
+            **{name: np.ascontiguousarray(rows[name]) for name in _NUMBERS},
+            arrival_step=arrivals[:, 0],
+            arrival_pedestrian=arrivals[:, 1],
+            desired_speed=self._memory[:, 3].copy(),
+            near=self._near.copy(),
+            ids=tuple(self._ids),
+            time_step=self._time_step,
+            last=self._last,
+        )
+
+
+@kernel
+def _fill(
+    step: int,
+    present: NDArray[np.int64],
+    position: Array,
+    velocity: Array,
+    desired_speed: Array,
+    remaining: Array,
+    near: NDArray[np.bool_],
+    memory: Array,
+    block: Array,
+) -> int:
+    """Fill the rows of one instant with those who count, note the others; returns how many."""
+    count = 0
+    for i in range(len(present)):
+        p, x, y = present[i], position[i, 0], position[i, 1]
+        if np.isnan(memory[p, 0]):
+            memory[p, 0], memory[p, 1], memory[p, 2] = x, y, 0.0
+        moved = np.hypot(x - memory[p, 0], y - memory[p, 1])
+        walked = memory[p, 2] + moved
+        memory[p, 3] = desired_speed[i]
+        if moved >= _SWAY:
+            memory[p, 0], memory[p, 1], memory[p, 2] = x, y, walked
+        if near[p]:
+            block[count, 0] = step
+            block[count, 1] = p
+            block[count, 2], block[count, 3] = x, y
+            block[count, 4], block[count, 5] = velocity[i, 0], velocity[i, 1]
+            block[count, 6], block[count, 7] = remaining[i], walked
+            count += 1
+    return count

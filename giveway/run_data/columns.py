@@ -1,0 +1,149 @@
+"""The columns of every table that giveway writes: name, type, unit and meaning, once.
+
+Recorder, CSV writer and data package all read from here. ``trajectories.csv`` keeps the names,
+the reference point and the angle convention of SUMO's floating car data (FCD).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeVar, get_args, get_type_hints
+
+ColumnType = Literal["number", "integer", "string", "boolean"]
+Number = TypeVar("Number")
+"""Type of a number in a class that is both one row and a whole table: float, or an array."""
+Text = TypeVar("Text")
+"""Type of a text there: str, or an array."""
+Count = TypeVar("Count")
+"""Type of a whole number there: int, or an array."""
+_TYPES: dict[Any, ColumnType] = {
+    bool: "boolean",
+    int: "integer",
+    float: "number",
+    str: "string",
+    Number: "number",
+    Text: "string",
+    Count: "integer",
+}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: Frictionless type, unit (None where there is none) and meaning."""
+
+    name: str
+    type: ColumnType
+    unit: str | None
+    description: str
+
+
+def _unchanged(values: Any) -> Any:
+    return values
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Unit and meaning of a column, as the annotation of the attribute that holds its values.
+
+    Attributes:
+        unit: Unit in the CSV file, or None.
+        meaning: Meaning of the values.
+        column: Name in the CSV file. The attribute's own name if it is empty.
+        written: Conversion of the attribute's array into what the CSV file holds.
+    """
+
+    unit: str | None
+    meaning: str
+    column: str = ""
+    written: Callable[[Any], Any] = _unchanged
+
+
+def quantities_of(table: type) -> dict[str, tuple[ColumnType, Quantity]]:
+    """Return type and quantity of each attribute of a class that is annotated throughout."""
+    found = {}
+    for name, hint in get_type_hints(table, include_extras=True).items():
+        python_type, quantity = get_args(hint)
+        found[name] = _TYPES[python_type], quantity
+    return found
+
+
+def columns_of(table: type) -> tuple[Column, ...]:
+    """Return the columns of a class whose every attribute is ``Annotated[type, Quantity(...)]``."""
+    return tuple(
+        Column(quantity.column or name, kind, quantity.unit, quantity.meaning)
+        for name, (kind, quantity) in quantities_of(table).items()
+    )
+
+
+SUMMARY_HEAD = (
+    Column("scenario", "string", None, "the scenario's name"),
+    Column("ego", "string", None, "SUMO id of the ego"),
+    Column("controller", "string", None, "the controller that was asked for"),
+    Column("pedestrians", "integer", "persons", "pedestrians that giveway moved"),
+    Column("seed", "integer", None, "seed of the crowd that giveway adds"),
+    Column(
+        "ending",
+        "string",
+        None,
+        "completed, time limit, scenario end, interrupted, failed or crashed",
+    ),
+)
+
+TRAJECTORY_COLUMNS = (
+    Column("time", "number", "s", "simulation time"),
+    Column("id", "string", None, "SUMO id of the person or vehicle"),
+    Column("type", "string", None, "pedestrian, ego, or the SUMO type of a background vehicle"),
+    Column("x", "number", "m", "network x: a person's body centre, a vehicle's front bumper"),
+    Column("y", "number", "m", "network y: a person's body centre, a vehicle's front bumper"),
+    Column("angle", "number", "deg", "navigational angle: 0 is north, clockwise"),
+    Column("speed", "number", "m/s", "speed"),
+    Column("vx", "number", "m/s", "velocity's x component"),
+    Column("vy", "number", "m/s", "velocity's y component"),
+)
+
+SIGNAL_COLUMNS = (
+    Column("time", "number", "s", "simulation time from which on it holds"),
+    Column("system", "string", None, "SUMO id of the traffic light"),
+    Column("state", "string", None, "one letter per movement, SUMO's"),
+)
+
+PEOPLE_COLUMNS = (
+    Column("time", "number", "s", "simulation time from which on it holds"),
+    Column("id", "string", None, "the pedestrian"),
+    Column("desired_speed", "number", "m/s", "speed at which it would walk if nobody was there"),
+    Column("number", "integer", None, "0: where it is then; 1, 2, ...: its way-points"),
+    Column("x", "number", "m", "network x of the place"),
+    Column("y", "number", "m", "network y of the place"),
+)
+
+LEDGER_COLUMNS = (
+    Column("time", "number", "s", "simulation time of the event, or of its begin"),
+    Column("ego", "string", None, "SUMO id of the ego"),
+    Column("kind", "string", None, "what happened"),
+    Column("violation", "boolean", None, "whether the ego is answerable for it"),
+    Column("other", "string", None, "the pedestrian, vehicle or traffic light concerned"),
+    Column("place", "string", None, "SUMO id of the crossing or its number among the junctions"),
+    Column("x", "number", "m", "network x of where it happened"),
+    Column("y", "number", "m", "network y of where it happened"),
+    Column("value", "number", None, "how bad it was"),
+    Column("unit", "string", None, "of the value"),
+    Column("words", "string", None, "the event in words"),
+)
+
+PREDICTION_COLUMNS = (
+    Column("time", "number", "s", "control instant t_k at which the prediction was made"),
+    Column("ego", "string", None, "SUMO id of the ego whose MPC made it"),
+    Column("id", "string", None, "the pedestrian"),
+    Column("look_ahead", "number", "s", "the prediction is for this long after t_k"),
+    Column("x", "number", "m", "network x of the body's centre then"),
+    Column("y", "number", "m", "network y of the body's centre then"),
+)
+
+TIMING_COLUMNS = (
+    Column("time", "number", "s", "simulation time t_k of the control instant"),
+    Column("prediction", "number", "us", "computing time of the crowd's prediction"),
+    Column("control", "number", "us", "computing time of the controller, the QP included"),
+    Column("vehicle", "number", "us", "computing time of the vehicle FMU's step"),
+    Column("crowd", "number", "us", "computing time of the crowd's step"),
+    Column("sumo", "number", "us", "computing time of SUMO: moves, step, comparison"),
+    Column("total", "number", "us", "computing time of the whole control step"),
+)

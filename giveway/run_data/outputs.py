@@ -1,0 +1,30 @@
+"""What a vehicle FMU computes besides its motion, as far as its profile has it recorded."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.run_data.columns import Column
+
+ROAD_GRADE = (
+    "road_grade",
+    "rad",
+    "angle at which the ego's body stands on the road, by the heights of the net; uphill positive",
+)
+"""Name, unit and meaning of the column that egos on roads with heights have."""
+
+
+class Output(NamedTuple):
+    """One variable of an ego's FMU at the ego's control instants."""
+
+    name: str
+    unit: str  # the FMU's own; empty where it declares none
+    description: str  # likewise
+    values: NDArray[np.float64]  # (T,)
+
+    @property
+    def column(self) -> Column:
+        """Of ``ego.csv``."""
+        described = self.description or "as the FMU gives it"
+        return Column(self.name, "number", self.unit or None, described)

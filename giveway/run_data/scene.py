@@ -1,0 +1,65 @@
+"""What stands still in a run, or never changes: the road's outlines and the vehicles' bodies.
+
+A results folder keeps it in ``scene.json``, so that a replay needs neither SUMO nor the scenario,
+which may be gone by then.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from giveway.run_data.road_marks import UNMARKED, RoadMarks
+from giveway.run_data.way import EgoWay
+
+SCENE_FILE = "scene.json"
+
+Outline = tuple[tuple[float, float], ...]
+Body = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The road and the bodies on it.
+
+    Attributes:
+        road: closed outlines [m] of lanes, crossings and walkingareas.
+        bodies: length and width [m] of vehicles, by their ids.
+        ways: of the egos, where the law of the road has a say on them.
+        marks: crossings and stop lines.
+    """
+
+    road: tuple[Outline, ...] = ()
+    bodies: dict[str, Body] | None = None
+    ways: tuple[EgoWay, ...] = ()
+    marks: RoadMarks = UNMARKED
+
+    def body(self, vehicle: str, otherwise: Body) -> Body:
+        """Length and width [m] of a vehicle; ``otherwise`` if they are not known."""
+        return (self.bodies or {}).get(vehicle, otherwise)
+
+    def to_json(self) -> str:
+        """The scene as one line of JSON."""
+        kept: dict[str, Any] = {"road": self.road, "bodies": self.bodies}
+        kept |= self.marks.as_dict()
+        if self.ways:
+            kept |= {"ways": [way.as_dict() for way in self.ways]}
+        return json.dumps(kept, separators=(",", ":"), ensure_ascii=False) + "\n"
+
+    @classmethod
+    def read(cls, folder: Path) -> Scene:
+        """The scene that a results folder keeps; an empty one where there is none."""
+        try:
+            kept = json.loads((folder / SCENE_FILE).read_text(encoding="utf-8"))
+            road = tuple(tuple((float(x), float(y)) for x, y in line) for line in kept["road"])
+            bodies = {
+                str(name): (float(length), float(width))
+                for name, (length, width) in (kept["bodies"] or {}).items()
+            }
+            ways = tuple(map(EgoWay.from_dict, kept.get("ways", ())))
+            marks = RoadMarks.from_dict(kept)
+        except (OSError, ValueError, TypeError, KeyError, AttributeError):
+            return cls()
+        return cls(road, bodies, ways, marks)

@@ -1,0 +1,214 @@
+"""What a run leaves behind, as arrays: the tracks of egos, crowd and background vehicles.
+
+The recorder fills these; metrics, tables and figures read them. Everything is SI, angles are
+mathematical (radians, counter-clockwise from +x) and x, y are the network's coordinates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar, Generic
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.path import headings_to_angles
+from giveway.run_data.columns import (
+    TIMING_COLUMNS,
+    Column,
+    Count,
+    Number,
+    Quantity,
+    Text,
+    columns_of,
+)
+
+
+def _empty_if_infinite(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+_FRONT = "of the front bumper's centre (SUMO's reference point)"
+
+
+@dataclass(kw_only=True)
+class EgoColumns(Generic[Number, Text, Count]):
+    """The columns of ``ego.csv``, declared once: :class:`EgoRow` is one row, :class:`EgoTrack` all.
+
+    Recorder, journal, table, data package and docs/results.md follow from this class. Here angles
+    are mathematical [rad], and a distance to what is not there is infinite; ``written`` converts.
+    """
+
+    time: Annotated[Number, Quantity("s", "simulation time t_k of the control instant")]
+    position: Annotated[
+        Number, Quantity("m", "distance driven along the path since departure, by the FMU")
+    ]
+    front_x: Annotated[Number, Quantity("m", f"network x {_FRONT}", column="x")]
+    front_y: Annotated[Number, Quantity("m", f"network y {_FRONT}", column="y")]
+    heading: Annotated[
+        Number,
+        Quantity(
+            "deg",
+            "navigational angle: 0 is north, clockwise",
+            column="angle",
+            written=headings_to_angles,
+        ),
+    ]
+    speed: Annotated[Number, Quantity("m/s", "speed, by the FMU")]
+    acceleration: Annotated[
+        Number, Quantity("m/s^2", "acceleration over the step before t_k, by the FMU")
+    ]
+    force: Annotated[Number, Quantity("N", "force command applied from t_k on; negative brakes")]
+    controller: Annotated[
+        Text,
+        Quantity(None, "who acted: mpc, pid, plug-in (somebody else's), safety (the layer below)"),
+    ]
+    reason: Annotated[Text, Quantity(None, "why it acted; of the planning MPC: which manoeuvre")]
+    solver_status: Annotated[Text, Quantity(None, "the QP solver's status; empty where none ran")]
+    solver_iterations: Annotated[Count, Quantity(None, "the QP solver's iterations")]
+    gap: Annotated[
+        Number,
+        Quantity(
+            "m",
+            "distance to the closest pedestrian in front now; empty: nobody",
+            written=_empty_if_infinite,
+        ),
+    ]
+    reference_speed: Annotated[
+        Number, Quantity("m/s", "the reference speed of the controller that acted")
+    ]
+    vehicle_gap: Annotated[
+        Number,
+        Quantity(
+            "m",
+            "distance to the closest vehicle in front; empty: none",
+            written=_empty_if_infinite,
+        ),
+    ]
+    stop_gap: Annotated[
+        Number,
+        Quantity(
+            "m",
+            "front bumper's distance to where it has to stop: for a light, a stop, a crossing, "
+            "right of way or a merge; empty: nowhere",
+            written=_empty_if_infinite,
+        ),
+    ]
+    waits_for: Annotated[
+        Text,
+        Quantity(
+            None,
+            "what it stands for: person, vehicle, light, stop, yield (at a crossing: to people, or "
+            "since it is blocked; where lanes merge: to vehicles), plan (people expected in front),"
+            " none; empty: it drives, or drives off",
+        ),
+    ]
+
+
+class EgoRow(EgoColumns[float, str, int]):
+    """An ego at one control instant."""
+
+
+class EgoTrack(EgoColumns[NDArray[np.float64], NDArray[np.str_], NDArray[np.int64]]):
+    """An ego at its T control instants t_k; each column has the shape (T,)."""
+
+
+_TIME, *_OWN = columns_of(EgoTrack)
+EGO_COLUMNS = (_TIME, Column("id", "string", None, "SUMO id of the ego"), *_OWN)
+"""The columns of ``ego.csv``, in their order; the id is the same in all rows of a track."""
+
+
+@dataclass(frozen=True)
+class CrowdTrack:
+    """The crowd as flat records, one per pedestrian recorded at an instant, in time order."""
+
+    step: NDArray[np.int64]  # (R,) index into the control instants
+    pedestrian: NDArray[np.int64]  # (R,) index into ``ids``
+    x: NDArray[np.float64]  # (R,) [m] body centre
+    y: NDArray[np.float64]  # (R,) [m]
+    vx: NDArray[np.float64]  # (R,) [m/s]
+    vy: NDArray[np.float64]  # (R,) [m/s]
+    ids: tuple[str, ...]  # one per pedestrian
+    kinds: tuple[str, ...] = ()  # likewise, as "elderly"; nothing: nobody is of any
+    groups: tuple[str, ...] = ()  # likewise, the id of its first member; nothing: there are none
+
+    def during(self, first: int, instants: int) -> CrowdTrack:
+        """The records of ``instants`` control instants from ``first`` on, which becomes step 0."""
+        a, b = np.searchsorted(self.step, (first, first + instants))
+        if first == 0 and b == len(self.step):
+            return self
+        return CrowdTrack(
+            step=self.step[a:b] - first,
+            pedestrian=self.pedestrian[a:b],
+            x=self.x[a:b],
+            y=self.y[a:b],
+            vx=self.vx[a:b],
+            vy=self.vy[a:b],
+            ids=self.ids,
+            kinds=self.kinds,
+            groups=self.groups,
+        )
+
+
+@dataclass(frozen=True)
+class PredictionTrack:
+    """Where an ego's controller expected pedestrians to be, as flat records in time order."""
+
+    time: NDArray[np.float64]  # (P,) [s] the control instant of the prediction
+    pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
+    look_ahead: NDArray[np.float64]  # (P,) [s] from that instant on
+    x: NDArray[np.float64]  # (P,) [m] body centre
+    y: NDArray[np.float64]  # (P,) [m]
+
+
+@dataclass(frozen=True)
+class BackgroundTrack:
+    """SUMO's own vehicles as flat records, at SUMO's instants, in time order."""
+
+    time: NDArray[np.float64]  # (B,) [s]
+    id: NDArray[np.str_]  # (B,)
+    type: NDArray[np.str_]  # (B,) SUMO vType
+    x: NDArray[np.float64]  # (B,) [m] front-bumper centre
+    y: NDArray[np.float64]  # (B,) [m]
+    heading: NDArray[np.float64]  # (B,) [rad]
+    speed: NDArray[np.float64]  # (B,) [m/s]
+    length: NDArray[np.float64]  # (B,) [m]
+    width: NDArray[np.float64]  # (B,) [m]
+
+
+@dataclass(frozen=True)
+class SignalTrack:
+    """The states of traffic lights, as changes in time order."""
+
+    time: NDArray[np.float64]  # (S,) [s] from when on
+    system: NDArray[np.str_]  # (S,) SUMO's id of the light
+    state: NDArray[np.str_]  # (S,) one letter per movement
+
+
+@dataclass(frozen=True)
+class PeopleTrack:
+    """Where pedestrians mean to walk and how fast, as flat records in time order.
+
+    A pedestrian's way is the records of one step: where it was then, and each way-point after that.
+    """
+
+    step: NDArray[np.int64]  # (P,) index into the control instants, from when on
+    pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
+    desired_speed: NDArray[np.float64]  # (P,) [m/s]
+    x: NDArray[np.float64]  # (P,) [m]
+    y: NDArray[np.float64]  # (P,) [m]
+
+
+@dataclass(frozen=True)
+class Timings:
+    """Computing times of each control step, apart from all that is equal in equal runs."""
+
+    NAMES: ClassVar[tuple[str, ...]] = tuple(
+        column.name for column in TIMING_COLUMNS if column.name != "time"
+    )
+
+    seconds: NDArray[np.float64]  # (T, 6) [s], columns in the order of NAMES
+
+    def total(self, name: str) -> float:
+        """The sum over all steps of one part [s]."""
+        return float(self.seconds[:, self.NAMES.index(name)].sum())

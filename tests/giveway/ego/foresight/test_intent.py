@@ -1,0 +1,197 @@
+"""Who is believed to let the ego pass: hand-made walkers, and the formula by itself."""
+
+import math
+
+import numpy as np
+import pytest
+
+from controller import LongitudinalModel, Planner, PlannerParameters
+from giveway.ego.foresight.crowd_foresight import CrowdForesight, plan_predictor
+from giveway.ego.foresight.intent import Beliefs, shifted
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
+from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
+
+DT, EVERY, HALF = 0.05, 2, 1.15
+PREDICTOR = plan_predictor(SIM, DT, 20)
+STRAIGHT = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
+BEND = EgoPath.through([(0.0, -20.0), (0.0, 0.0), (50.0, 0.0)])
+FRONT = 10.0
+PACE = 1.39
+
+
+def beliefs(path=STRAIGHT):
+    return Beliefs(path, HALF, PREDICTOR, DT)
+
+
+def walker(y, v_y, *, x=18.0, to=20.0):
+    return Crowd.create([(x, y)], [(0.0, v_y)], PACE, [[(x, to)]])
+
+
+def expect(crowd):
+    """What the model without a vehicle expects of a crowd one step of the prediction on."""
+    model, after = CrowdModel(SIM, DT), crowd.copy()
+    for _ in range(EVERY):
+        after = model.step(after, Vehicles.empty())
+    return np.column_stack([after.position, after.velocity]).ravel()
+
+
+def watch(seen, speed_at, y=-4.0, steps=60, front=FRONT):
+    """Somebody walks towards the way at ``speed_at(room)``; the odds at each look."""
+    odds, expected, ways = [], np.empty(0), []
+    v = speed_at(-y - HALF)
+    for _ in range(steps):
+        crowd = walker(y, v)
+        seen.update(crowd, np.array([7]), front, expected)
+        odds.append(seen.odds(7))
+        ways.append(crowd.waypoints[0].copy())
+        expected = expect(crowd)
+        v += min(max(speed_at(-y - HALF) - v, -3.0 * DT), 3.0 * DT)
+        y += DT * v
+    return odds, ways
+
+
+def test_who_walks_on_is_expected_to():
+    odds, ways = watch(beliefs(), lambda _: PACE, y=-6.0)
+    assert max(odds) < -2.9
+    assert all((way == (18.0, 20.0)).all() for way in ways)
+
+
+def test_who_slows_down_before_the_way_is_found_out_before_he_stands():
+    odds, ways = watch(beliefs(), lambda room: min(PACE, max(room, 0.0) / 2.0))
+    first = next(i for i, found in enumerate(odds) if found > 0.0)
+    assert first < 20
+    assert odds[-1] > 0.0  # and so he stays
+    for found, way in zip(odds, ways, strict=True):
+        if found <= 0.0:
+            assert (way == (18.0, 20.0)).all()
+        else:
+            assert way[0] == 18.0
+            assert -4.0 < way[1] < -HALF
+
+
+def test_who_goes_on_after_all_is_believed():
+    seen = beliefs()
+    odds, _ = watch(seen, lambda room: min(PACE, max(room, 0.0) / 2.0), steps=50)
+    assert odds[-1] > 0.0
+    odds, _ = watch(seen, lambda _: PACE, y=-HALF - 0.4, steps=7)
+    assert odds[-1] < 0.0
+
+
+@pytest.mark.parametrize("left", [0.3, 0.6, 0.9])
+def test_where_somebody_stops_is_told_by_the_pace_at_which_he_nears_it(left):
+    """VCI's walk towards a destination, seen in the middle of it; a hand is kept to spare."""
+    seen = beliefs()
+    watch(seen, lambda _: 0.0, y=-HALF - 0.5, steps=6)
+    pace = PACE * left / math.hypot(left, SIM.destination_smoothing)
+    crowd = walker(-2.4, pace)
+    seen.update(crowd, np.array([7]), FRONT, np.empty(0))
+    assert crowd.waypoints[0] == pytest.approx((18.0, -2.4 + left + 0.1))
+    crowd = walker(-2.4, PACE)  # at full pace: the edge
+    seen.update(crowd, np.array([7]), FRONT, np.empty(0))
+    assert crowd.waypoints[0] == pytest.approx((18.0, -HALF - 0.05))
+
+
+def test_who_waits_at_the_edge_is_expected_to_stay_there_when_the_ego_passes():
+    """VCI by itself expects that he is pushed back, which would seem to allow a higher speed."""
+    N, y = 40, -HALF - 0.3
+    planner = Planner(LongitudinalModel(time_step=DT), PlannerParameters(horizon=N))
+    expected = []
+    for believed in (beliefs(), None):
+        ahead = CrowdForesight(
+            plan_predictor(SIM, DT, N),
+            STRAIGHT,
+            VehicleShape(5.0, 1.8),
+            horizon=N,
+            time_step=DT,
+            half_width=HALF,
+            clearance=0.05,
+            braking=8.0,
+            worst=None,
+            beliefs=believed,
+        )
+        poses = np.zeros((N, 1, 7))
+        poses[:, :, 4:] = 2.5, 2.5, 1.8
+        for _ in range(8):
+            ahead.look(walker(y, 0.0, x=14.0), OPEN_GROUND, poses, 0, FRONT, numbers=np.array([0]))
+            planner.plan(3.0, 0.0, 3.0, np.full(N, np.inf), ahead)
+        expected.append(ahead.best[:, 0, 1])
+    assert y <= expected[0].min()
+    assert expected[0].max() <= y + 0.1
+    assert np.ptp(expected[1]) > 0.3
+
+
+def test_who_stands_is_found_out_at_once():
+    odds, _ = watch(beliefs(), lambda _: 0.0, y=-HALF - 0.5, steps=6)
+    assert odds[1] == odds[0] == -3.0  # two looks make a step of the prediction
+    assert odds[3] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "to"),
+    [
+        (18.0, -HALF + 0.2, 20.0),  # is on the way
+        (5.0, -HALF - 0.5, 20.0),  # is behind the front
+        (18.0, -9.0, 20.0),  # too far aside
+        (40.0, -HALF - 0.5, 20.0),  # too far ahead
+        (18.0, -HALF - 0.5, -20.0),  # wants away from it
+    ],
+)
+def test_of_others_nothing_is_believed(x, y, to):
+    seen, expected = beliefs(), np.empty(0)
+    for _ in range(20):
+        crowd = walker(y, 0.0, x=x, to=to)
+        seen.update(crowd, np.array([0]), FRONT, expected)
+        expected = expect(crowd)
+        assert (crowd.waypoints[0] == (x, to)).all()
+    assert seen.odds(0) == -3.0
+
+
+def test_the_way_may_bend():
+    """The same walker beside the part behind a bend, and a way of several points with a light."""
+    seen, expected = beliefs(BEND), np.empty(0)
+    for _ in range(8):
+        crowd = Crowd.create(
+            [(8.0, 1.7)],
+            [(0.0, 0.0)],
+            PACE,
+            [[(8.0, -1.0), (8.0, -20.0)]],
+            passages=[[(0.0, -1.0, 2.0), (0.0, 0.0, 0.0)]],
+            signals=[[0, -1]],
+        )
+        seen.update(crowd, np.array([0]), 15.0, expected)
+        expected = np.array([8.0, 1.7, 0.0, -0.6])
+    assert seen.odds(0) > 0.0
+    assert crowd.waypoints == pytest.approx(np.array([(8.0, 1.7 - 0.1)] * 2))
+    assert not crowd.waypoint_passage.any()
+    assert (crowd.waypoint_signal == -1).all()
+
+
+def test_people_come_and_go():
+    """Who was out of sight is known again by number, and no speed is compared over the gap."""
+    seen = beliefs()
+    watch(seen, lambda _: 0.0, y=-HALF - 0.5, steps=6)
+    before = seen.odds(7)
+    for _ in range(3):
+        seen.update(Crowd.empty(), np.zeros(0, dtype=np.int64), FRONT, np.empty(0))
+    seen.update(walker(-HALF - 0.5, PACE), np.array([7]), FRONT, np.empty(0))
+    assert seen.odds(7) == before > 0.0
+    assert seen.odds(1000) == -3.0
+
+
+@pytest.mark.parametrize("slower", [0.05, 0.3, 0.6])
+def test_the_odds_move_by_the_likelihoods_of_both_hypotheses(slower):
+    def log_normal(x):
+        return -0.5 * (x / 0.1) ** 2
+
+    for off in np.linspace(-slower, 0.0, 7):
+        ratio = log_normal(off + slower) - log_normal(off)
+        assert shifted(0.5, off, slower, False) == pytest.approx(
+            math.copysign(min(abs(0.5 + ratio), 4.0), 0.5 + ratio)
+        )
+        # The same sight, told relative to what is expected of one who yields.
+        assert shifted(0.5, off + slower, slower, True) == pytest.approx(
+            shifted(0.5, off, slower, False)
+        )
+    assert shifted(0.5, 0.3, slower, False) == shifted(0.5, 0.0, slower, False)
+    assert shifted(0.5, -2.0, slower, False) == shifted(0.5, -slower, slower, False)
