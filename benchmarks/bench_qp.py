@@ -11,7 +11,6 @@ one solved that has none with bounds 1e-6 wider; what lies between is a knife's 
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
@@ -228,7 +227,6 @@ def main() -> None:
     )
     solvers = {
         "osqp (ours)": partial(by_mpc, model, ours),
-        "daqp (ours)": partial(by_mpc, model, replace(ours, solver="daqp")),
         "osqp (ours), no exact start": partial(by_mpc, model, ours, FromThePlanBefore),
         "osqp, condensed, kN, defaults": partial(by_plain_osqp, model, ours),
     }

@@ -68,9 +68,9 @@ if TYPE_CHECKING:
 SCENES = ("one-sided, 30", "two-sided, 30", "two-sided, 60", "stream, 30", "encounter, medium")
 DRIVERS: dict[str, dict[str, Any]] = {
     BASELINE: {"controller": "pid-tuned"},
-    "careful": {"controller": "mpc", "planner": {"attitude": "careful"}},
+    "careful": {"controller": "mpc", "planner": {"style": "careful"}},
     "mpc": {"controller": "mpc"},
-    "assertive": {"controller": "mpc", "planner": {"attitude": "assertive"}},
+    "assertive": {"controller": "mpc", "planner": {"style": "assertive"}},
 }
 RECORDINGS = (NOBODY, BASELINE, "mpc")
 COLOURS = {NOBODY: GREEN, BASELINE: VERMILION, "mpc": BLUE}

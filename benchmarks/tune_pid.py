@@ -56,7 +56,7 @@ def candidates() -> dict[str, dict]:
     compared: dict[str, dict] = {name: {"controller": name} for name in ("pid-paper", "mpc-paper")}
     for name, values in CANDIDATES.items():
         tuned = dict(zip(keys, values, strict=True))
-        compared[name] = {"controller": "pid-tuned", "tuned_pid": tuned}
+        compared[name] = {"controller": "pid-tuned", "controller_options": tuned}
     return compared
 
 

@@ -44,7 +44,7 @@ NUMBERS = ("completion_time", "conflicts", "share_below_ttc", "share_below_pet")
 def drive(task: tuple[dict[str, float] | None, int]) -> dict[str, list[float]]:
     """Means of NUMBERS by scene, with these weights (None: of pid-tuned) and so many crowds."""
     planner, crowds = task
-    who = {"controller": "pid-tuned"} if planner is None else {"planner": planner}
+    who = {"controller": "pid-tuned"} if planner is None else {"controller_options": planner}
     seeds, found = range(1, 1 + crowds), {}
     for name, scene in SCENES.items():
         runs = [giveway.run({**who, **scene, "seed": seed}, pictures=False) for seed in seeds]

@@ -4,11 +4,11 @@ Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Contr
 Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
 """
 
+from controller.declarations import DECLARED
 from controller.errors import (
     ControllerError,
     ParameterError,
     PlugInError,
-    SolverMissingError,
     SolverSetupError,
 )
 from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials, Verdict
@@ -20,19 +20,19 @@ from controller.pid.pid import Pid
 from controller.pid.speed_reference import ReferenceParameters, SpeedReference
 from controller.pid.tuned_pid import TunedPid, TunedPidParameters
 from controller.planning import (
-    ATTITUDES,
-    AttitudeName,
+    STYLES,
     ManoeuvreParameters,
     Planner,
     PlannerParameters,
     PlanningController,
+    StyleName,
     add_cost_of_others,
     branch_off,
     later_cost,
     own_cost,
 )
 from controller.plug_ins.conformance import Finding, check_controller
-from controller.plug_ins.plug_in import Acceleration, Answer, Force, PlugIn, Setup, Speed
+from controller.plug_ins.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
 from controller.plug_ins.plugged_in import PluggedIn
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
 from controller.qp.least_squares import Outcome
@@ -42,14 +42,15 @@ from controller.safety.worst_motion import PeopleName, WorstMotion, worst_motion
 from controller.speed_controller import SpeedController
 
 __all__ = [
-    "ATTITUDES",
+    "DECLARED",
     "PRINTED_PID",
+    "STYLES",
     "Acceleration",
     "Answer",
-    "AttitudeName",
     "Controller",
     "ControllerError",
     "Decision",
+    "Defaults",
     "Finding",
     "Force",
     "Foresight",
@@ -80,11 +81,11 @@ __all__ = [
     "SafetyLayer",
     "SafetyParameters",
     "Setup",
-    "SolverMissingError",
     "SolverSetupError",
     "Speed",
     "SpeedController",
     "SpeedReference",
+    "StyleName",
     "Trials",
     "TunedPid",
     "TunedPidParameters",

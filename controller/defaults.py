@@ -1,8 +1,6 @@
 """The defaults that several parts of this package share, each with its unit and its source."""
 
-from typing import Final, Literal
-
-SolverName = Literal["osqp", "daqp"]
+from typing import Final
 
 # Yang & Özgüner 2019, table 1.
 REFERENCE_SPEED: Final = 4.0  # v_r [m/s]
@@ -14,7 +12,6 @@ FORCE_RATE_LIMIT: Final = 1000.0  # du_max [N per step]
 TIME_STEP: Final = 0.05  # dt [s]
 
 # Ours.
-SOLVER: Final[SolverName] = "osqp"  # of the quadratic programs
 ITERATION_LIMIT: Final = 4000  # of the solver
 
 #: [m/s] Below it the vehicle stands and the brake's force does no work.

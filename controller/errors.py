@@ -9,10 +9,6 @@ class ParameterError(ControllerError):
     """A parameter is not what it must be: name, value, unit and expectation are named."""
 
 
-class SolverMissingError(ControllerError):
-    """The QP solver asked for is not installed."""
-
-
 class SolverSetupError(ControllerError):
     """The QP solver refuses the problem at set-up."""
 

@@ -10,9 +10,7 @@ from controller.defaults import (
     ITERATION_LIMIT,
     REFERENCE_SPEED,
     SAFE_DISTANCE,
-    SOLVER,
     SPEED_MAX,
-    SolverName,
 )
 from controller.errors import ParameterError
 
@@ -49,7 +47,6 @@ class MpcParameters:
     force_limit: float = FORCE_LIMIT  # u_max [N]
     force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
     speed_weight: float = 1.0  # Q = speed_weight * I
-    solver: SolverName = SOLVER
     iteration_limit: int = ITERATION_LIMIT  # of the QP solver
     position_tolerance: float = 1e-6  # [m] by which an accepted plan may miss a constraint
     speed_tolerance: float = 1e-6  # [m/s]
@@ -70,7 +67,6 @@ class MpcParameters:
         require_positive("force_limit", self.force_limit, "N")
         require_positive("force_rate_limit", self.force_rate_limit, "N per step")
         require_positive("speed_weight", self.speed_weight, "-")
-        require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")
         whole = isinstance(self.iteration_limit, int)
         require(
             whole and self.iteration_limit >= 1,

@@ -174,11 +174,9 @@ def help_compiling(parent: int) -> None:
 
 def _tiny_run() -> None:
     """Call every kernel once: a free drive, people on the path, background vehicles, walls."""
-    hard = {"soft": False, "gap_choice": False}  # then nothing is planned, and the PID brakes
     for settings in (
         _FREE,
         _PLANNING,
-        {"time_limit": 0.2, "crowd": _PEOPLE, "planner": hard},
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}, "controller": "mpc-paper"},
         {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "mpc-paper"},
         _STREET,

@@ -41,11 +41,11 @@ class Mpc:
 
     Args:
         model: the vehicle.
-        parameters: weights, limits, solver.
+        parameters: weights and limits.
 
     Raises:
         ParameterError: the limits contradict each other.
-        SolverMissingError, SolverSetupError: the solver cannot be used.
+        SolverSetupError: the solver cannot be used.
     """
 
     def __init__(self, model: LongitudinalModel, parameters: MpcParameters | None = None) -> None:
@@ -55,7 +55,6 @@ class Mpc:
         self._problem = SpeedProblem(model, parameters)
         self._solver = ExactSolver(
             self._problem,
-            parameters.solver,
             parameters.iteration_limit,
             box=(parameters.speed_min - 1.0, parameters.speed_max + 1.0),
         )

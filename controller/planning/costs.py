@@ -16,10 +16,7 @@ _CLEAR = 0.3  # [m] before the end of what is to be kept free it is as good as l
 @inner
 def stopping_need(speed: float, w: Weights) -> float:
     """The distance [m] to somebody in front from which a comfortable stop is possible."""
-    need = w.minimum_distance + w.headway * speed
-    if w.terminal:
-        need += speed * speed / (2.0 * w.deceleration)
-    return need
+    return w.minimum_distance + w.headway * speed
 
 
 @kernel
@@ -186,20 +183,16 @@ def corridor(
     speeds: Array,
     gap: Array,
     allowed: Array,
-    chosen: bool,
     weights: tuple[Any, ...],
     room: Array,
 ) -> None:
     """Fill ``room`` (N,) [m]: how far a plan may have driven at steps 1 ... N.
 
-    Behind everybody who is in front of the manoeuvre then: with the stopping distance of its own
-    speed where it was chosen by what it leads to, and never less than itself; else with d_safe.
+    The plan stays behind everybody who is in front of the manoeuvre then, by the stopping distance
+    of the manoeuvre's speed; it may always drive as far as the manoeuvre itself.
     """
     w = Weights(*weights)
     for i in range(len(gap)):
         station = distance[i + 1] + gap[i]
-        if chosen:
-            room[i] = max(station - stopping_need(speeds[i + 1], w), distance[i + 1])
-        else:
-            room[i] = station - w.safe_distance
+        room[i] = max(station - stopping_need(speeds[i + 1], w), distance[i + 1])
         room[i] = min(room[i], allowed[i])

@@ -10,7 +10,6 @@ from controller.planning.parameters import Weights
 from controller.planning.smoothing import fill, set_target, unfold
 from controller.qp.exact_solver import solve_verified
 
-NO_PLAN = -2  # the corridor is hard, and cannot be kept
 UNSOLVED = -1  # the exact methods did not end: OSQP has to
 _WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows
 _APPROACH = 0.8  # of the gentle braking, with which calm speeds are approached: the rest is spare
@@ -30,8 +29,6 @@ def follow(
     solver: tuple[Array, Array],
     room: Array,
     plan: Motion,
-    chosen: bool,
-    soft: bool,
     calmly: tuple[int, float],
     weights: tuple[Any, ...],
 ) -> tuple[int, bool, bool]:
@@ -48,21 +45,19 @@ def follow(
         problem: nodes, intervals, limits, rows, lower, upper, target, speeds_of, gradients.
         solver: multipliers and solution.
         room: (N,) [m] receives the corridor.
-        plan: filled, unless the QP has no solution or is unsolved.
-        chosen: whether the manoeuvre was searched for; else the speed wanted is aimed at.
-        soft: whether the corridor gives way.
+        plan: filled, unless the QP is unsolved.
         calmly: steps in which calm speeds are kept to, as far as braking with the second [m/s^2]
             can help it.
         weights: of the cost.
 
     Returns:
-        The corrections of the active set, ``NO_PLAN`` or ``UNSOLVED``; whether the manoeuvre
+        The corrections of the active set, or ``UNSOLVED``; whether the manoeuvre
         itself is the plan; whether a stop stays possible beyond it if the last speed is kept.
     """
     speed, before, force, fastest = state
     gap, _, calm = prospect
     nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
-    corridor(best[0], best[1], gap, allowed, chosen, weights, room)
+    corridor(best[0], best[1], gap, allowed, weights, room)
     soon, gentle = calmly
     if gentle < np.inf:
         approach_calmly(best[0], _APPROACH * gentle, calm)
@@ -71,15 +66,14 @@ def follow(
         calm[i] = min(gently if i < soon else np.inf, lane_speeds[i])
     wanted = np.empty(len(nodes))
     for i in range(len(nodes)):
-        wanted[i] = best[1][nodes[i]] if chosen else fastest
+        wanted[i] = best[1][nodes[i]]
     set_target(wanted, speed, before, gradients, target)
-    if not fill(speed, force, fastest, room, calm, nodes, intervals, limits, soft, lower, upper):
-        return NO_PLAN, False, False
+    fill(speed, force, fastest, room, calm, nodes, intervals, limits, lower, upper)
     corrections = solve_verified(rows, lower, upper, target, *solver)
     if corrections < 0:
         return UNSOLVED, False, False
     itself, holds = unfold_and_judge(
-        speed, best, prospect, missing, allowed, problem, solver[1], plan, chosen, weights
+        speed, best, prospect, missing, allowed, problem, solver[1], plan, weights
     )
     return corrections, itself, holds
 
@@ -111,7 +105,6 @@ def unfold_and_judge(
     problem: tuple[Any, ...],
     solution: Array,
     plan: Motion,
-    chosen: bool,
     weights: tuple[Any, ...],
 ) -> tuple[bool, bool]:
     """Fill the plan from the QP's solution; the manoeuvre itself where that comes less close.
@@ -127,7 +120,7 @@ def unfold_and_judge(
             value += speeds_of[i, j] * solution[j]
         at_nodes[i] = value
     unfold(speed, at_nodes, nodes, limits[0], *plan)
-    closer = chosen and missing_of(plan, best, prospect, allowed, weights) > missing + _WORSE
+    closer = missing_of(plan, best, prospect, allowed, weights) > missing + _WORSE
     if closer:
         return True, take_over(best, plan, prospect, limits[0], weights)
     return False, may_hold(plan, best, prospect, limits[0], weights)

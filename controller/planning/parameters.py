@@ -12,9 +12,7 @@ from controller.defaults import (
     ITERATION_LIMIT,
     REFERENCE_SPEED,
     SAFE_DISTANCE,
-    SOLVER,
     SPEED_MAX,
-    SolverName,
 )
 from controller.parameters import require, require_not_negative, require_positive
 
@@ -82,11 +80,11 @@ _WEIGHTS = (
 )
 
 
-AttitudeName = Literal["careful", "normal", "assertive"]
+StyleName = Literal["careful", "normal", "assertive"]
 
-#: What an attitude sets of :class:`ManoeuvreParameters`: points on the front of the ego's time
+#: What a driving style sets of :class:`ManoeuvreParameters`: points on the front of the ego's time
 #: against risk and people's delay, found by paired runs (docs/controllers.md).
-ATTITUDES: Final[Mapping[AttitudeName, Mapping[str, float]]] = MappingProxyType(
+STYLES: Final[Mapping[StyleName, Mapping[str, float]]] = MappingProxyType(
     {
         "careful": {"conflict_weight": 1.6, "nearness_weight": 10.0, "minimum_distance": 0.8},
         "normal": {"conflict_weight": 0.8, "nearness_weight": 7.0, "minimum_distance": 0.4},
@@ -97,7 +95,7 @@ ATTITUDES: Final[Mapping[AttitudeName, Mapping[str, float]]] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class PlannerParameters:
-    """The planning MPC: horizon, limits, what its plan trades, and its switches.
+    """The planning MPC: horizon, limits, and what its plan trades.
 
     Raises:
         ParameterError: a value is not finite or out of range.
@@ -111,11 +109,6 @@ class PlannerParameters:
     force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
     effort_weight: float = 0.02  # of (m/s^2)^2 s, beside (m/s)^2 s of the speed error
     jerk_weight: float = 0.02  # of (m/s^3)^2 s
-    block_growth: float = 0.25  # of the plan's intervals from one to the next; 0: all of one step
-    gap_choice: bool = True  # search manoeuvres; else the plan just keeps d_safe
-    soft: bool = True  # exact penalty; else a plan that cannot keep its distance is none
-    terminal: bool = False  # a stop stays possible also where the horizon ends
-    solver: SolverName = SOLVER
     iteration_limit: int = ITERATION_LIMIT  # of the QP solver
     manoeuvres: ManoeuvreParameters = ManoeuvreParameters()
 
@@ -129,8 +122,6 @@ class PlannerParameters:
         require_positive("force_rate_limit", self.force_rate_limit, "N per step")
         require_not_negative("effort_weight", self.effort_weight, "s")
         require_not_negative("jerk_weight", self.jerk_weight, "s^3")
-        require_not_negative("block_growth", self.block_growth, "-")
-        require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")
 
     @property
     def calm_time(self) -> float:
@@ -167,7 +158,6 @@ class Weights(NamedTuple):
     threat: float
     final: float
     later: float
-    terminal: bool
 
     @classmethod
     def of(cls, p: PlannerParameters, m: ManoeuvreParameters) -> Self:
@@ -187,5 +177,4 @@ class Weights(NamedTuple):
             m.threat_weight,
             m.final_weight,
             m.later_weight,
-            p.terminal,
         )

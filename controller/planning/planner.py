@@ -1,7 +1,4 @@
-"""The planning MPC: choose a manoeuvre, smooth it by a QP, and keep what was planned.
-
-Where there is no plan, the well-tuned PID drives.
-"""
+"""The planning MPC: choose a manoeuvre, smooth it by a QP, and keep what was planned."""
 
 from math import inf, isfinite
 from typing import NamedTuple
@@ -13,9 +10,7 @@ from controller.defaults import STANDSTILL
 from controller.errors import ParameterError
 from controller.foresight import Foresight, Manoeuvre
 from controller.model import LongitudinalModel
-from controller.pid.tuned_pid import TunedPid
 from controller.planning.following import (
-    NO_PLAN,
     UNSOLVED,
     follow,
     take_over,
@@ -35,7 +30,6 @@ class Plan(NamedTuple):
     """The force for the next step, and how it came about."""
 
     force: float  # u(k) [N]
-    found: bool  # False: the corridor is hard, and cannot be kept
     status: str  # of the QP
     iterations: int  # of the solver
     manoeuvre: str  # which one: "clear", "drive on", "as planned", or the acceleration aimed at
@@ -47,11 +41,11 @@ class Planner:
 
     Args:
         model: the vehicle.
-        parameters: horizon, limits, weights, switches.
+        parameters: horizon, limits, weights.
 
     Raises:
         ParameterError: the time step leaves no horizon.
-        SolverMissingError, SolverSetupError: the solver cannot be used.
+        SolverSetupError: the solver cannot be used.
     """
 
     def __init__(
@@ -63,9 +57,7 @@ class Planner:
         N = parameters.horizon
         self._search = Search(model, parameters)
         self._problem = SmoothingProblem(model, parameters)
-        self._solver = ExactSolver(
-            self._problem, parameters.solver, parameters.iteration_limit, box=None
-        )
+        self._solver = ExactSolver(self._problem, parameters.iteration_limit, box=None)
         problem = self._problem
         self._arrays = (
             problem.nodes,
@@ -126,11 +118,7 @@ class Planner:
         search, end = self._search, float(allowed[-1])
         if speed <= STANDSTILL:
             end = min(end, gap - self.parameters.safe_distance)
-        seen = (speed, before, fastest, allowed, foresight)
-        if self.parameters.gap_choice:
-            chosen = search.choose(*seen, end, to_clear)
-        else:
-            chosen = search.follow(*seen)
+        chosen = search.choose(speed, before, fastest, allowed, foresight, end, to_clear)
         return self._smooth(speed, previous_force, before, fastest, allowed, chosen, lane_speeds)
 
     def _acceleration(self, speed: float, force: float) -> float:
@@ -150,7 +138,7 @@ class Planner:
         lane_speeds: Array | None,
     ) -> Plan:
         """The QP within the manoeuvre's corridor; the manoeuvre itself where that is better."""
-        p, search, plan = self.parameters, self._search, self._plan
+        search, plan = self._search, self._plan
         best = search.best
         to = self._to
         prospect = (search.gap, search.conflicts, search.calm)
@@ -165,14 +153,9 @@ class Planner:
             self._solver.memory,
             self._corridor,
             to,
-            p.gap_choice,
-            p.soft,
             self._calmly,
             search.weights,
         )
-        if corrections == NO_PLAN:
-            search.forget()
-            return Plan(0.0, False, "infeasible: cannot keep the distance", 0, chosen, search.tried)
         outcome = _SOLVED
         if corrections == UNSOLVED:
             outcome, corrections = self._solver.solve()
@@ -186,7 +169,6 @@ class Planner:
                     self._arrays,
                     solution,
                     to,
-                    p.gap_choice,
                     search.weights,
                 )
             else:
@@ -196,7 +178,7 @@ class Planner:
             status = "manoeuvre: no QP solution"
         search.keep(plan, holds)
         force = self._force(speed, previous_force)
-        return Plan(force, True, status, corrections, chosen, search.tried)
+        return Plan(force, status, corrections, chosen, search.tried)
 
     def _force(self, speed: float, previous_force: float) -> float:
         """What drives the plan's next speed, within the actuator's limits [N]."""
@@ -209,41 +191,33 @@ class Planner:
 
 
 class PlanningController:
-    """The planner with a PID as its fallback.
-
-    With a soft corridor there always is a plan; only a hard one (``soft`` off) needs the fallback.
+    """The planner as a controller: the distances give way, so that there always is a plan.
 
     Args:
-        planner: plans.
-        pid: the fallback.
+        planner: Planner of the speeds.
     """
 
     foresees = True
 
-    def __init__(self, planner: Planner, pid: TunedPid) -> None:
+    def __init__(self, planner: Planner) -> None:
         self.planner = planner
-        self.pid = pid
         self._previous_force = 0.0
-        self._planned_at: float | None = None  # speed [m/s] of the last step, if it had a plan
-        self._overruled_by: float | None = None  # force [N] that acted instead in that step
 
     @property
     def horizon(self) -> int:
-        """Steps that the plan looks ahead."""
+        """The steps that the plan looks ahead."""
         return self.planner.parameters.horizon
 
     def reset(self) -> None:
-        """Forget the past of both controllers."""
+        """Forget the past."""
         self._previous_force = 0.0
-        self._planned_at = self._overruled_by = None
-        self.pid.reset()
         self.planner.reset()
 
     def control(self, observation: Observation) -> Decision:
         """Decide on the force at t_k."""
-        speed, gap, limit = observation.speed, observation.gap, observation.speed_limit
+        speed = observation.speed
         previous = 0.0 if speed <= STANDSTILL else self._previous_force
-        reference = min(self.planner.parameters.reference_speed, limit)
+        reference = min(self.planner.parameters.reference_speed, observation.speed_limit)
         allowed = observation.obstacle_positions - (
             observation.position + observation.safe_distance
         )
@@ -254,43 +228,15 @@ class PlanningController:
             allowed,
             observation.foresight,
             observation.lane_speeds,
-            gap,
+            observation.gap,
             observation.to_clear,
         )
-        if plan.found:
-            force = plan.force
-            if speed <= STANDSTILL and force < 0.0:
-                force = 0.0  # the brake holds without work
-            self._planned_at = speed
-            decision = Decision(
-                force, "mpc", plan.manoeuvre, plan.status, plan.iterations, reference, None
-            )
-        else:
-            self._bring_up_to_date()
-            force = self.pid.control(speed, gap, limit)
-            wanted = self.pid.reference_speed(gap, limit)
-            decision = Decision(
-                force, "pid", "infeasible", plan.status, plan.iterations, wanted, None
-            )
-        self._previous_force = decision.force
-        self._overruled_by = None
-        return decision
+        force = plan.force
+        if speed <= STANDSTILL and force < 0.0:
+            force = 0.0  # the brake holds without work
+        self._previous_force = force
+        return Decision(force, "mpc", plan.manoeuvre, plan.status, plan.iterations, reference, None)
 
     def applied(self, force: float) -> None:
-        """Another force [N] than the last one asked for acts: the next is asked for from there."""
+        """Go on from the force [N] that acts instead of the last one asked for."""
         self._previous_force = force
-        if self._planned_at is None:
-            self.pid.applied(force)
-        else:
-            self._overruled_by = force
-
-    def _bring_up_to_date(self) -> None:
-        """Let the PID go on from the last step, in which the planner acted.
-
-        It remembers nothing of the steps before that, so that it need not be told of each.
-        """
-        if self._planned_at is not None:
-            self.pid.track(self._planned_at, inf)
-            if self._overruled_by is not None:
-                self.pid.applied(self._overruled_by)
-        self._planned_at = None

@@ -80,10 +80,6 @@ class Search:
         self._planned, self._holds, self._drives_on = False, True, True
         self._turn, self.tried, self.missing = 0, 0, inf
 
-    def forget(self) -> None:
-        """There is no plan to go on with."""
-        self._planned = False
-
     def keep(self, plan: Manoeuvre, holds: bool) -> None:
         """Remember what was decided on: it is tried again at the next step.
 
@@ -135,19 +131,6 @@ class Search:
         name = self._names[self._best]
         self._drives_on = name == "drive on"
         return name
-
-    def follow(
-        self,
-        speed: float,
-        before: float,
-        fastest: float,
-        allowed: Array,
-        foresight: Foresight | None,
-    ) -> str:
-        """Without a search: the crowd answers to the last plan, the plan keeps d_safe."""
-        self._lay_out(speed, before, fastest, inf)
-        heats = Heats([self._as_planned], [], [])
-        return "clear" if self._compare(heats, True, fastest, allowed, foresight) else "as planned"
 
     def _lay_out(self, speed: float, before: float, fastest: float, end: float) -> None:
         """Fill all trials; the way ends after ``end`` [m]."""

@@ -33,7 +33,10 @@ Indices = NDArray[np.int64]
 WIDER = 1e-7  # [m/s] [m] by which bounds are widened, so that rounding leaves no empty problem
 
 
-def nodes_of(horizon: int, growth: float) -> Indices:
+_GROWTH = 0.25  # share of its own time by which an interval of the plan is longer; docs/planner.md
+
+
+def nodes_of(horizon: int, growth: float = _GROWTH) -> Indices:
     """The steps of the nodes: 1, 2, ... with intervals that grow by ``growth``, up to N."""
     nodes, at = [], 0
     while at < horizon:
@@ -72,7 +75,7 @@ class SmoothingProblem:
 
     def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
         p = parameters
-        self.nodes = nodes = nodes_of(p.horizon, p.block_growth)
+        self.nodes = nodes = nodes_of(p.horizon)
         n, dt = len(nodes), model.time_step
         self.limits = tuple(
             Limits(
@@ -134,9 +137,7 @@ class SmoothingProblem:
         fastest: float,
         corridor: Array,
         calm: Array,
-        *,
-        soft: bool,
-    ) -> bool:
+    ) -> None:
         """Set the bounds.
 
         Args:
@@ -145,12 +146,8 @@ class SmoothingProblem:
             fastest: [m/s] not exceeded unless it is already.
             corridor: (N,) [m] how far the plan may have driven at steps 1 ... N.
             calm: (N,) [m/s] not exceeded as far as braking can help it.
-            soft: the corridor gives way as far as braking cannot keep it.
-
-        Returns:
-            Whether a plan exists.
         """
-        found: bool = fill(
+        fill(
             speed,
             previous_force,
             fastest,
@@ -159,11 +156,9 @@ class SmoothingProblem:
             self.nodes,
             self.intervals,
             self.limits,
-            soft,
             self.lower,
             self.upper,
         )
-        return found
 
 
 @kernel
@@ -176,11 +171,10 @@ def fill(
     nodes: Indices,
     intervals: Array,
     limits: tuple[float, ...],
-    soft: bool,
     lower: Array,
     upper: Array,
-) -> bool:
-    """Bounds of all rows; False if, not being soft, the corridor cannot be kept."""
+) -> None:
+    """Fill the bounds of all rows; the corridor gives way where braking cannot keep it."""
     c, n = Limits(*limits), len(nodes)
     dt = c.time_step
     weakest = max(-c.force, previous_force - c.force_rate)
@@ -195,7 +189,6 @@ def fill(
     lower[0], upper[0] = least, most
     lower[n : 2 * n - 1] = -hardest
     upper[n : 2 * n - 1] = hardest
-    kept = True
     v, driven = least, dt * speed  # x_1(k+1) is independent of all forces
     for i in range(1, n):
         slower = max(0.0, v - hardest * intervals[i])
@@ -206,15 +199,12 @@ def fill(
             room = min(room, corridor[k])  # nobody drives backwards: kept at the end, kept before
             slow = min(slow, calm[k])
         upper[i] = min(upper[i], max(v, slow))
-        if driven > room:
-            kept = False
-            room = driven
+        room = max(room, driven)
         lower[2 * n - 2 + i] = -np.inf
         upper[2 * n - 2 + i] = room - dt * speed
     for i in range(len(lower)):
         lower[i] -= WIDER
         upper[i] += WIDER
-    return kept or soft
 
 
 @kernel

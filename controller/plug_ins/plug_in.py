@@ -23,6 +23,22 @@ class Setup(NamedTuple):
     comfortable_deceleration: float  # [m/s^2]
 
 
+class Defaults(NamedTuple):
+    """What a controller declares of itself: values of settings that the user leaves out.
+
+    A plug-in has them as the attribute ``defaults`` of its class. The last three describe what
+    giveway asks of its own controllers only.
+    """
+
+    reference_speed: float | None = None  # v_r [m/s]; None: as the lanes say
+    heeds_priority: bool = True  # the law of the road holds
+    tracker: bool = True  # noisy positions are filtered
+    safety_layer: bool = True  # the safety layer watches over its forces
+    optimises: bool = False  # it has a model and a horizon, and its plans may be infeasible
+    smooths: bool = False  # it follows a smooth reference speed, and brakes for a distance late
+    buffered: bool = False  # its reference speed rises linearly over a buffer beyond d_safe
+
+
 class Force(NamedTuple):
     """The force that is to act in [t_k, t_k+1]."""
 
@@ -56,6 +72,7 @@ class PlugIn(Protocol):
     It may have, and has to have none of:
 
     * ``Options``, of the class: a dataclass or pydantic model of what users may set;
+    * ``defaults``, of the class: a :class:`Defaults`, what holds where users say nothing;
     * ``horizon``, N: the steps of prediction that it wants in ``obstacle_positions``; 0: none;
     * ``foresees``: it tries manoeuvres on ``Observation.foresight``, and wants no prediction else;
     * ``reset()``: forget the past;

@@ -1,13 +1,18 @@
 """One sequence for both quadratic programs: exact start, solver, verified optimum."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from controller._jit import Array, kernel
-from controller.defaults import SolverName
 from controller.qp.active_set import INFEASIBLE, solve_exactly
-from controller.qp.backends import Backend, make_backend
 from controller.qp.least_squares import LeastSquares, Outcome
 from controller.qp.verification import certifies_infeasibility, refine
+
+if TYPE_CHECKING:
+    from controller.qp.osqp_backend import OsqpBackend
 
 _SOLVED, _INFEASIBLE = Outcome.SOLVED, Outcome.INFEASIBLE  # whose class is slow to tell them
 
@@ -24,7 +29,6 @@ class ExactSolver:
 
     Args:
         problem: to be solved; its arrays are changed in place between solves.
-        solver: which one.
         iteration_limit: of the solver.
         box: the range of every unknown, within which infeasibility is proved; None: the problem
             always has a solution, so that nothing is proved and an optimum is always looked for.
@@ -34,17 +38,16 @@ class ExactSolver:
         memory: the multipliers and the solution, for :func:`solve_verified` in a kernel.
 
     Raises:
-        SolverMissingError, SolverSetupError: the solver cannot be used.
+        SolverSetupError: the solver cannot be used.
     """
 
     def __init__(
         self,
         problem: LeastSquares,
-        solver: SolverName,
         iteration_limit: int,
         box: tuple[float, float] | None,
     ) -> None:
-        self._problem, self._solver, self._limit, self._box = problem, solver, iteration_limit, box
+        self._problem, self._limit, self._box = problem, iteration_limit, box
         self._bounds = (problem.rows, problem.lower, problem.upper)
         count, n = problem.rows.shape
         self.solution = np.empty(n)
@@ -54,12 +57,14 @@ class ExactSolver:
 
     def reset(self) -> None:
         """Forget earlier problems."""
-        hardly_needed = self._box is None and self._solver == "osqp"
-        self._backend: Backend | None = None if hardly_needed else self._made()
+        self._backend: OsqpBackend | None = None if self._box is None else self._made()
         self._multipliers[:] = 0.0
 
-    def _made(self) -> Backend:
-        return make_backend(self._solver, self._problem, self._limit)
+    def _made(self) -> OsqpBackend:
+        # OSQP and scipy's sparse matrices take 0.1 s to import, and most drives never need them.
+        from controller.qp.osqp_backend import OsqpBackend
+
+        return OsqpBackend(self._problem, self._limit)
 
     def solve(self) -> tuple[Outcome, int]:
         """The outcome for the problem as it is now, and the iterations.

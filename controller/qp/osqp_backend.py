@@ -72,7 +72,15 @@ class OsqpBackend:
         return np.asarray(-2.0 * self._sums.T @ target)
 
     def solve(self, solution: Array, multipliers: Array) -> tuple[Outcome, int]:
-        """Solve within the problem's present bounds, as :class:`controller.qp.backends.Backend`."""
+        """Solve within the problem's present bounds.
+
+        Args:
+            solution: Start, (n,); receives the solution.
+            multipliers: Start, (m,); receives the solution's, or the certificate of infeasibility.
+
+        Returns:
+            The outcome and the number of iterations.
+        """
         solver, problem = self._solver, self._problem
         aims_elsewhere = pose(
             problem.lower,

@@ -234,12 +234,12 @@ def actuator_limits(
         return Finding(
             name, "warn", f"{largest:.0f} N brake it with {hardest:.2g} m/s² at most",
             f"check and identify it with --force-limit {enough:.0f}, run it with "
-            f"--mpc-force-limit {enough:.0f}",
+            f"--vehicle-force-limit {enough:.0f}",
         )  # fmt: skip
     which = "drive" if drive <= brake else "brake"
     return Finding(
         name, "warn", f"no more than {lowest:.0f} N of {which} force arrive",
-        f"run it with --mpc-force-limit {lowest:.0f} or less",
+        f"run it with --vehicle-force-limit {lowest:.0f} or less",
     )  # fmt: skip
 
 

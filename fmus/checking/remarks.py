@@ -15,7 +15,7 @@ POOR_FIT = 0.9  # R squared below which a remark says so
 def saturation_remarks(limits: tuple[float, float]) -> list[str]:
     """Remark on the largest drive and brake force that arrive [N], if they were reached."""
     return [
-        f"no more than {limit:.0f} N of {name} force arrive: run with --mpc-force-limit "
+        f"no more than {limit:.0f} N of {name} force arrive: run with --vehicle-force-limit "
         f"{limit:.0f} or less{' (which bounds the brakes, too)' if name == 'drive' else ''}"
         for name, limit in zip(("drive", "brake"), limits, strict=True)
         if np.isfinite(limit)

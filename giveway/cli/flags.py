@@ -27,7 +27,6 @@ _PANELS = {
     "rules": "Rules",
     "mpc": "MPC",
     "pid": "PID",
-    "tuned_pid": "Tuned PID",
     "planner": "Planner",
     "safety": "Safety",
     "perception": "Perception",
@@ -73,7 +72,7 @@ def _set_flag(socket: Socket) -> Any:
 _EVERYDAY = frozenset(
     {
         ("controller",),
-        ("planner", "attitude"),
+        ("planner", "style"),
         ("seed",),
         ("time_limit",),
         ("twin",),

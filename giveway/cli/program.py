@@ -4,7 +4,6 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any
 
 from giveway._environment import out_of_memory
 from giveway.cli.exit import fail
@@ -36,7 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
     except Exception as error:
         if hasattr(error, "format_message"):
-            code = fail(_usage(error), 2)
+            said = _renamed(words) or f"{error.format_message()} See giveway --help."
+            code = fail(said, 2)  # a usage error
         elif str(error) == _NO_THREAD:
             code = fail(
                 "the system gives no more threads; end other processes, or raise the limit "
@@ -48,14 +48,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(code)
 
 
-def _usage(error: Any) -> str:
-    """A usage error; of a flag that is gone: what to write instead."""
-    from giveway.config.old_keys import OLD_FLAGS
+def _renamed(words: Sequence[str]) -> str | None:
+    """The message about the first flag that no longer exists; None if there is no such flag."""
+    from giveway.config.renamed import renamed_flag
 
-    instead = OLD_FLAGS.get(getattr(error, "option_name", ""))
-    if instead is not None:
-        return f"{error.option_name}: this flag is gone; write {instead}"
-    return f"{error.format_message()} See giveway --help."
+    for word in words:
+        instead = renamed_flag(word) if word.startswith("--") else None
+        if instead is not None:
+            return f"{word.partition('=')[0]}: no longer exists; {instead}"
+    return None
 
 
 def _named(error: OSError) -> str:

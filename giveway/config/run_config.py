@@ -16,11 +16,10 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from giveway.config.old_keys import advice_on
+from controller import DECLARED, Defaults
 from giveway.config.option import LANE, Section, expectation, option
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
 from giveway.config.tables.basics import (
-    DEFAULT_SPEED,
     EgoConfig,
     RecordConfig,
     SumoConfig,
@@ -28,11 +27,13 @@ from giveway.config.tables.basics import (
     VehicleConfig,
 )
 from giveway.config.tables.controllers import (
+    OWN_OPTIONS,
     MpcConfig,
+    NoOptions,
     PidConfig,
     PlannerConfig,
     SafetyConfig,
-    TunedPidConfig,
+    TunedPidOptions,
 )
 from giveway.config.tables.crowd import CrowdConfig
 from giveway.config.tables.measures import MeasureConfig, read_measures
@@ -40,6 +41,7 @@ from giveway.config.tables.perception import PerceptionConfig
 from giveway.config.tables.regulation import RegulationConfig
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.plug_ins.finding import is_fmu, shown
+from giveway.plug_ins.options import read_options
 
 PAPER_STEP = 0.05
 """[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
@@ -54,7 +56,6 @@ EGO_TABLES = (
     "rules",
     "mpc",
     "pid",
-    "tuned_pid",
     "planner",
     "safety",
     "perception",
@@ -129,10 +130,9 @@ class RunConfig(Section):
     rules: RulesConfig = RulesConfig()
     mpc: MpcConfig = MpcConfig()
     pid: PidConfig = PidConfig()
-    tuned_pid: TunedPidConfig = TunedPidConfig()
     planner: PlannerConfig = PlannerConfig()
     controller_options: dict[str, JsonValue] = Field(
-        default_factory=dict, description="the options of a controller that is not giveway's own"
+        default_factory=dict, description="the controller's own options"
     )
     model_options: dict[str, JsonValue] = Field(
         default_factory=dict,
@@ -203,11 +203,18 @@ class RunConfig(Section):
                 said = first["msg"].removeprefix("Value error, ")
                 raise ValueError(f"egos[{number}]: {said}") from None
             key = ".".join(map(str, first["loc"][:2]))  # beyond: which part of the value
-            field, gone = _field_at(first["loc"]), advice_on(tuple(map(str, first["loc"][:2])))
-            if gone is not None:
-                raise ValueError(f"egos[{number}]: {key}: {gone}") from None
+            field = _field_at(first["loc"])
             expected = expectation(first, field) if field is not None else first["msg"]
             raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
+
+    @property
+    def defaults(self) -> Defaults:
+        """What the controller declares of itself.
+
+        What somebody else's declares stands in the configuration already, see
+        :func:`giveway.config.loading.load`: to read a configuration imports nobody's code.
+        """
+        return DECLARED.get(self.controller, Defaults())
 
     @property
     def reference_speed(self) -> float | Literal["lane"]:
@@ -215,12 +222,8 @@ class RunConfig(Section):
         wanted = self.regulation.reference_speed
         if wanted is not None:
             return wanted
-        return DEFAULT_SPEED if self.controller.endswith("-paper") else LANE
-
-    @property
-    def keeps_priority(self) -> bool:
-        """Whether the controller keeps the rules of priority where the user says nothing."""
-        return not self.controller.endswith("-paper")
+        own = self.defaults.reference_speed
+        return LANE if own is None else own
 
     def heeds(self, rule: str) -> bool:
         """Whether an ego heeds one of giveway's rules.
@@ -233,13 +236,13 @@ class RunConfig(Section):
             return said
         if rule == "speed_limits":
             return self.reference_speed == LANE
-        return rule not in OF_PRIORITY or self.keeps_priority
+        return rule not in OF_PRIORITY or self.defaults.heeds_priority
 
     @property
     def tracks_people(self) -> bool:
         """Whether the controllers are shown tracked positions where perception is noisy."""
         tracker = self.perception.tracker
-        return not self.controller.endswith("-paper") if tracker is None else tracker
+        return self.defaults.tracker if tracker is None else tracker
 
     @property
     def driver(self) -> str:
@@ -286,20 +289,13 @@ class EgoRunConfig(RunConfig):
                 "[rules] speed_limits = false: [regulation] reference_speed is 'lane', which is "
                 "what they say; give a speed [m/s], like reference_speed = 13.9"
             )
-        if self.controller_options and not self.plugged_in:
-            key = next(iter(self.controller_options))
-            raise ValueError(
-                f"[controller_options] {key}: '{self.controller}' has no options there; its own "
-                "tables are in docs/options.md, and a study gives those of another controller in a "
-                "named level beside its name"
-            )
-
         if self.sensor_options and not self.perception.plugged_in_sensor:
             key = next(iter(self.sensor_options))
             raise ValueError(
                 f"[sensor_options] {key}: '{self.perception.sensor}' has no options there; name a "
                 "sensor that has it as [perception] sensor, or leave it out"
             )
+        self.own_options  # noqa: B018 - they are read, and refused if they cannot be used
         if self.controller_profile and not is_fmu(self.controller):
             raise ValueError(
                 f"controller_profile = '{self.controller_profile}': '{self.controller}' is no "
@@ -317,23 +313,38 @@ class EgoRunConfig(RunConfig):
         return self.controller not in BUNDLED
 
     @property
+    def own_options(self) -> Section:
+        """The options of one of our own controllers; those of others are read by their sockets.
+
+        Raises:
+            ConfigError: One is unknown, or its value cannot be used.
+        """
+        if self.plugged_in:
+            return NoOptions()
+        kind = OWN_OPTIONS.get(self.controller)
+        own = read_options(self.controller, kind, self.controller_options)
+        return own if isinstance(own, Section) else NoOptions()
+
+    @property
     def optimises(self) -> bool:
         """Whether a model predictive controller drives: it has a model and a horizon."""
-        return self.controller in {"mpc", "mpc-paper"}
+        return self.defaults.optimises
 
     @property
     def safety_layer(self) -> bool:
         """Whether the safety layer watches over the controller."""
         enabled = self.safety.enabled
-        return not self.controller.endswith("-paper") if enabled is None else enabled
+        return self.defaults.safety_layer if enabled is None else enabled
 
     @property
     def buffer_distance(self) -> float:
         """Over which the reference speed rises linearly to v_r beyond d_safe [m]; 0: not so."""
-        if self.controller.endswith("-paper"):
+        if self.defaults.buffered:
             return self.pid.buffer_distance
-        linear = self.controller == "pid-tuned" and self.tuned_pid.profile == "linear"
-        return self.tuned_pid.buffer_distance if linear else 0.0
+        own = self.own_options
+        if isinstance(own, TunedPidOptions) and own.profile == "linear":
+            return own.buffer_distance
+        return 0.0
 
     def require_speeds_in_reach(self) -> None:
         """Make sure that the MPC may drive at the speeds asked for.
@@ -341,7 +352,7 @@ class EgoRunConfig(RunConfig):
         Raises:
             ValueError: it may not.
         """
-        low, high = self.mpc.speed_min, self.mpc.speed_max
+        low, high = self.mpc.speed_min, self.vehicle.speed_max
         for key, speed in (
             ("[regulation] reference_speed", self.reference_speed),
             ("[ego] initial_speed", self.ego.initial_speed),
@@ -349,7 +360,7 @@ class EgoRunConfig(RunConfig):
             if speed is None or isinstance(speed, str):
                 continue
             if self.optimises and not low <= speed <= high:
-                msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
+                msg = f"{key} = {speed:g}: expected within [mpc] speed_min and [vehicle] speed_max"
                 msg += f", {low:g} to {high:g} [m/s]"
                 raise ValueError(msg)
 

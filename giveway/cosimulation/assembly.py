@@ -165,7 +165,7 @@ def assemble(
         )
     yielding = None
     if config.traffic.yielding and (added or walkers or egos):
-        yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
+        yielding = Yielding(sumo.vehicles, sumo.step_length)
     priority = _priority(config, egos, sumo) if added or walkers else None
     return Parts(
         config=config,

@@ -51,7 +51,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
         require_pedpy()
     files = read_scenario(scenario.config_file)
     files.require_inputs()
-    zone = Zone(config.crowd.zone, config.crowd.zone_margin)
+    zone = Zone(config.crowd.zone)
     egos = config.each_ego()
     _require_distinct(egos)
     time_step = control_step(config, files)

@@ -18,18 +18,21 @@ _SMALLEST, _LARGEST = 0.1, 1e6  # [m] radii
 _FARTHEST = 1e7  # [m] a corner; beyond it a millimetre is lost in rounding
 
 
+_MARGIN = 5.0  # Distance [m] that keeps people from changing hands at the edge, some steps wide
+
+
 class Zone:
     """Where pedestrians are ours: round the egos or their way, in a polygon, everywhere, nowhere.
 
     Args:
         text: as in the configuration.
-        margin: [m] outside of which who is ours is handed back.
+        margin: Distance [m] outside the zone at which people are handed back to SUMO.
 
     Raises:
         ConfigError: the text is none of these.
     """
 
-    def __init__(self, text: str, margin: float) -> None:
+    def __init__(self, text: str, margin: float = _MARGIN) -> None:
         self._text = text
         self._margin = margin
         self._radius: float | None = None

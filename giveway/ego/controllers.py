@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from controller import (
-    ATTITUDES,
+    STYLES,
     Controller,
     ControllerError,
     LongitudinalModel,
@@ -21,12 +21,12 @@ from controller import (
     PlanningController,
     ReferenceParameters,
     SpeedController,
+    StyleName,
     TunedPid,
     TunedPidParameters,
 )
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE, Section
-from giveway.config.tables.controllers import PlannerConfig
 from giveway.ego.plug_in import plugged_in
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ControlError
@@ -50,7 +50,7 @@ def make_controller(
     Raises:
         ControlError: its parameters contradict each other, or its solver is missing.
     """
-    speed: float = config.mpc.speed_max if fastest is None else fastest
+    speed: float = config.vehicle.speed_max if fastest is None else fastest
     if config.reference_speed != LANE:
         speed = config.reference_speed
     regulation = config.regulation.model_copy(update={"reference_speed": speed})
@@ -86,7 +86,9 @@ def plan_steps(config: EgoRunConfig, time_step: float) -> int:
 def _paper_mpc(config: EgoRunConfig, time_step: float) -> SpeedController:
     """The paper's MPC, with the paper's PID where the QP has no solution."""
     safe_distance = config.regulation.safe_distance + model_margin(config, time_step)
-    parameters = filled(MpcParameters, config.mpc, config.regulation, safe_distance=safe_distance)
+    parameters = filled(
+        MpcParameters, config.mpc, config.vehicle, config.regulation, safe_distance=safe_distance
+    )
     return SpeedController(Mpc(_model(config, time_step), parameters), _pid(config, time_step))
 
 
@@ -97,7 +99,7 @@ def _pid(config: EgoRunConfig, time_step: float) -> Pid:
         PidParameters,
         config.regulation,
         pid,
-        config.mpc,
+        config.vehicle,
         K_p=pid.proportional_gain,
         K_i=pid.integral_gain,
         K_d=pid.derivative_gain,
@@ -107,42 +109,43 @@ def _pid(config: EgoRunConfig, time_step: float) -> Pid:
 
 def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
     """The well-tuned PID, with the actuator's limits of the MPC."""
-    reference = filled(ReferenceParameters, config.regulation, config.tuned_pid)
-    parameters = filled(TunedPidParameters, config.tuned_pid, config.mpc, reference=reference)
+    own = config.own_options
+    reference = filled(ReferenceParameters, config.regulation, own)
+    parameters = filled(TunedPidParameters, own, config.vehicle, reference=reference)
     return TunedPid(parameters, _model(config, time_step))
 
 
-def manoeuvres_of(planner: PlannerConfig, margin: float = 0.0) -> ManoeuvreParameters:
-    """The planner's manoeuvres: what its attitude sets, unless the options say otherwise.
+def manoeuvres_of(style: StyleName, own: Section, margin: float = 0.0) -> ManoeuvreParameters:
+    """The planner's manoeuvres: what its style sets, unless the options say otherwise.
 
     Args:
-        planner: the options.
+        style: Driving style.
+        own: Options of the planner.
         margin: [m] kept to people for what the vehicle's model lacks.
     """
     weighed = {
-        name: usual if getattr(planner, name) is None else getattr(planner, name)
-        for name, usual in ATTITUDES[planner.attitude].items()
+        name: usual if getattr(own, name) is None else getattr(own, name)
+        for name, usual in STYLES[style].items()
     }
     weighed["minimum_distance"] += margin
-    return filled(ManoeuvreParameters, planner, **weighed)
+    return filled(ManoeuvreParameters, own, **weighed)
 
 
 def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
-    """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
-    regulation, planner = config.regulation, config.planner
+    """The planning MPC."""
+    regulation, own = config.regulation, config.own_options
     margin = model_margin(config, time_step)
     parameters = filled(
         PlannerParameters,
         regulation,
-        planner,
+        own,
         config.mpc,
+        config.vehicle,
         horizon=plan_steps(config, time_step),
         safe_distance=regulation.safe_distance + margin,
-        manoeuvres=manoeuvres_of(planner, margin),
+        manoeuvres=manoeuvres_of(config.planner.style, own, margin),
     )
-    return PlanningController(
-        Planner(_model(config, time_step), parameters), _tuned_pid(config, time_step)
-    )
+    return PlanningController(Planner(_model(config, time_step), parameters))
 
 
 def _model(config: EgoRunConfig, time_step: float) -> LongitudinalModel:

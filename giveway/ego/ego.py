@@ -116,7 +116,7 @@ class Ego:
             self._origin,
             config.regulation.comfortable_deceleration,
             plans=waiting.controller.foresees,
-            tuned=config.controller == "pid-tuned",
+            tuned=config.defaults.smooths,
         )
 
     @property
@@ -204,9 +204,7 @@ class Ego:
                 behind = self._kerbs.kept(pedestrians, kerbs, relevant) if self._kerbs else kerbs
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
                 who = numbers if relevant is None else numbers[relevant]
-                foresight.look(
-                    pedestrians, surroundings, poses, row, front, speed, off, behind, who
-                )
+                foresight.look(pedestrians, surroundings, poses, row, front, off, behind, who)
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)

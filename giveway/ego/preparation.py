@@ -1,7 +1,7 @@
 """How an ego is made ready before it departs: its vehicle FMU, its predictor, its safety layer."""
 
 from contextlib import ExitStack
-from math import inf, sqrt
+from math import sqrt
 
 from controller import Controller, SafetyParameters
 from fmus import FmuError
@@ -15,6 +15,7 @@ from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import VehicleError
 from giveway.run_data.tracks import EgoTrack
 
+_MARGIN = 0.05  # Distance [m] between the front bumper and whoever may get there; docs/safety.md
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
 
 
@@ -77,9 +78,8 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         walking_speed=worst.speed,
         setting_out=worst.setting_out,
         body_radius=walking.body_radius,
-        margin=safety.margin + model_margin(config, time_step),
+        margin=_MARGIN + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,
-        force_limit=config.mpc.force_limit,
-        force_rate_limit=config.mpc.force_rate_limit if safety.rate_limited else inf,
+        force_limit=config.vehicle.force_limit,
         reaction_time=identified_reaction_time(config) if reaction is None else reaction,
     )

@@ -132,7 +132,7 @@ def _require_sound(
     """
     speed = config.ego.initial_speed
     speed = DEFAULT_SPEED if speed is None else speed
-    force = min(_CHECK_FORCE, config.mpc.force_limit)
+    force = min(_CHECK_FORCE, config.vehicle.force_limit)
     digest = sha256(path.read_bytes()).hexdigest()
     key = (digest, profile.model_dump_json(), time_step, speed, force)
     if key in _sound:
@@ -228,8 +228,12 @@ def _other_size(config: EgoRunConfig) -> str:
     flags = [
         f"{flag} {float(f'{ratio * default:.2g}'):.10g}"
         for flag, value, default in (
-            ("--mpc-force-limit", config.mpc.force_limit, usual.mpc.force_limit),
-            ("--mpc-force-rate-limit", config.mpc.force_rate_limit, usual.mpc.force_rate_limit),
+            ("--vehicle-force-limit", config.vehicle.force_limit, usual.vehicle.force_limit),
+            (
+                "--vehicle-force-rate-limit",
+                config.vehicle.force_rate_limit,
+                usual.vehicle.force_rate_limit,
+            ),
             (
                 "--pid-proportional-gain",
                 config.pid.proportional_gain,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import WorstMotion
+from controller import DECLARED, Defaults, WorstMotion
 from giveway.metrics.anticipation import Anticipation
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
@@ -23,8 +23,7 @@ from giveway.run_data.tracks import EgoTrack
 if TYPE_CHECKING:
     import pandas as pd
 
-_OPTIMISERS = frozenset({"mpc", "mpc-paper"})
-SAFETY = "safety"  # name under which the safety layer acts
+SAFETY = "safety"  # the name under which the safety layer acts
 HARD = 4.0
 """[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
 _CAUSE = 15.0  # [m] distance ahead of a cause (person, vehicle, stop) of a hard brake
@@ -204,7 +203,9 @@ def summarise(
         rms_jerk=float(np.sqrt(np.mean(jerk**2))) if jerk.size else np.nan,
         peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
         mpc_feasibility_rate=(
-            float(np.mean(ego.controller == "mpc")) if controller in _OPTIMISERS else np.nan
+            float(np.mean(ego.controller == "mpc"))
+            if DECLARED.get(controller, Defaults()).optimises
+            else np.nan
         ),
         safety_share=float(np.mean(ego.controller == SAFETY)),
         minimum_gap=_extreme(ego.gap, np.min),

@@ -40,7 +40,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         return (
             f"{missed}, {margin:.2g} m as identified: at forces that do not arrive, or too late; "
             f"see its limits with: giveway fmu check {fmu}{named}, and keep to them by "
-            "--mpc-force-limit"
+            "--vehicle-force-limit"
         )
     return (
         f"{missed}{_fitting(trace)}; match them with: giveway fmu identify {fmu}{named} "

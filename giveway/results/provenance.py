@@ -16,7 +16,7 @@ from giveway.scenario_files import read_scenario, with_included
 from sumo_scenarios import Scenario
 
 CONFIGURATION: Final = "configuration_sha256"
-_PACKAGES = ("daqp", "fmpy", "jupedsim", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
+_PACKAGES = ("fmpy", "jupedsim", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
 
 
 def sha256(content: bytes) -> str:

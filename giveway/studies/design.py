@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from giveway.config.files.layers import PLUGGED, Layer, merge, options, results_of
-from giveway.config.old_keys import advice_on
+from giveway.config.renamed import RENAMED, advice
 from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
@@ -238,9 +238,9 @@ def _option_factor(name: str, values: list[Any], place: str, definition: StudyDe
         raise ConfigError(f"{place}: seeds are not a factor; set replications and first_seed")
     table, dot, key = name.partition(".")
     plugged_in = bool(dot) and (table in PLUGGED or (table == RULE.options and name not in known))
-    gone = advice_on(tuple(name.split(".")))
+    gone = RENAMED.get(tuple(name.split(".")))
     if gone is not None:
-        raise ConfigError(f"{place}: {gone}")
+        raise ConfigError(f"{place}: no longer exists; {advice(gone, as_flag=False)}")
     if name not in known and not plugged_in:
         close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
         hint = f"did you mean '{close[0]}'?" if close else "giveway config lists the options"

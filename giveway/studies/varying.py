@@ -18,7 +18,7 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
     """The study of some options' values: all combinations of them.
 
     Args:
-        variations: like ``planner.conflict_weight=0.3,0.6``.
+        variations: like ``controller_options.conflict_weight=0.3,0.6``.
         settings: a TOML file with the other settings of every run; None: giveway's own.
 
     Raises:
@@ -65,7 +65,7 @@ def _parsed(variation: str) -> tuple[str, list[Any]]:
     if not equals or not name.strip() or len(values) < 2:
         raise ConfigError(
             f"--vary {variation}: expected an option and at least two values, like "
-            "planner.conflict_weight=0.3,0.6"
+            "controller_options.conflict_weight=0.3,0.6"
         )
     return name.strip(), values
 

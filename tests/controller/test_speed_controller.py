@@ -62,9 +62,7 @@ def test_the_pid_alone_when_it_is_selected():
 @pytest.mark.parametrize(
     ("parameters", "reason"),
     [
-        (MpcParameters(solver="daqp", iteration_limit=1), "solver: iteration limit"),
         (MpcParameters(position_tolerance=1e-15), "solver: not verified"),
-        (MpcParameters(solver="daqp", position_tolerance=1e-15), "solver: not verified"),
     ],
 )
 def test_a_solution_that_is_not_good_enough_is_not_driven(parameters, reason):
@@ -126,11 +124,10 @@ def test_reset_forgets_all():
     assert answers() == first
 
 
-@pytest.mark.parametrize("solver", ["osqp", "daqp"])
-def test_a_crossing_is_driven_to_its_end(solver):
+def test_a_crossing_is_driven_to_its_end():
     """People step in at random; the car lets them pass, drives on, and never goes backwards."""
     generator = np.random.default_rng(4)
-    controller = SpeedController(Mpc(MODEL, MpcParameters(solver=solver)), Pid())
+    controller = SpeedController(Mpc(MODEL, MpcParameters()), Pid())
     crossings = [
         (generator.uniform(20.0, 35.0), start, start + 35)
         for start in generator.integers(0, 250, size=12)
@@ -153,13 +150,10 @@ def test_a_crossing_is_driven_to_its_end(solver):
     assert 0 < acting.count("pid") < 0.5 * len(acting)
 
 
-@pytest.mark.parametrize("solver", ["osqp", "daqp"])
-def test_a_speed_limit_becomes_the_reference_of_whoever_drives(solver):
-    mpc = Mpc(MODEL, MpcParameters(solver=solver))
+def test_a_speed_limit_becomes_the_reference_of_whoever_drives():
+    mpc = Mpc(MODEL, MpcParameters())
     limited = SpeedController(mpc, Pid()).control(see(3.0)._replace(speed_limit=3.2))
-    aimed = Mpc(MODEL, MpcParameters(solver=solver, reference_speed=3.2)).solve(
-        3.0, 3.0, 0.0, NOBODY
-    )
+    aimed = Mpc(MODEL, MpcParameters(reference_speed=3.2)).solve(3.0, 3.0, 0.0, NOBODY)
     assert limited.force == pytest.approx(aimed.force, abs=1e-3)
     assert limited.reference_speed == 3.2
     pid = SpeedController(None, Pid()).control(see(3.0)._replace(speed_limit=3.2))

@@ -91,7 +91,7 @@ def test_the_runner_reads_on_below_a_block_of_another_language(tmp_path: Path) -
     [
         ("run encounter --seed 4 --out results/mine", ""),
         ("run sumo_scenarios/junction/junction.sumocfg", ""),  # lies in the repository
-        ("run junction --attitude careful", ""),
+        ("run junction --style careful", ""),
         ("run mine.sumocfg", "mine.sumocfg is not there"),
         ("replay results/mine", "results/mine is not there"),
         ("run --controller careful", "careful is a plug-in of the reader's"),

@@ -15,7 +15,7 @@ from support.plug_ins import printed
 import giveway
 from giveway.cli.check_command import check_command
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.files.layers import dump_toml, read_toml
+from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.ego.controllers import make_controller
@@ -155,9 +155,37 @@ def test_another_controllers_options_stay_behind(careful, tmp_path, type_here):
     assert [ego.controller_options for ego in two.each_ego()] == [{"headway": 3.0}, {}]
 
 
-def test_our_own_controllers_have_none():
-    with pytest.raises(ConfigError, match="headway: 'mpc' has no options there"):
+def test_an_option_of_another_controller_is_refused():
+    with pytest.raises(ConfigError, match="headway: 'mpc' has no such option"):
         giveway.run({"controller": "mpc", "controller_options.headway": 1.0})
+    with pytest.raises(ConfigError, match="headway: 'pid-paper' has no such option"):
+        giveway.run({"controller": "pid-paper", "controller_options.headway": 1.0})
+
+
+def test_what_a_plug_in_declares_holds_where_the_user_says_nothing(installed):
+    installed(
+        "declared_driver",
+        "from controller import Defaults\n"
+        "class Driver:\n"
+        "    defaults = Defaults(3.0, heeds_priority=False, tracker=False, safety_layer=False)\n"
+        "    def __init__(self, setup):\n        pass\n"
+        "    def control(self, seen):\n        return 0.0\n",
+    )
+    name = {"controller": "declared_driver:Driver", "scenario": "street"}
+    config, _ = load([Layer("mine", name)])
+    (ego,) = config.each_ego()
+    assert (ego.reference_speed, ego.heeds("crossings")) == (3.0, False)
+    assert (ego.tracks_people, ego.safety_layer) == (False, False)
+    set_by_user = {"regulation": {"reference_speed": 5.0}, "safety": {"enabled": True}}
+    egos = [{"controller": name["controller"], **set_by_user}, {"ego": {"id": "other"}}]
+    config, _ = load([Layer("mine", {"scenario": "street", "egos": egos})])
+    ours, other = config.each_ego()
+    assert (ours.reference_speed, ours.safety_layer, ours.tracks_people) == (5.0, True, False)
+    assert (other.reference_speed, other.safety_layer, other.heeds("merging")) == (
+        "lane",
+        True,
+        True,
+    )
 
 
 def test_the_schema_knows_what_is_declared_and_what_is_a_reference(careful):

@@ -37,7 +37,7 @@ def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
         friction=vehicle.friction,
         reference_speed=DEFAULT_SPEED if isinstance(speed, str) else speed,
         safe_distance=regulation.safe_distance,
-        force_limit=config.mpc.force_limit,
+        force_limit=config.vehicle.force_limit,
         comfortable_deceleration=regulation.comfortable_deceleration,
     )
 

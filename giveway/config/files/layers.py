@@ -14,8 +14,8 @@ from pydantic.fields import FieldInfo
 
 from giveway.config.files.schema_names import RUN, with_schema
 from giveway.config.files.toml import read_toml_file
-from giveway.config.old_keys import advice_on
 from giveway.config.option import Section, declared, expectation
+from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import same_name
@@ -189,6 +189,10 @@ def build_config(layers: Sequence[Layer]) -> RunConfig:
         ConfigError: one line naming origin, key, value, what was expected and, for an unknown
             key, the one probably meant.
     """
+    for layer in layers:
+        for old, new in renamed_in(layer.values):
+            instead = advice(new, as_flag=layer.from_flags)
+            raise ConfigError(f"{layer.name(old)}: no longer exists; {instead}")
     merged = merge(layers)
     try:
         return RunConfig.model_validate(merged)
@@ -204,7 +208,7 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
     holders = [layer for layer in layers if location and layer.holds(location)]
     name = holders[-1].name(location) if holders else ".".join(location) or "configuration"
     if error["type"] == "extra_forbidden":
-        return f"{name}: {advice_on(location) or f'unknown key; {_did_you_mean(location)}'}"
+        return f"{name}: unknown key; {_did_you_mean(location)}"
     if error["type"] == "value_error":
         origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
         table = f"[{'.'.join(location)}] " if location else ""

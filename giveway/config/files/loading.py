@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus import FmuError, read_profile
+from giveway.config.files.declared import with_declared
 from giveway.config.files.layers import Layer, build_config, merge, read_toml, undotted
 from giveway.config.files.presets import parameters_of
 from giveway.config.files.trust import require_trusted
@@ -49,6 +50,7 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
     identified = _identified(layers)
     config = build_config([*identified, *layers])
     require_trusted(config, layers, trusted)
+    config = with_declared(config)
     own_model = _model_of(build_config(layers) if identified else config)
     config = _with_one_ego(_each_identified(config, own_model), layers)
     return _placed(config, scenario), scenario

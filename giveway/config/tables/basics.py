@@ -16,7 +16,7 @@ from giveway.config.option import (
     TimeOrWindow,
     option,
 )
-from giveway.config.reasons import GAP, MILLIMETRE
+from giveway.config.reasons import FORCE
 
 _SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # what SUMO accepts as the name of anything
 SUMO_TIME = "SUMO counts milliseconds"
@@ -118,6 +118,33 @@ class VehicleConfig(Section):
         le=1e6,
         because="it slows a vehicle down, and a faster decay than a step is none",
     )
+    force_limit: float = option(
+        8000.0,
+        "N",
+        "largest force of the actuator, forwards and backwards",
+        gt=0,
+        le=1e6,
+        least=1.0,
+        because=FORCE,
+    )
+    force_rate_limit: float = option(
+        1000.0,
+        "N/step",
+        "largest change of the force in one control step",
+        gt=0,
+        le=1e6,
+        least=1.0,
+        because=FORCE,
+    )
+    speed_max: float = option(
+        20.0,
+        "m/s",
+        "the fastest that the vehicle drives",
+        gt=0,
+        le=100,
+        least=0.1,
+        because="slower than that nobody says whether it drives; no car is faster",
+    )
     exact: bool = option(
         False, None, "the bundled FMU solves exactly instead of by the paper's forward Euler"
     )
@@ -140,21 +167,17 @@ class VehicleConfig(Section):
         because="the narrowest vehicle is a scooter, the widest a machine on a field",
     )
 
+    @property
+    def acceleration_limit(self) -> float:
+        """The largest acceleration [m/s^2] that the actuator's force gives the mass."""
+        return self.force_limit / self.mass
+
 
 class TrafficConfig(Section):
     """What SUMO's own vehicles know of the pedestrians that giveway moves."""
 
     yielding: bool = option(
         True, None, "SUMO's vehicles brake for pedestrians and egos in their way", flag="--yield"
-    )
-    yield_distance: float = option(
-        2.0,
-        "m",
-        "they want to stop this far before a pedestrian",
-        ge=0,
-        le=50,
-        least=MILLIMETRE,
-        because=GAP,
     )
 
 

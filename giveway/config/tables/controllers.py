@@ -1,9 +1,11 @@
 """The tables of the configuration about who drives: controllers, safety."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Literal
 
 from giveway.config.option import Section, option
-from giveway.config.reasons import BUFFER, FORCE, GAP, MILLIMETRE, TYRES
+from giveway.config.reasons import BUFFER, GAP, MILLIMETRE, TYRES
 
 
 class MpcConfig(Section):
@@ -17,23 +19,7 @@ class MpcConfig(Section):
         le=200,
         because="one step is no plan, and of 200 nothing is known",
     )
-    force_limit: float = option(
-        8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6, least=1.0, because=FORCE
-    )
-    force_rate_limit: float = option(
-        1000.0, "N/step", "du_max", gt=0, le=1e6, least=1.0, because=FORCE
-    )
     speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60, because="no car is faster")
-    speed_max: float = option(
-        20.0,
-        "m/s",
-        "v_max",
-        gt=0,
-        le=100,
-        least=0.1,
-        because="slower than that nobody says whether it drives; no car is faster",
-    )
-    solver: Literal["osqp", "daqp"] = option("osqp", None, "QP solver")
 
 
 class PidConfig(Section):
@@ -74,8 +60,8 @@ class PidConfig(Section):
     )
 
 
-class TunedPidConfig(Section):
-    """The well-tuned PID, the fair rival (controller = "pid-tuned"); docs/controllers.md."""
+class TunedPidOptions(Section):
+    """Options of the well-tuned PID, the fair rival (controller = "pid-tuned"); docs/pid.md."""
 
     profile: Literal["braking-curve", "linear"] = option(
         "braking-curve", None, "how the reference speed falls towards who is in front"
@@ -161,7 +147,7 @@ class TunedPidConfig(Section):
 
 
 class PlannerConfig(Section):
-    """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
+    """What users choose of the planning MPC (controller = "mpc"); docs/controllers.md."""
 
     horizon: float = option(
         2.5,
@@ -171,24 +157,18 @@ class PlannerConfig(Section):
         le=10,
         because="a stop takes longer than 0.3 s, and of people nothing is known after 10 s",
     )
-    gap_choice: bool = option(
-        True, None, "search whom to pass before and whom behind; else the plan just keeps d_safe"
+    style: Literal["careful", "normal", "assertive"] = option(
+        "normal",
+        None,
+        "careful, normal or assertive: how much delay it takes for people's sake, by two "
+        "weights and a distance",
+        flag="--style",
     )
-    soft: bool = option(
-        True, None, "distances give way as far as braking cannot keep them; else the PID takes over"
-    )
-    terminal: bool = option(
-        False, None, "a stop stays possible at every step of the plan, its end included"
-    )
-    planned_speed: bool = option(
-        True, None, "people are predicted under the planned speeds; else under the present one"
-    )
-    belief: bool = option(
-        True, None, "who seems to yield is expected to; else everybody to walk on by the preset"
-    )
-    contingency: bool = option(
-        True, None, "where it is open who yields, a plan counts with either; else with the likelier"
-    )
+
+
+class PlannerOptions(Section):
+    """Options of the planning MPC (controller = "mpc"): its weights; docs/planner.md."""
+
     effort_weight: float = option(
         0.02,
         "s",
@@ -205,18 +185,11 @@ class PlannerConfig(Section):
         le=100,
         because="beyond, a plan is made of that weight alone",
     )
-    attitude: Literal["careful", "normal", "assertive"] = option(
-        "normal",
-        None,
-        "careful, normal or assertive: how much delay it takes for people's sake, by the two "
-        "weights and the distance below",
-        flag="--attitude",
-    )
     conflict_weight: float | None = option(
         None,
         None,
         "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
-        "worth; none: the attitude's, 1.6, 0.8 or 0.4",
+        "worth; none: the style's, 1.6, 0.8 or 0.4",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -225,7 +198,7 @@ class PlannerConfig(Section):
         None,
         None,
         "seconds of delay that a second at v_r right before somebody is worth, 0 at d_safe; none: "
-        "the attitude's, 10, 7 or 3.5",
+        "the style's, 10, 7 or 3.5",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -249,7 +222,7 @@ class PlannerConfig(Section):
     minimum_distance: float | None = option(
         None,
         "m",
-        "least distance to a person in front, at standstill; none: the attitude's, 0.8, 0.4 or 0.4",
+        "least distance to a person in front, at standstill; none: the style's, 0.8, 0.4 or 0.4",
         ge=0,
         le=100,
         least=MILLIMETRE,
@@ -258,7 +231,7 @@ class PlannerConfig(Section):
     deceleration: float = option(
         6.0,
         "m/s^2",
-        "of a stop before where the way ends; with terminal, one that is no harder stays possible",
+        "of a stop before where the way ends",
         gt=0,
         le=10,
         least=0.1,
@@ -272,14 +245,6 @@ class PlannerConfig(Section):
         ge=0,
         le=10,
         because="no plan is longer",
-    )
-    block_growth: float = option(
-        0.25,
-        None,
-        "how the plan's intervals grow from one to the next; 0: not",
-        ge=0,
-        le=2,
-        because="a plan needs some intervals",
     )
 
 
@@ -300,15 +265,6 @@ class SafetyConfig(Section):
         "responsible, 2.2 m/s^2, once in 100; on a sidewalk these two: 0.6 m/s^2 towards the road",
         flag="--safety-people",
     )
-    margin: float = option(
-        0.05,
-        "m",
-        "kept between the front bumper and whoever may get there",
-        ge=0,
-        le=5,
-        least=MILLIMETRE,
-        because=GAP,
-    )
     reaction_time: float | None = option(
         None,
         "s",
@@ -317,4 +273,13 @@ class SafetyConfig(Section):
         le=5,
         because="a vehicle that answers later cannot be driven",
     )
-    rate_limited: bool = option(False, None, "the layer's braking keeps to du_max too")
+
+
+class NoOptions(Section):
+    """Options of a controller that has none."""
+
+
+OWN_OPTIONS: Mapping[str, type[Section]] = MappingProxyType(
+    {"mpc": PlannerOptions, "pid-tuned": TunedPidOptions}
+)
+"""The options of each of our controllers by its public name, in [controller_options]."""

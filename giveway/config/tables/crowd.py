@@ -123,15 +123,6 @@ class CrowdConfig(Section):
         "'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
         flag="--zone",
     )
-    zone_margin: float = option(
-        5.0,
-        "m",
-        "they are handed back to SUMO this far outside the zone",
-        ge=0,
-        le=1000,
-        least=MILLIMETRE,
-        because="it keeps people from changing hands at the edge, some steps wide",
-    )
     walls: bool = option(
         False,
         None,

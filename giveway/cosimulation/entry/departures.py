@@ -223,7 +223,7 @@ class Departures:
             config.ego.depart_position,
             shape_of(ego, BODY),
             initial_speed(ego, lane_path),
-            config.mpc.force_limit / config.vehicle.mass,
+            config.vehicle.acceleration_limit,
         )
 
     def _queue(self, ego: WaitingEgo) -> None:

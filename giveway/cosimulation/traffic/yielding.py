@@ -30,6 +30,7 @@ from pedestrian_model import Crowd, targets
 
 _LOOK_AHEAD = 1.0  # [s] for which pedestrians are expected to keep their velocity
 _WALKING_ON = (1.0, 2.0)  # [s] ahead, those with priority are on the way to where they want to be
+_DISTANCE = 2.0  # Distance [m] before a pedestrian at which vehicles want to stop
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # [m] that vehicles keep beside an ego at least
 _BEHIND_EGO = 0.5  # [m] at which they stand behind one
@@ -46,7 +47,6 @@ class Yielding:
     Args:
         vehicles: of the running simulation.
         step_length: SUMO's step [s], in which a limit holds.
-        distance: [m] before a pedestrian at which vehicles want to stop.
 
     Attributes:
         limited: the speed [m/s] of those that yield at present, by their ids.
@@ -54,10 +54,10 @@ class Yielding:
 
     limited: dict[str, float]
 
-    def __init__(self, vehicles: SumoVehicles, step_length: float, distance: float) -> None:
+    def __init__(self, vehicles: SumoVehicles, step_length: float) -> None:
         self._vehicles = vehicles
         self._reaction = max(step_length, _REACTION)
-        self._distance = distance
+        self._distance = _DISTANCE
         self.limited = {}
         self._lane_paths = LanePaths(vehicles)
         self._ever: set[str] = set()

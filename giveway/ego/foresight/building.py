@@ -24,13 +24,11 @@ def foresight_of(
     config, predictor = waiting.config, waiting.predictor
     if not waiting.controller.foresees or predictor is None:
         return None
-    planner, beliefs = config.planner, None
-    if planner.belief and config.perception.model == "vci":
+    beliefs = None
+    if config.perception.model == "vci":
         assert isinstance(predictor, Predictor)
-        contingency = planner.contingency
-        if contingency:
-            load()
-        beliefs = Beliefs(path, half_width, predictor, time_step, contingency=contingency)
+        load()
+        beliefs = Beliefs(path, half_width, predictor, time_step)
     return CrowdForesight(
         predictor,
         path,
@@ -38,9 +36,8 @@ def foresight_of(
         horizon=waiting.horizon,
         time_step=time_step,
         half_width=half_width,
-        planned_speed=planner.planned_speed,
         clearance=waiting.clearance,
-        braking=config.mpc.force_limit / config.vehicle.mass,
+        braking=config.vehicle.acceleration_limit,
         worst=None if waiting.safety is None else waiting.safety.worst,
         beliefs=beliefs,
     )

@@ -76,7 +76,6 @@ class CrowdForesight:
         horizon: N [steps] of a manoeuvre.
         time_step: of a manoeuvre [s]; the predictor's is some of them.
         half_width: of the corridor [m].
-        planned_speed: the crowd is predicted under the manoeuvre, else under the present speed.
         clearance: [m] that the safety layer keeps to pedestrians' bodies.
         braking: [m/s^2] of the ego at most.
         worst: what the safety layer takes people to do; None: there is none.
@@ -93,7 +92,6 @@ class CrowdForesight:
         horizon: int,
         time_step: float,
         half_width: float,
-        planned_speed: bool,
         clearance: float,
         braking: float,
         worst: WorstMotion | None,
@@ -104,7 +102,6 @@ class CrowdForesight:
         every = round(predictor.time_step / time_step)
         self._predictor, self._every = predictor, every
         self._way = path.vertices, path.stations, path.headings
-        self._planned_speed = planned_speed
         # Plain tuples: each call would look the class of a named one up anew (2 us).
         self._view = tuple(
             View(shape.length, shape.width, half_width, conflict_time, time_step, every)
@@ -124,20 +121,18 @@ class CrowdForesight:
         self._clearance, self._off = clearance, 0.0
         self._beliefs, self._soon = beliefs, np.empty(0)
         self._length = shape.length
-        self._constant = np.arange(N + 1) * time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
         self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
         self._predicted = np.empty((M, 0, 2))
         self._best = np.empty((M, 0, 2))
         self._poses = np.empty((M, 0, 7))
-        self._copied, self._stale, self._preferred = False, True, False
+        self._copied, self._preferred = False, False
         self._otherwise: Otherwise | None = None
         self._winner = -1  # of the latest race, whose lanes hold it
         self._lanes = self._aside = Lanes(0, N, M, 0)
-        # Under one speed for all there is one prediction for all: there is nothing to save. Other
-        # models than VCI are no part of the compiled race: manoeuvres are judged one by one.
+        # Only VCI is part of the compiled search: else manoeuvres are judged one by one.
         self._vci = predictor if isinstance(predictor, Predictor) else None
-        self.race = self._race if planned_speed and self._vci is not None else None
+        self.race = self._race if self._vci is not None else None
 
     def look(
         self,
@@ -146,7 +141,6 @@ class CrowdForesight:
         poses: Array,
         row: int,
         front: float,
-        speed: float,
         off: float = 0.0,
         kerbs: Array = NO_KERBS,
         numbers: NDArray[np.int64] | None = None,
@@ -159,7 +153,6 @@ class CrowdForesight:
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
             row: the ego's.
             front: the front bumper's station [m].
-            speed: the ego's [m/s].
             off: [m] how far people's positions are off at most, beside what the clearance has.
             kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.perception.kerbs.Kerbs.of`.
             numbers: (n,) one for each person, which the person keeps; None: nobody is known again.
@@ -175,8 +168,8 @@ class CrowdForesight:
             self._otherwise = None
             self._halting = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
         self._pedestrians, self._surroundings = pedestrians, surroundings
-        self._given, self._row, self._front, self._now = poses, row, front, speed
-        self._copied, self._stale, self._preferred = False, True, False
+        self._given, self._row, self._front = poses, row, front
+        self._copied, self._preferred = False, False
         self._winner = -1
 
     @property
@@ -197,12 +190,7 @@ class CrowdForesight:
 
     def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
         """What a manoeuvre would lead to; valid until the next call."""
-        if self._planned_speed:
-            self._predict(manoeuvre.distance, manoeuvre.speed)
-        elif self._stale:
-            np.multiply(self._constant, self._now, out=self._distance)
-            self._speed[:] = self._now
-            self._predict(self._distance, self._speed)
+        self._predict(manoeuvre.distance, manoeuvre.speed)
         gap, conflicts, calm, _ = self._prospect
         assess(
             *self._way,
@@ -331,7 +319,6 @@ class CrowdForesight:
         self._predicted = self._predictor.predict(
             self._pedestrians, self._poses, self._surroundings
         )
-        self._stale = False
 
     def _middle(self, values: Array) -> Array:
         """(M,) the mean over each step of the prediction of what acts on people in it."""

@@ -53,7 +53,6 @@ class Beliefs:
         half_width: of its corridor [m], the way.
         predictor: of the model by which people walk on.
         time_step: [s] between two looks; the predictor's is some of them.
-        contingency: the other hypothesis about those whose intent is open is told too.
     """
 
     def __init__(
@@ -62,15 +61,12 @@ class Beliefs:
         half_width: float,
         predictor: Predictor,
         time_step: float,
-        *,
-        contingency: bool = True,
     ) -> None:
         walking = predictor.parameters
         # People take up a wish v_d as by f_d = k_des (v_d - v).
         taken_up = 1.0 - exp(-predictor.time_step * walking.destination_gain / walking.mass)
         self._law = half_width, taken_up, walking.destination_smoothing
         self._step = predictor.time_step
-        self._contingency = contingency
         every = round(predictor.time_step / time_step)
         self._way = path.vertices, path.stations
         self._every, self._look = every, every
@@ -95,7 +91,7 @@ class Beliefs:
 
         None: nobody's is, or that is no other expectation.
         """
-        if not (self._contingency and _is_open(self._odds, numbers)):
+        if not _is_open(self._odds, numbers):
             self.update(people, numbers, front, expected)
             return None
         intent = np.abs(self._odds[numbers]) < _OPEN

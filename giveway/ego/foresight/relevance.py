@@ -30,7 +30,7 @@ class Relevance:
 
     def __init__(self, waiting: WaitingEgo, span: float, size: float) -> None:
         config, predictor = waiting.config, waiting.predictor
-        strongest = config.mpc.force_limit / config.vehicle.mass
+        strongest = config.vehicle.acceleration_limit
         self._span = span
         self._beyond = strongest * span / 2.0 * span + config.regulation.safe_distance
         self._beyond += waiting.walking_speed_limit * span + size
@@ -76,10 +76,10 @@ class Nearby:
     ) -> None:
         config, safety = waiting.config, waiting.safety
         self._path, self._span = path, span
-        self._strongest = config.mpc.force_limit / config.vehicle.mass
+        self._strongest = config.vehicle.acceleration_limit
         self._gain = self._strongest / 2.0 * span * span
         wanted = config.reference_speed
-        self._wanted = config.mpc.speed_max if isinstance(wanted, str) else wanted
+        self._wanted = config.vehicle.speed_max if isinstance(wanted, str) else wanted
         self._behind, self._ahead = shape.length, config.regulation.safe_distance
         self._half_width, self._time_step = half_width, time_step
         self._body = 0.0 if safety is None else safety.body_radius

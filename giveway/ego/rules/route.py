@@ -79,7 +79,7 @@ class RouteContext:
     @property
     def hardest_braking(self) -> float:
         """The deceleration [m/s^2] that the vehicle is capable of."""
-        return self.config.mpc.force_limit / self.config.vehicle.mass
+        return self.config.vehicle.acceleration_limit
 
     @property
     def standing_gap(self) -> float:

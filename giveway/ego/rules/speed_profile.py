@@ -137,12 +137,12 @@ def profile_of(
             f"[regulation] reference_speed = {LANE}: the path of ego '{ego.id}' follows no lanes; "
             "expected a speed [m/s], like 4"
         )
-    capable = min(capable, config.mpc.speed_max)
+    capable = min(capable, config.vehicle.speed_max)
     if ego.safety is not None:
         vehicle = config.vehicle
         model = LongitudinalModel(vehicle.mass, vehicle.friction, time_step)
         capable = min(capable, SafetyLayer(model, ego.safety).fastest)
-    hardest = config.mpc.force_limit / config.vehicle.mass
+    hardest = config.vehicle.acceleration_limit
     return SpeedProfile(
         path,
         limits,

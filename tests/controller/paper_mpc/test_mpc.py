@@ -10,7 +10,6 @@ from controller import (
     Mpc,
     MpcParameters,
     ParameterError,
-    SolverMissingError,
 )
 
 SOLVERS = ("osqp", "daqp")
@@ -49,9 +48,8 @@ def check(mpc, problem, edge):
     return True
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_thousands_of_problems_are_solved_exactly(solver, draw, edge):
-    model, parameters = LongitudinalModel(), MpcParameters(solver=solver)
+def test_thousands_of_problems_are_solved_exactly(draw, edge):
+    model, parameters = LongitudinalModel(), MpcParameters()
     mpc, generator = Mpc(model, parameters), np.random.default_rng(1)
     judged = [check(mpc, draw(generator, model, parameters), edge) for _ in range(2100)]
     assert judged.count(True) > 700
@@ -92,11 +90,10 @@ def test_every_vehicle(mass, friction, time_step, draw, edge):
     assert judged.count(False) > 10
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("offset", [-1.0, -1e-2, -1e-4, -1e-5, 1e-5, 1e-4, 1e-2, 1.0])
-def test_the_edge_of_feasibility_is_found_to_ten_micrometres(solver, offset, draw, reference):
+def test_the_edge_of_feasibility_is_found_to_ten_micrometres(offset, draw, reference):
     """The LP tells how far all obstacles may come closer; there, a hair decides."""
-    model, parameters = LongitudinalModel(), MpcParameters(solver=solver)
+    model, parameters = LongitudinalModel(), MpcParameters()
     mpc, generator = Mpc(model, parameters), np.random.default_rng(11)
     decided = 0
     while decided < 25:
@@ -131,7 +128,6 @@ def test_agrees_with_a_solver_of_another_family(draw):
         compared += 1
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize(
     ("speed", "previous", "gap", "status"),
     [
@@ -143,8 +139,8 @@ def test_agrees_with_a_solver_of_another_family(draw):
         (0.6, -8000.0, np.inf, "infeasible: cannot hold speed"),
     ],
 )
-def test_says_why_there_is_no_plan(solver, speed, previous, gap, status, reference):
-    model, parameters = LongitudinalModel(), MpcParameters(solver=solver)
+def test_says_why_there_is_no_plan(speed, previous, gap, status, reference):
+    model, parameters = LongitudinalModel(), MpcParameters()
     x_p = np.full(15, gap)
     solution = Mpc(model, parameters).solve(0.0, speed, previous, x_p)
     assert solution.status == status
@@ -171,9 +167,8 @@ def test_the_weight_does_not_move_the_optimum():
     assert weighted.force == pytest.approx(force, abs=1e-6)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_the_same_problems_give_the_same_bytes_whatever_came_before(solver, draw):
-    model, parameters = LongitudinalModel(), MpcParameters(solver=solver)
+def test_the_same_problems_give_the_same_bytes_whatever_came_before(draw):
+    model, parameters = LongitudinalModel(), MpcParameters()
     generator = np.random.default_rng(3)
     problems = [draw(generator, model, parameters) for _ in range(150)]
 
@@ -202,15 +197,8 @@ def test_a_plan_outlives_the_next_solve():
     np.testing.assert_array_equal(plan, kept)
 
 
-def test_a_missing_solver_is_named_with_the_way_to_install_it(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "daqp", None)
-    with pytest.raises(SolverMissingError, match=r"daqp.*pip install"):
-        Mpc(LongitudinalModel(), MpcParameters(solver="daqp"))
-
-
-def test_solvers_are_silent(capfd):
-    for solver in SOLVERS:
-        mpc = Mpc(LongitudinalModel(), MpcParameters(solver=solver))
+def test_the_solver_is_silent(capfd):
+    for mpc in (Mpc(LongitudinalModel(), MpcParameters()),):
         mpc.solve(0.0, 4.0, 400.0, np.full(15, 10.5))
         mpc.solve(0.0, 4.0, 400.0, np.full(15, 8.5))
     assert capfd.readouterr() == ("", "")
@@ -246,7 +234,6 @@ def test_refuses_a_step_too_long_for_forward_euler():
         ("force_limit", np.inf),
         ("force_rate_limit", 0.0),
         ("speed_weight", np.nan),
-        ("solver", "gurobi"),
         ("iteration_limit", 0),
         ("iteration_limit", 10.5),
         ("position_tolerance", 0.0),

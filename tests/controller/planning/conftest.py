@@ -37,7 +37,7 @@ class PlainProblem:
 
     @property
     def nodes(self) -> Array:
-        return nodes_of(self.parameters.horizon, self.parameters.block_growth)
+        return nodes_of(self.parameters.horizon)
 
     @property
     def intervals(self) -> Array:

@@ -11,7 +11,7 @@ from controller.planning.smoothing import SmoothingProblem, nodes_of
 N = PlannerParameters().horizon
 FREE = np.full(N, np.inf)
 MODEL = LongitudinalModel()
-FOLLOWING = PlannerParameters(gap_choice=False)  # its QP depends on nothing but its input
+FOLLOWING = PlannerParameters()
 D_SAFE = FOLLOWING.safe_distance
 
 speeds = st.one_of(st.sampled_from([0.0, 4.0, 20.0]), st.floats(0.0, 20.0))
@@ -40,15 +40,13 @@ def drawn(plain_problem, seed, *, parameters=FOLLOWING):
     force = float(g.choice([cruise, g.uniform(-8000.0, 8000.0)])) if speed > 0.0 else 0.0
     room = room_of(g.integers(N), g.integers(1, N), g.uniform(-2.0, 1.2 * speed * 3), 0.0)
     before = (force - cruise) / MODEL.mass if speed > 0.0 else 0.0
-    wanted = np.full(len(nodes_of(N, parameters.block_growth)), 4.0)
+    wanted = np.full(len(nodes_of(N)), 4.0)
     return plain_problem(speed, force, before, wanted, 4.0, room, MODEL, parameters)
 
 
-def bounded(plain, *, soft=True):
-    """The room's own problem for a plain one, and whether it has a plan."""
+def bounded(plain):
+    """The room's own problem for a plain one."""
     problem = SmoothingProblem(plain.model, plain.parameters)
     problem.aim_at(plain.wanted, plain.speed, plain.acceleration)
-    found = problem.bound(
-        plain.speed, plain.previous_force, plain.fastest, plain.room, FREE, soft=soft
-    )
-    return problem, found
+    problem.bound(plain.speed, plain.previous_force, plain.fastest, plain.room, FREE)
+    return problem

@@ -22,8 +22,6 @@ from controller import (
     Planner,
     PlannerParameters,
     PlanningController,
-    TunedPid,
-    TunedPidParameters,
 )
 from controller._jit import kernel
 from controller.defaults import STANDSTILL
@@ -55,8 +53,7 @@ def drive(bystanders, speed, at, until, **changes):
     """Ten seconds behind people at stations ``at`` [m] from a first step that can still stop."""
     parameters = PlannerParameters(manoeuvres=ManoeuvreParameters(**changes))
     weights = Weights.of(parameters, parameters.manoeuvres)
-    pid = TunedPid(TunedPidParameters(), MODEL)
-    controller = PlanningController(Planner(MODEL, parameters), pid)
+    controller = PlanningController(Planner(MODEL, parameters))
     controller.applied(MODEL.friction * speed)
     crowd = bystanders(room_for_a_stop(speed, weights) + np.asarray(at), until, N)
     x, v, lacking, closest = 0.0, speed, -np.inf, np.inf
@@ -116,17 +113,15 @@ def test_it_drives_up_to_who_stays_and_past_who_leaves(bystanders, speed):
     assert passes.driven > 30.0
 
 
-def test_without_the_terminal_condition_a_plan_may_end_too_fast():
-    weights = Weights.of(PlannerParameters(terminal=False), ManoeuvreParameters())
+def test_a_plan_may_end_too_fast_for_full_braking():
+    weights = Weights.of(PlannerParameters(), ManoeuvreParameters())
     assert stopping_need(V_R, weights) < V_R**2 / (2.0 * 8.0) + LEAST  # full braking is not enough
 
 
 @pytest.mark.parametrize("room", [2.0, 4.2, 9.0])
 def test_it_drives_up_to_where_the_way_ends(room):
     """To the waiting place inside a junction at green, say: it does not wait where it stands."""
-    controller = PlanningController(
-        Planner(MODEL, PlannerParameters()), TunedPid(TunedPidParameters(), MODEL)
-    )
+    controller = PlanningController(Planner(MODEL, PlannerParameters()))
     x, v, hardest = 0.0, 0.0, 0.0
     end = np.full(N, room + Observation(x, v, np.inf, FREE).safe_distance)
     for _ in range(300):
@@ -142,9 +137,7 @@ def test_it_drives_up_to_where_the_way_ends(room):
 @pytest.mark.parametrize("to_clear", [0.0, 4.0])
 def test_it_drives_on_from_where_it_would_block_others(bystanders, to_clear):
     """Behind somebody who stays, with its rear on a crossing: nearer than it would stop else."""
-    controller = PlanningController(
-        Planner(MODEL, PlannerParameters()), TunedPid(TunedPidParameters(), MODEL)
-    )
+    controller = PlanningController(Planner(MODEL, PlannerParameters()))
     crowd = bystanders(np.array([7.0]), [np.inf], N)
     x, v = 0.0, 0.0
     for k in range(200):

@@ -36,14 +36,13 @@ def test_the_intervals_grow_up_to_the_horizon():
 
 
 @pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("growth", [0.0, 0.25])
-def test_the_distance_to_the_target_is_the_cost(plain_problem, seed, growth):
+def test_the_distance_to_the_target_is_the_cost(plain_problem, seed):
     g = np.random.default_rng(seed)
-    parameters = PlannerParameters(horizon=20, block_growth=growth, effort_weight=g.uniform(0, 1))
-    n = len(nodes_of(20, growth))
+    parameters = PlannerParameters(horizon=20, effort_weight=g.uniform(0, 1))
+    n = len(nodes_of(20))
     wanted = g.uniform(0.0, 4.0, n)
     plain = plain_problem(3.0, 500.0, -1.3, wanted, 4.0, FREE[:20], MODEL, parameters)
-    problem, _ = bounded(plain)
+    problem = bounded(plain)
     L = np.linalg.inv(np.column_stack([problem.speeds(e) for e in np.eye(n)]))
     u, v = g.uniform(0.0, 5.0, (2, n))
     ours = [np.sum((L @ x - problem.target) ** 2) for x in (u, v)]
@@ -53,7 +52,7 @@ def test_the_distance_to_the_target_is_the_cost(plain_problem, seed, growth):
 @pytest.mark.parametrize("seed", range(20))
 def test_rows_and_bounds_are_the_written_ones(plain_problem, seed):
     plain = drawn(plain_problem, seed)
-    problem, _ = bounded(plain)
+    problem = bounded(plain)
     z = np.random.default_rng(seed).uniform(0.0, 5.0, len(problem.nodes))
     v = problem.speeds(z)
     G, lower, upper = plain.rows()
@@ -67,7 +66,7 @@ def test_rows_and_bounds_are_the_written_ones(plain_problem, seed):
 @pytest.mark.parametrize("seed", range(40))
 def test_the_corridor_gives_way_by_exactly_what_no_plan_avoids(plain_problem, seed):
     plain = drawn(plain_problem, seed)
-    problem, _ = bounded(plain)
+    problem = bounded(plain)
     _, room = plain.distances()
     known = np.isfinite(room)
     given_way = problem.upper[-len(room) :][known] - WIDER - room[known]
@@ -79,7 +78,7 @@ def test_the_corridor_gives_way_by_exactly_what_no_plan_avoids(plain_problem, se
 @pytest.mark.parametrize("seed", range(12))
 def test_no_plan_is_better_under_a_penalty_beyond_the_largest_multiplier(plain_problem, seed):
     plain = drawn(plain_problem, seed)
-    problem, _ = bounded(plain)
+    problem = bounded(plain)
     G, lower, upper = plain.rows()
     D, room = plain.distances()
     P, q = plain.quadratic()
@@ -110,7 +109,7 @@ def test_the_calm_speed_is_kept_as_far_as_braking_allows():
     problem = SmoothingProblem(MODEL, FOLLOWING)
     calm = FREE.copy()
     calm[:10] = 1.0
-    problem.bound(4.0, 400.0, 4.0, FREE, calm, soft=True)
+    problem.bound(4.0, 400.0, 4.0, FREE, calm)
     n = len(problem.nodes)
     first = MODEL.decay * 4.0 + MODEL.speed_per_force * (400.0 - 1000.0)
     hardest = np.maximum(first - 8.0 * 0.05 * (problem.nodes - 1), 0.0)

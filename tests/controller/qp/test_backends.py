@@ -1,4 +1,4 @@
-"""OSQP and DAQP: from a cold start, from the optimum, out of iterations, interrupted."""
+"""OSQP: from a cold start, from the optimum, out of iterations, interrupted."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from controller import LongitudinalModel, MpcParameters, Outcome
 from controller._jit import kernel
 from controller.paper_mpc.speed_problem import UNDECIDED, SpeedProblem
 from controller.qp.active_set import solve_exactly
-from controller.qp.daqp_backend import DaqpBackend
 from controller.qp.osqp_backend import OsqpBackend
 from controller.qp.verification import refine
 
@@ -25,13 +24,12 @@ refine = kernel(refine)
 LIMIT = MpcParameters().iteration_limit
 
 
-@pytest.mark.parametrize("backend", [OsqpBackend, DaqpBackend])
-def test_a_cold_solver_and_the_refinement_agree_with_the_dual_method(backend, problems):
+def test_a_cold_solver_refined_agrees_with_the_dual_method(problems):
     """So the two ways to a plan, from the exact start and from nothing, lead to the same."""
     feasible, agreed = 0, 0
     for _, problem in problems(150, seed=7):
         speeds, multipliers = np.zeros(15), np.zeros(56)
-        outcome, iterations = backend(problem, LIMIT).solve(speeds, multipliers)
+        outcome, iterations = OsqpBackend(problem, LIMIT).solve(speeds, multipliers)
         found = optimum(problem)
         if outcome is Outcome.INFEASIBLE:
             assert found is None

@@ -8,22 +8,22 @@ from least_squares_cases import optimum
 
 from controller import LongitudinalModel, MpcParameters, Outcome
 from controller.paper_mpc.speed_problem import UNDECIDED, SpeedProblem
-from controller.qp import exact_solver
+from controller.qp import exact_solver, osqp_backend
 
 LIMIT = MpcParameters().iteration_limit
 
 
 @pytest.fixture
 def set_up(monkeypatch):
-    """The solvers that have been set up, by name."""
-    names, really = [], exact_solver.make_backend
+    """The problems that OSQP has been set up for."""
+    problems, really = [], osqp_backend.OsqpBackend
 
-    def counted(name, *arguments):
-        names.append(name)
-        return really(name, *arguments)
+    def counted(problem, limit):
+        problems.append(problem)
+        return really(problem, limit)
 
-    monkeypatch.setattr(exact_solver, "make_backend", counted)
-    return names
+    monkeypatch.setattr(osqp_backend, "OsqpBackend", counted)
+    return problems
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def problem():
 
 
 def test_osqp_is_set_up_where_the_exact_methods_do_not_end(set_up, problem, monkeypatch):
-    solver = exact_solver.ExactSolver(problem, "osqp", LIMIT, box=None)
+    solver = exact_solver.ExactSolver(problem, LIMIT, box=None)
     assert solver.solve()[0] is Outcome.SOLVED
     found = solver.solution.copy()
     assert set_up == []
@@ -45,15 +45,12 @@ def test_osqp_is_set_up_where_the_exact_methods_do_not_end(set_up, problem, monk
         assert iterations >= 1
         np.testing.assert_allclose(solver.solution, found, atol=1e-9)
     np.testing.assert_allclose(found, optimum(problem)[0], atol=1e-9)
-    assert set_up == ["osqp"]
+    assert set_up == [problem]
     solver.reset()
     assert solver.solve()[0] is Outcome.SOLVED
-    assert set_up == ["osqp", "osqp"]  # a fresh one: what it knew is forgotten
+    assert set_up == [problem, problem]  # a fresh one: what it knew is forgotten
 
 
-@pytest.mark.parametrize(("name", "box"), [("osqp", (0.0, 20.0)), ("daqp", None)])
-def test_others_are_set_up_at_once_so_that_a_missing_one_is_known_at_the_start(
-    set_up, problem, name, box
-):
-    exact_solver.ExactSolver(problem, name, LIMIT, box)
-    assert set_up == [name]
+def test_osqp_is_set_up_at_once_where_infeasibility_is_to_be_proved(set_up, problem):
+    exact_solver.ExactSolver(problem, LIMIT, (0.0, 20.0))
+    assert set_up == [problem]

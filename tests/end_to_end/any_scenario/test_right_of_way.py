@@ -17,7 +17,7 @@ STREAM = (  # a car every 3 s on the road with priority, for half a minute
     'period="3" departSpeed="max"><route edges="{}"/></flow>'
 )
 EGO = {"depart_position": 40.0, "depart_time": 8.0, "initial_speed": 8.0, "travel_distance": 80.0}
-SPEED: dict[str, Any] = {"regulation": {"reference_speed": 8.0}, "mpc": {"speed_max": 8.0}}
+SPEED: dict[str, Any] = {"regulation": {"reference_speed": 8.0}, "vehicle": {"speed_max": 8.0}}
 
 
 @pytest.fixture(scope="module")

@@ -199,7 +199,7 @@ def test_lag_and_limits_are_seen(car):
     report = of(car(lag=0.3, drive_limit=4000.0))
     assert finding(report, "actuator lag").verdict == "warn"
     assert "0.3 s late" in finding(report, "actuator lag").text
-    assert "run it with --mpc-force-limit" in finding(report, "force limits").remedy
+    assert "run it with --vehicle-force-limit" in finding(report, "force limits").remedy
 
 
 def test_noise_is_not_reproducible(car):

@@ -79,7 +79,7 @@ def test_saturation_is_reported_and_kept_out_of_the_fit(car):
     assert found.drive_limit == pytest.approx(3000.0, rel=0.02)
     assert found.brake_limit == pytest.approx(5000.0, rel=0.02)
     assert found.model.mass == pytest.approx(1000.0, rel=0.005)
-    assert any("run with --mpc-force-limit" in remark for remark in found.remarks)
+    assert any("run with --vehicle-force-limit" in remark for remark in found.remarks)
 
 
 def test_a_car_without_limits_has_none(car):

@@ -62,7 +62,9 @@ def test_forces_too_small_for_a_truck_are_said_with_the_flag_that_helps(car):
     found = finding(report, "force limits")
     assert found.verdict == "warn"
     assert "m/s² at most" in found.text
-    assert "identify it with --force-limit 100000, run it with --mpc-force-limit" in found.remedy
+    assert (
+        "identify it with --force-limit 100000, run it with --vehicle-force-limit" in found.remedy
+    )
 
 
 def test_a_set_point_without_a_lead_is_told_its_lead(zoo):

@@ -179,9 +179,9 @@ def test_the_command_writes_the_effective_configuration(
     settings = {
         "controller": "mpc-paper",
         "time_step": 0.1,
-        "vehicle": {"mass": 1500.0, "friction": 50.0},
+        "vehicle": {"mass": 1500.0, "friction": 50.0, "force_limit": 5000.0},
         "regulation": {"reference_speed": 3.0, "safe_distance": 6.0},
-        "mpc": {"horizon": 20, "force_limit": 5000.0},
+        "mpc": {"horizon": 20},
         "pid": {"proportional_gain": 300.0},
     }
     out = tmp_path / "mpc.fmu"

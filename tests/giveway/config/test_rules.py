@@ -1,4 +1,4 @@
-"""The table [rules], and what is said of keys and flags that are gone."""
+"""The table [rules]."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from typing import Any
 import pytest
 
 from giveway.cli.flags import set_rules
-from giveway.cli.program import main
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.files.layers import Layer, build_config, dump_toml, options
-from giveway.config.old_keys import OLD_FLAGS, OLD_KEYS
+from giveway.config.files.layers import Layer, build_config, dump_toml
 from giveway.config.option import Section
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.errors import ConfigError
@@ -55,38 +53,6 @@ def test_an_ego_has_rules_of_its_own() -> None:
     first, second = built(run).each_ego()
     assert [first.heeds(name) for name in ("crossings", "merging")] == [False, False]
     assert [second.heeds(name) for name in ("crossings", "merging")] == [False, True]
-
-
-@pytest.mark.parametrize("location", OLD_KEYS)
-def test_a_key_that_is_gone_is_answered_with_the_new_one(location: tuple[str, str]) -> None:
-    table, key = location
-    with pytest.raises(ConfigError) as caught:
-        built({table: {key: True}})
-    assert (
-        str(caught.value)
-        == f"run.toml: [{table}] {key}: this key is gone; write " + (OLD_KEYS[location])
-    )
-    with pytest.raises(ConfigError, match=rf"egos\[0\]: {table}.{key}: this key is gone"):
-        built({"egos": ({table: {key: True}},)})
-
-
-def test_what_is_advised_there_is() -> None:
-    keys = {".".join(option.location): option.flag for option in options()}
-    for location, advice in OLD_KEYS.items():
-        assert ".".join(location) not in keys
-        assert any(f"[rules] {name}" in advice for name in NAMES)
-    for old, advice in OLD_FLAGS.items():
-        assert old not in keys.values()
-        flag = advice.split(",")[0].replace("--no-", "--")
-        assert flag in keys.values()
-
-
-@pytest.mark.parametrize("flag", OLD_FLAGS)
-def test_a_flag_that_is_gone_too(flag: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as caught:
-        main(["run", "street", flag])
-    assert caught.value.code == 2
-    assert f"{flag}: this flag is gone; write {OLD_FLAGS[flag]}" in capsys.readouterr().err
 
 
 def test_a_misspelt_rule_is_answered_with_the_one_meant() -> None:

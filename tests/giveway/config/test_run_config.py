@@ -33,12 +33,12 @@ def explain(values: dict, *, flags: bool = False) -> str:
 def test_defaults_are_the_papers_table() -> None:
     config = RunConfig(controller="mpc-paper")
     assert (config.vehicle.mass, config.vehicle.friction) == (1000, 100)
-    assert (config.mpc.force_limit, config.mpc.force_rate_limit, config.mpc.horizon) == (
+    assert (config.vehicle.force_limit, config.vehicle.force_rate_limit, config.mpc.horizon) == (
         8000,
         1000,
         15,
     )
-    assert (config.mpc.speed_min, config.mpc.speed_max) == (0, 20)
+    assert (config.mpc.speed_min, config.vehicle.speed_max) == (0, 20)
     assert (config.pid.integral_gain, config.pid.derivative_gain) == (10, 100)
     assert (config.reference_speed, config.regulation.safe_distance) == (4, 8)
     assert config.pid.buffer_distance == 10
@@ -81,10 +81,10 @@ def test_every_option_has_its_own_flag_and_a_meaning() -> None:
 
 
 def test_later_layers_win_key_by_key() -> None:
-    below = Layer("a", {"seed": 1, "mpc": {"horizon": 20, "force_limit": 5000}})
+    below = Layer("a", {"seed": 1, "mpc": {"horizon": 20}, "vehicle": {"force_limit": 5000}})
     above = Layer("b", {"mpc": {"horizon": 30}})
     config = build_config([below, above])
-    assert (config.seed, config.mpc.horizon, config.mpc.force_limit) == (1, 30, 5000)
+    assert (config.seed, config.mpc.horizon, config.vehicle.force_limit) == (1, 30, 5000)
 
 
 @pytest.mark.parametrize(
@@ -212,8 +212,8 @@ def test_a_contradiction_between_keys_names_their_table() -> None:
 
 
 def test_speeds_outside_of_the_mpcs_limits_are_refused() -> None:
-    assert "[mpc] speed_min and speed_max" in explain(
-        {"controller": "mpc-paper", "mpc": {"speed_max": 3}}
+    assert "[mpc] speed_min and [vehicle] speed_max" in explain(
+        {"controller": "mpc-paper", "vehicle": {"speed_max": 3}}
     )
     assert "[ego] initial_speed = 30" in explain(
         {"controller": "mpc-paper", "ego": {"initial_speed": 30}}

@@ -8,8 +8,7 @@ from typing import get_args
 import pytest
 
 from controller import (
-    ATTITUDES,
-    AttitudeName,
+    STYLES,
     LongitudinalModel,
     ManoeuvreParameters,
     MpcParameters,
@@ -18,19 +17,26 @@ from controller import (
     PlannerParameters,
     ReferenceParameters,
     SafetyParameters,
+    StyleName,
     TunedPidParameters,
 )
 from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
 from giveway.config.tables.basics import DEFAULT_SPEED
-from giveway.config.tables.controllers import PlannerConfig, SafetyConfig
+from giveway.config.tables.controllers import (
+    PlannerConfig,
+    PlannerOptions,
+    SafetyConfig,
+    TunedPidOptions,
+)
 from giveway.ego.controllers import filled, make_controller, manoeuvres_of
 from giveway.ego.preparation import safety_parameters
 from giveway.geometry.bodies import BODY
 from pedestrian_model import SIM
 
 STEP = 0.05  # [s]
+TUNED, PLANNING = TunedPidOptions(), PlannerOptions()
 CONFIG = EgoRunConfig.model_validate({"regulation": {"reference_speed": DEFAULT_SPEED}})
 
 
@@ -38,16 +44,19 @@ CONFIG = EgoRunConfig.model_validate({"regulation": {"reference_speed": DEFAULT_
     ("kind", "tables", "own"),
     [
         (LongitudinalModel, ["vehicle"], {"time_step": STEP}),
-        (MpcParameters, ["mpc", "regulation"], {}),
-        (PidParameters, ["regulation", "pid", "mpc"], {}),
-        (ReferenceParameters, ["regulation", "tuned_pid"], {}),
-        (TunedPidParameters, ["tuned_pid", "mpc"], {}),
-        (PlannerParameters, ["regulation", "planner", "mpc"], {"horizon": 50}),
+        (MpcParameters, ["mpc", "vehicle", "regulation"], {}),
+        (PidParameters, ["regulation", "pid", "vehicle"], {}),
+        (ReferenceParameters, ["regulation", TUNED], {}),
+        (TunedPidParameters, [TUNED, "vehicle"], {}),
+        (PlannerParameters, ["regulation", PLANNING, "vehicle"], {"horizon": 50}),
     ],
     ids=lambda value: getattr(value, "__name__", None),
 )
 def test_the_controllers_defaults_are_the_configurations(kind, tables, own):
-    assert filled(kind, *(getattr(CONFIG, table) for table in tables), **own) == kind()
+    assert (
+        filled(kind, *(getattr(CONFIG, t) if isinstance(t, str) else t for t in tables), **own)
+        == kind()
+    )
 
 
 def test_the_paper_s_gains_are_the_configurations():
@@ -98,12 +107,12 @@ def test_lanes_say_how_fast_but_not_to_the_paper_s_controllers():
     assert paper.pid.parameters.reference_speed == DEFAULT_SPEED
 
 
-def test_an_attitude_sets_what_the_options_leave_out():
-    assert manoeuvres_of(PlannerConfig()) == ManoeuvreParameters()
-    chosen = PlannerConfig.model_fields["attitude"].annotation
-    assert get_args(chosen) == get_args(AttitudeName) == tuple(ATTITUDES)
-    for name, usual in ATTITUDES.items():
-        found = manoeuvres_of(PlannerConfig(attitude=name, nearness_weight=5.0), margin=0.1)
+def test_a_style_sets_what_the_options_leave_out():
+    assert manoeuvres_of("normal", PLANNING) == ManoeuvreParameters()
+    chosen = PlannerConfig.model_fields["style"].annotation
+    assert get_args(chosen) == get_args(StyleName) == tuple(STYLES)
+    for name, usual in STYLES.items():
+        found = manoeuvres_of(name, PlannerOptions(nearness_weight=5.0), margin=0.1)
         assert found.conflict_weight == usual["conflict_weight"]
         assert found.nearness_weight == 5.0
         assert found.minimum_distance == usual["minimum_distance"] + 0.1
@@ -111,7 +120,8 @@ def test_an_attitude_sets_what_the_options_leave_out():
 
 def test_an_option_reaches_the_parameter_of_its_name():
     config = EgoRunConfig.model_validate(
-        {"mpc": {"force_limit": 5000.0}, "regulation": {"reference_speed": 4.0}}
+        {"vehicle": {"force_limit": 5000.0}, "regulation": {"reference_speed": 4.0}}
     )
-    assert filled(PidParameters, config.regulation, config.pid, config.mpc).force_limit == 5000.0
-    assert filled(PidParameters, config.mpc, force_limit=6000.0).force_limit == 6000.0
+    tables = config.regulation, config.pid, config.vehicle
+    assert filled(PidParameters, *tables).force_limit == 5000.0
+    assert filled(PidParameters, config.vehicle, force_limit=6000.0).force_limit == 6000.0

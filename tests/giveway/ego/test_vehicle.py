@@ -25,11 +25,11 @@ time_step = 0.05
 
 @pytest.fixture
 def remark(tmp_path):
-    def of(mass, **tables):
+    def of(mass, **limits):
         path = tmp_path / "car.toml"
         path.write_text(PROFILE.format(mass=mass), encoding="utf-8")
-        vehicle = {"profile": str(path), "mass": mass, "friction": 100.0}
-        return model_remark(EgoRunConfig.model_validate({"vehicle": vehicle, **tables}), 0.05)
+        vehicle = {"profile": str(path), "mass": mass, "friction": 100.0, **limits}
+        return model_remark(EgoRunConfig.model_validate({"vehicle": vehicle}), 0.05)
 
     return of
 
@@ -41,11 +41,11 @@ def test_a_car_keeps_the_defaults(remark, mass):
 
 def test_a_truck_gets_the_same_accelerations(remark):
     assert remark(18_000.0).endswith(
-        "for the same accelerations, --mpc-force-limit 140000 --mpc-force-rate-limit 18000 "
+        "for the same accelerations, --vehicle-force-limit 140000 --vehicle-force-rate-limit 18000 "
         "--pid-proportional-gain 43000"
     )
 
 
 def test_what_has_been_set_is_not_advised(remark):
-    text = remark(18_000.0, mpc={"force_limit": 1e5, "force_rate_limit": 18_000.0})
+    text = remark(18_000.0, force_limit=1e5, force_rate_limit=18_000.0)
     assert text.endswith("for the same accelerations, --pid-proportional-gain 43000")

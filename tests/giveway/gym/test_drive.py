@@ -123,7 +123,7 @@ def test_an_action_is_a_share_of_the_largest_force_or_acceleration():
             env.step(np.array([-0.2], dtype=np.float32))
         env.close()
         driven[action] = env.result.egos[0].track.force[1]
-    limit = giveway.RunConfig().mpc.force_limit
+    limit = giveway.RunConfig().vehicle.force_limit
     assert driven["force"] == pytest.approx(-0.2 * limit)
     speed = 4.0 - 0.2 * limit / 2000.0 * 0.05
     assert driven["acceleration"] == pytest.approx(-0.2 * limit + 100.0 * speed, rel=1e-2)

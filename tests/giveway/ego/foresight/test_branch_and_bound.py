@@ -42,7 +42,6 @@ def foresight(**changes):
         "horizon": N,
         "time_step": DT,
         "half_width": 1.25,
-        "planned_speed": True,
         "clearance": 0.05,
         "braking": 8.0,
         "worst": SafetyParameters().worst,

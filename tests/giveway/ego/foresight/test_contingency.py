@@ -57,9 +57,7 @@ def test_where_it_does_not_the_odds_decide(likely, chosen):
 
 def test_only_of_those_whose_intent_is_open_the_less_likely_is_told():
     path = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
-    seen, alone = (
-        Beliefs(path, 1.15, plan_predictor(SIM, DT, 20), DT, contingency=on) for on in (True, False)
-    )
+    seen = Beliefs(path, 1.15, plan_predictor(SIM, DT, 20), DT)
     numbers, told = np.array([0, 1]), []
     expected = np.empty(0)
     for _ in range(12):
@@ -70,7 +68,6 @@ def test_only_of_those_whose_intent_is_open_the_less_likely_is_told():
             [[(18.0, 20.0)], [(25.0, 20.0)]],
         )
         other = seen.weigh(crowd, numbers, 10.0, expected)
-        assert alone.weigh(crowd.copy(), numbers, 10.0, expected) is None
         expected = np.array([18.0, -1.9, 0.0, 0.7, 25.0, -1.9, 0.0, 1.39])
         if other is not None:
             told.append((seen.odds(0), crowd.waypoints[0, 1], other))

@@ -262,7 +262,6 @@ def foresight(**changes):
         "time_step": DT,
         "half_width": HALF_WIDTH,
         "conflict_time": CONFLICT_TIME,
-        "planned_speed": True,
         "clearance": 0.05,
         "braking": 8.0,
         "worst": WORST,
@@ -276,7 +275,7 @@ def look(ahead, *, speed=4.0, off=6.0):
     crowd = Crowd.create([(FRONT + off, -2.0)], [(0.0, 1.3)], 1.3, [[(FRONT + off, 10.0)]])
     poses = np.zeros((N, 1, 7))
     poses[:, :, 4:] = LENGTH / 2, LENGTH / 2, WIDTH
-    ahead.look(crowd, OPEN_GROUND, poses, 0, FRONT, speed)
+    ahead.look(crowd, OPEN_GROUND, poses, 0, FRONT)
 
 
 def test_calm_speeds_are_those_of_what_the_layer_below_assumes():
@@ -324,17 +323,6 @@ def test_people_answer_to_the_manoeuvre():
         ahead.prefer()
         crossings.append(ahead.best[-1, 0, 1])
     assert abs(crossings[1] - crossings[0]) > 0.01
-
-
-def test_under_the_present_speed_people_do_the_same_whatever_is_tried():
-    ahead = foresight(planned_speed=False)
-    look(ahead)
-    best = []
-    for m in (manoeuvre(4.0), manoeuvre(4.0, -4.0)):
-        ahead.prospect(m)
-        ahead.prefer()
-        best.append(ahead.best.copy())
-    assert np.array_equal(*best)
 
 
 def test_the_best_is_remembered_while_others_are_tried_and_forgotten_at_the_next_look():

@@ -105,7 +105,6 @@ def test_who_waits_at_the_edge_is_expected_to_stay_there_when_the_ego_passes():
             horizon=N,
             time_step=DT,
             half_width=HALF,
-            planned_speed=True,
             clearance=0.05,
             braking=8.0,
             worst=None,
@@ -114,9 +113,7 @@ def test_who_waits_at_the_edge_is_expected_to_stay_there_when_the_ego_passes():
         poses = np.zeros((N, 1, 7))
         poses[:, :, 4:] = 2.5, 2.5, 1.8
         for _ in range(8):
-            ahead.look(
-                walker(y, 0.0, x=14.0), OPEN_GROUND, poses, 0, FRONT, 3.0, numbers=np.array([0])
-            )
+            ahead.look(walker(y, 0.0, x=14.0), OPEN_GROUND, poses, 0, FRONT, numbers=np.array([0]))
             planner.plan(3.0, 0.0, 3.0, np.full(N, np.inf), ahead)
         expected.append(ahead.best[:, 0, 1])
     assert y <= expected[0].min()

@@ -97,8 +97,8 @@ def test_a_plan_is_told_the_speeds_at_its_steps():
     ("own", "fastest"),
     [
         ({}, 20.0),
-        ({"mpc": {"speed_max": 12.5}}, 12.5),
-        ({"vehicle": {"mass": 10_000.0, "friction": 0.0}, "mpc": {"force_limit": 4000.0}}, 7.9),
+        ({"vehicle": {"speed_max": 12.5}}, 12.5),
+        ({"vehicle": {"mass": 10_000.0, "friction": 0.0, "force_limit": 4000.0}}, 7.9),
     ],
     ids=["as it is", "speed_max", "what it stops from in time"],
 )

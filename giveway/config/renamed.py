@@ -1,0 +1,113 @@
+"""Keys and flags that no longer exist, each with what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+Location = tuple[str, ...]
+
+RENAMED: Final[Mapping[Location, Location | str]] = {
+    ("mpc", "force_limit"): ("vehicle", "force_limit"),
+    ("mpc", "force_rate_limit"): ("vehicle", "force_rate_limit"),
+    ("mpc", "speed_max"): ("vehicle", "speed_max"),
+    ("mpc", "solver"): "leave it out: the solver is always OSQP",
+    ("safety", "margin"): "leave it out: it is always 0.05 m",
+    ("safety", "rate_limited"): "leave it out: the layer's braking is never rate-limited",
+    ("traffic", "yield_distance"): "leave it out: it is always 2 m",
+    ("crowd", "zone_margin"): "leave it out: it is always 5 m",
+    ("planner", "attitude"): ("planner", "style"),
+    **{
+        ("planner", key): "leave it out: it is always on"
+        for key in ("gap_choice", "soft", "planned_speed", "belief", "contingency")
+    },
+    **{
+        ("tuned_pid", key): ("controller_options", key)
+        for key in (
+            "profile",
+            "buffer_distance",
+            "deceleration",
+            "approach_lag",
+            "acceleration",
+            "jerk",
+            "firm_deceleration",
+            "last_distance",
+            "bandwidth",
+            "damping",
+            "acceleration_feed_forward",
+        )
+    },
+    **{
+        ("planner", key): ("controller_options", key)
+        for key in (
+            "effort_weight",
+            "jerk_weight",
+            "conflict_weight",
+            "nearness_weight",
+            "threat_weight",
+            "later_weight",
+            "minimum_distance",
+            "deceleration",
+            "calm_time",
+        )
+    },
+    ("regulation", "traffic_lights"): ("rules", "traffic_lights"),
+    ("regulation", "vehicles"): ("rules", "following"),
+    ("regulation", "priority"): "write [rules] crossings, right_of_way and merging, true or false "
+    "(--no-rules-crossings, ...)",
+    ("ego", "keep_stops"): ("rules", "stops"),
+    ("perception", "signal_plans"): ("rules", "signal_advice"),
+    ("planner", "terminal"): "leave it out: it is always off",
+    ("planner", "block_growth"): "leave it out: it is always 0.25",
+}
+"""A key that is refused: the key to write instead, or a sentence that says what to do."""
+
+FLAGS: Final[Mapping[str, Location]] = {
+    "attitude": ("planner", "attitude"),
+    "obey-lights": ("regulation", "traffic_lights"),
+    "respect-vehicles": ("regulation", "vehicles"),
+    "priority": ("regulation", "priority"),
+    "signal-plans": ("perception", "signal_plans"),
+}
+"""Flags, without dashes, of keys in ``RENAMED`` that were not derived from the key."""
+
+
+def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location | str]]:
+    """The keys of one origin's settings, or of its table of one ego, that no longer exist."""
+    egos = values.get("egos")
+    for old, new in RENAMED.items():
+        for table in (values, *(egos if isinstance(egos, list | tuple) else ())):
+            if _holds(table, old):
+                yield old, new
+
+
+def advice(new: Location | str, *, as_flag: bool) -> str:
+    """What to write instead of a key that no longer exists, in the words of a file or of flags."""
+    if isinstance(new, str):
+        return new
+    if new[0].endswith("_options"):
+        setting = "--set" if new[0] == "controller_options" else "--set-model"
+        return f"write {setting} {new[-1]}=VALUE" if as_flag else f"write [{new[0]}] {new[-1]}"
+    if as_flag:
+        return "write --" + "-".join(new).replace("_", "-")
+    *tables, key = new
+    return f"write [{'.'.join(tables)}] {key}" if tables else f"write {key}"
+
+
+def renamed_flag(word: str) -> str | None:
+    """What to write instead of a flag that no longer exists; None if the word is not one."""
+    name = word.partition("=")[0].removeprefix("--")
+    positive = name.removeprefix("no-")
+    derived = {"-".join(old).replace("_", "-"): old for old in RENAMED} | FLAGS
+    if positive not in derived:
+        return None
+    said = advice(RENAMED[derived[positive]], as_flag=True)
+    return said if name == positive else said.replace("write --", "write --no-", 1)
+
+
+def _holds(values: Any, location: Location) -> bool:
+    for key in location:
+        if not isinstance(values, Mapping) or key not in values:
+            return False
+        values = values[key]
+    return True
