@@ -98,7 +98,7 @@ def renamed_flag(word: str) -> str | None:
     """What to write instead of a flag that no longer exists; None if the word is not one."""
     name = word.partition("=")[0].removeprefix("--")
     positive = name.removeprefix("no-")
-    derived = {"-".join(old).replace("_", "-"): old for old in RENAMED} | FLAGS
+    derived = {"-".join(old).replace("_", "-"): old for old in RENAMED} | dict(FLAGS)
     if positive not in derived:
         return None
     said = advice(RENAMED[derived[positive]], as_flag=True)
