@@ -3,7 +3,7 @@
 import numpy as np
 
 from giveway.scenario_files import StartOptions, read_scenario
-from giveway.sumo.road_marks import road_marks
+from giveway.sumo.network.painted_marks import road_marks
 from giveway.sumo.session import SumoSession
 from sumo_scenarios import find
 

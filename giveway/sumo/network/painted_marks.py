@@ -4,7 +4,7 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 from giveway.run_data.road_marks import Point, RoadMarks, SignalHead, Zebra
-from giveway.sumo.lanes import Lanes
+from giveway.sumo.network.lanes import Lanes
 
 
 def road_marks(lanes: Lanes) -> RoadMarks:

@@ -12,11 +12,11 @@ import numpy as np
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at, stations_of
-from giveway.sumo.crossings import Crossing, crossings
-from giveway.sumo.heights import Height, heights_of
-from giveway.sumo.inside import lanes_inside
-from giveway.sumo.lane_path import LanePath, Light, Passage, SpeedLimit
-from giveway.sumo.merging import Merging, mergings
+from giveway.sumo.network.heights import Height, heights_of
+from giveway.sumo.network.internal_lanes import lanes_inside
+from giveway.sumo.network.lane_path import LanePath, Light, Passage, SpeedLimit
+from giveway.sumo.network.pedestrian_crossings import Crossing, crossings
+from giveway.sumo.network.shared_lanes import Merging, mergings
 
 CHANGE_LENGTH = 30.0  # [m] length of a lane change
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself

@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.path import angle_to_heading
-from giveway.sumo.footpaths import Foot, FootPaths
-from giveway.sumo.handover import Handover, Route
 from giveway.sumo.library import direct
-from giveway.sumo.walk_speeds import WalkSpeeds
+from giveway.sumo.network.footpaths import Foot, FootPaths
+from giveway.sumo.persons.handover import Handover, Route
+from giveway.sumo.persons.walk_speeds import WalkSpeeds
 
 _WALKING = 2  # SUMO's stage type
 _SLOWEST = 0.1  # [m/s] smallest desired speed

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from giveway.scenario_files.right_of_way import JunctionLogic, right_of_way
-from giveway.sumo.inside import lanes_inside
-from giveway.sumo.lanes import Lanes
+from giveway.sumo.network.internal_lanes import lanes_inside
+from giveway.sumo.network.lanes import Lanes
 
 
 class Movement(NamedTuple):

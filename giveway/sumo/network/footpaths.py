@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from giveway.sumo.lanes import admits
+from giveway.sumo.network.lanes import admits
 
 _IN_JUNCTION = re.compile(r"^:(.*)_[wc]?\d+$")  # the edge of a crossing, walkingarea or turn
 _HALF_BODY = 0.25  # [m] a person keeps this far from its lane's edge

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from giveway.geometry.kernel import Array
-from giveway.sumo.inside import lanes_inside
+from giveway.sumo.network.internal_lanes import lanes_inside
 
 _ZIPPER = "Z"  # SUMO's state of a link at which lanes are joined in turn
 _NARROW = 30.0  # [m] distance before the junction at which two roads may be close

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from giveway.geometry.kernel import Array
-from giveway.sumo.heights import Height
+from giveway.sumo.network.heights import Height
 
 
 class Light(NamedTuple):

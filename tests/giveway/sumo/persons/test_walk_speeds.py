@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from giveway.sumo.walk_speeds import WalkSpeeds
+from giveway.sumo.persons.walk_speeds import WalkSpeeds
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -18,7 +18,7 @@ wrong, found by experiment and in its sources:
 from dataclasses import dataclass
 from typing import Any
 
-from giveway.sumo.footpaths import Foot
+from giveway.sumo.network.footpaths import Foot
 
 _WALKING = 2  # SUMO's stage type
 NOWHERE = -1000.0  # [m] position on its lane of a held person in SUMO's books
