@@ -132,19 +132,19 @@ def _run(
     ] = True,
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
-    from giveway.cli.isolated import run_isolated, supervised
+    from giveway.cli.guards.isolated import run_isolated, supervised
     from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
     if journal is None:
-        from giveway.cli.fmu_gate import require_archives
+        from giveway.cli.guards.archive_check import require_archives
 
         require_archives(config, settings)
         if scenario is not None:
             _require_scenario(scenario)
         if isolate:
             raise typer.Exit(run_isolated())
-    from giveway.cli.run import Outputs, run_command
+    from giveway.cli.commands.run_command import Outputs, run_command
 
     outputs = Outputs(
         out, force=force, parquet=parquet, pictures=pictures, quiet=quiet, as_json=as_json
@@ -170,7 +170,7 @@ def _config(
     config: Annotated[Path | None, typer.Option(help="As for run.")] = None,
 ) -> None:
     """Print the effective configuration as TOML, with units."""
-    from giveway.cli.run import layers_of
+    from giveway.cli.commands.run_command import layers_of
     from giveway.config.files.layers import dump_toml
     from giveway.config.files.loading import load
 
@@ -181,7 +181,7 @@ def _schema(
     out: Annotated[Path, typer.Option(help="Folder for them.")] = Path(),
 ) -> None:
     """Write JSON schemas, with which editors complete and check run, study and other TOML files."""
-    from giveway.cli.schema import schema_command
+    from giveway.cli.commands.schema_command import schema_command
 
     raise typer.Exit(schema_command(out))
 
@@ -196,7 +196,7 @@ def _doctor(
     as_json: JsonFlag = False,
 ) -> None:
     """Examine the installation, and a scenario: findings and their remedies."""
-    from giveway.cli.doctor import doctor_command
+    from giveway.cli.commands.doctor_command import doctor_command
 
     raise typer.Exit(doctor_command(scenario, as_json=as_json))
 
@@ -211,7 +211,7 @@ def _recover(
     force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
 ) -> None:
     """Write the rows of a run that was killed (SIGKILL, a crash of the machine) as its results."""
-    from giveway.cli.recover import recover_command
+    from giveway.cli.commands.recover_command import recover_command
 
     raise typer.Exit(recover_command(journal, out, force=force))
 
@@ -248,7 +248,7 @@ def _influence(
     width: Annotated[float, typer.Option(help="Vehicle width in m.")] = 2.0,
 ) -> None:
     """Draw the vehicle's influence on a pedestrian (figure 2 of Yang & Özgüner 2019)."""
-    from giveway.cli.plot import influence_command
+    from giveway.cli.commands.plot_command import influence_command
 
     influence_command(out, speeds, preset=preset, length=length, width=width)
 
@@ -259,6 +259,6 @@ def _reference(
     ),
 ) -> None:
     """Draw both PIDs' reference speed over the gap (figure 3 of Yang & Özgüner 2019)."""
-    from giveway.cli.plot import reference_command
+    from giveway.cli.commands.plot_command import reference_command
 
     reference_command(out)

@@ -48,7 +48,7 @@ def _controller(
     time_step: _Step = None,
 ) -> None:
     """Does a controller keep to the rules? It is driven through made-up scenes, without SUMO."""
-    from giveway.cli.check_command import check_command
+    from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import CONTROLLER
 
     raise typer.Exit(
@@ -58,7 +58,7 @@ def _controller(
 
 def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Does a pedestrian model? It moves people through made-up scenes, without SUMO."""
-    from giveway.cli.check_command import check_command
+    from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import MODEL
 
     raise typer.Exit(check_command(name, set_ or (), MODEL, time_step=time_step))

@@ -72,7 +72,7 @@ def _run(
     force: _Force = False,
 ) -> None:
     """Write a run for SUMO, PedPy, JuPedSim or a map, or as a film."""
-    from giveway.cli.export_run import export_run_command
+    from giveway.cli.commands.export_run_command import export_run_command
 
     raise typer.Exit(export_run_command(folder, to, out, step=step, force=force))
 
@@ -88,7 +88,7 @@ def _inspect(
     ] = False,
 ) -> None:
     """Tell what an FMU is, without loading it, and draft its profile."""
-    from giveway.cli.fmu_inspect import inspect_command
+    from giveway.cli.commands.fmu_tools.fmu_inspect import inspect_command
 
     raise typer.Exit(inspect_command(fmu, draft, everything=everything, controller=controller))
 
@@ -113,7 +113,7 @@ def _check(
     as_json: JsonFlag = False,
 ) -> None:
     """Drive an FMU for some seconds: pass, or what is wrong and the line that mends it."""
-    from giveway.cli.fmu_check import check_command
+    from giveway.cli.commands.fmu_tools.fmu_check import check_command
 
     code = check_command(
         fmu,
@@ -151,7 +151,7 @@ def _identify(
     force: _Force = False,
 ) -> None:
     """Estimate M, alpha and the actuator's lag by step tests, for the controller."""
-    from giveway.cli.fmu_identify import identify_command
+    from giveway.cli.commands.fmu_tools.fmu_identify import identify_command
 
     try:
         starts = [float(part) for part in speeds.split(",")]
@@ -181,7 +181,7 @@ def _compile(
     force: _Force = False,
 ) -> None:
     """Compile an FMU's C sources for this platform, into a copy of it."""
-    from giveway.cli.fmu_compile import compile_command
+    from giveway.cli.commands.fmu_tools.fmu_compile import compile_command
 
     raise typer.Exit(compile_command(fmu, out, force=force))
 
@@ -195,6 +195,6 @@ def _controller(
     force: _Force = False,
 ) -> None:
     """Write the controller (MPC with PID, or PID) as an FMU, with a run's settings."""
-    from giveway.cli.export import export_command
+    from giveway.cli.commands.export_command import export_command
 
     raise typer.Exit(export_command(scenario, config, settings, out, fmi=fmi, force=force))

@@ -101,7 +101,7 @@ def _study(
         )
     if study is not None:
         find_study(study)  # before anything that takes longer is loaded
-    from giveway.cli.study import StudyRequest, study_command
+    from giveway.cli.commands.study_command import StudyRequest, study_command
     from giveway.studies.study import StudyOptions
 
     options = StudyOptions(
@@ -156,14 +156,14 @@ def _rerun(
     trust: _Trust = None,
 ) -> None:
     """Make one run of a study again, with all trajectories; its numbers must be the study's."""
-    from giveway.cli.isolated import run_isolated, supervised
+    from giveway.cli.guards.isolated import run_isolated, supervised
     from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
     if journal is None:
         raise typer.Exit(run_isolated())
-    from giveway.cli.rerun import rerun_command
-    from giveway.cli.run import Outputs
+    from giveway.cli.commands.rerun_command import rerun_command
+    from giveway.cli.commands.run_command import Outputs
 
     outputs = Outputs(out, force=force, parquet=False, pictures=pictures, quiet=quiet)
     supervised(
@@ -183,7 +183,7 @@ def _report(
     trust: _Trust = None,
 ) -> None:
     """Write figures, replays of the most telling runs, and report.html into a study's folder."""
-    from giveway.cli.report import report_command
+    from giveway.cli.commands.report_command import report_command
 
     raise typer.Exit(report_command(study, replays=replays, quiet=quiet, trusted=trust or ()))
 
@@ -203,6 +203,6 @@ def _replay(
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one HTML page that plays a run, in any browser, without a network."""
-    from giveway.cli.replay import replay_command
+    from giveway.cli.commands.replay_command import replay_command
 
     raise typer.Exit(replay_command(run, out=out, beside=beside, rerun=rerun, show=show))

@@ -36,7 +36,7 @@ def _validate(
     ] = False,
 ) -> None:
     """Hold the pedestrian model against recorded trajectories: ADE, FDE, contacts."""
-    from giveway.cli.validate import validate_command
+    from giveway.cli.commands.validate_command import validate_command
 
     validate_command(clips, dataset=dataset, preset=preset, out=out, force=force, quiet=quiet)
 
@@ -63,7 +63,7 @@ def _calibrate(
     ] = False,
 ) -> None:
     """Fit parameters of the pedestrian model to recorded trajectories: a preset file."""
-    from giveway.cli.calibrate import calibrate_command
+    from giveway.cli.commands.calibrate_command import calibrate_command
 
     calibrate_command(
         clips,

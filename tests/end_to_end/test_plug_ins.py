@@ -13,7 +13,7 @@ import pytest
 from support.plug_ins import printed
 
 import giveway
-from giveway.cli.check_command import check_command
+from giveway.cli.commands.check_command import check_command
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import dump_toml, read_toml
 from giveway.config.files.loading import load
@@ -163,7 +163,7 @@ def test_our_own_controllers_have_none():
 def test_the_schema_knows_what_is_declared_and_what_is_a_reference(careful):
     import jsonschema
 
-    from giveway.cli.schema import schemas
+    from giveway.cli.commands.schema_command import schemas
 
     schema = schemas()["giveway-run.schema.json"]
     for name in ("mpc", "careful", "some.package:Class"):

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from giveway import run
-from giveway.cli.replay import replay_command
+from giveway.cli.commands.replay_command import replay_command
 from giveway.errors import ResultsError
 from giveway.replays import write_replay
 from giveway.replays.events import events, why

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from giveway.cli.report import write_all
+from giveway.cli.commands.report_command import write_all
 from giveway.studies.contents import broken_files
 from giveway.studies.folder import StudyFolder
 from giveway.studies.sealing import SEAL, BrokenFileError

@@ -51,7 +51,7 @@ def test_a_zip_bomb_is_refused_before_run_loads_anything_else(bomb, tmp_path, na
 
 
 def test_an_fmu_that_is_not_there_is_left_to_the_command(tmp_path):
-    from giveway.cli.fmu_gate import require_archives
+    from giveway.cli.guards.archive_check import require_archives
 
     require_archives(None, {"vehicle": {"fmu": str(tmp_path / "missing.fmu")}})
     require_archives(None, {"vehicle": {"fmu": "fmi2"}})

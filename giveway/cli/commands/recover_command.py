@@ -4,8 +4,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from giveway.cli.printing import escape
-from giveway.cli.run import show
+from giveway.cli.commands.run_command import show
+from giveway.cli.screen.printing import escape
 from giveway.recovery import left_journals, recover_left
 
 

@@ -11,8 +11,8 @@ from rich import box
 from rich.padding import Padding
 from rich.table import Table
 
-from giveway.cli.printing import escape
-from giveway.cli.study_levels import print_levels
+from giveway.cli.screen.printing import escape
+from giveway.cli.screen.study_levels import print_levels
 from giveway.reports.labels import level_label
 from giveway.reports.wording import counted
 from giveway.studies.contexts import other_factors

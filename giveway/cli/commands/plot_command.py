@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 from controller import Pid, TunedPid
-from giveway.cli.printing import print_place, writing
+from giveway.cli.screen.printing import print_place, writing
 from giveway.config.files.presets import parameters_of
 from giveway.errors import ConfigError
 from giveway.figures import reference_figure, save_figure

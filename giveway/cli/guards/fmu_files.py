@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fmus import FmuError
 from fmus.profile.vehicle_profile import VehicleProfile, read_profile
-from giveway.cli.printing import writing
+from giveway.cli.screen.printing import writing
 from giveway.errors import ConfigError
 from giveway.figures import save_figure
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from giveway.cli.printing import findings_table, print_json
+from giveway.cli.screen.printing import findings_table, print_json
 from giveway.doctor import Finding, examine_environment, examine_scenario
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from rich.console import Console
 
-from giveway.cli.printing import escape
-from giveway.cli.progress import run_progress
-from giveway.cli.run import Outputs, interrupted, show
+from giveway.cli.commands.run_command import Outputs, interrupted, show
+from giveway.cli.screen.printing import escape
+from giveway.cli.screen.progress import run_progress
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import check_folder
 from giveway.run_data.progress import Ending

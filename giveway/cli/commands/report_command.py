@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from giveway.cli.printing import print_place
+from giveway.cli.screen.printing import print_place
 from giveway.studies.folder import StudyFolder
 
 

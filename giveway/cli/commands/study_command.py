@@ -12,8 +12,8 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from giveway.cli.printing import print_json
-from giveway.cli.study_summary import print_plan, print_summary
+from giveway.cli.screen.printing import print_json
+from giveway.cli.screen.study_summary import print_plan, print_summary
 from giveway.config.files.foreign_code import foreign_code
 from giveway.precompile import compile_kernels_once
 from giveway.processes.processors import processors
@@ -78,7 +78,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
     workers = None if options.cluster else options.jobs or processors()
     print_summary(console, study, made=watcher.made, elapsed=elapsed, workers=workers)
     if request.report:
-        from giveway.cli.report import write_all
+        from giveway.cli.commands.report_command import write_all
 
         imported = {one.name for cell in planned.cells for one in foreign_code(cell.config)}
         write_all(study, console, trusted=imported)  # the user's own word, a moment ago

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rich.console import Console
 
-from giveway.cli.printing import print_place, writing
+from giveway.cli.screen.printing import print_place, writing
 from giveway.errors import ConfigError, ResultsError
 from giveway.exports.fcd import write_fcd
 from giveway.exports.geojson import write_geojson

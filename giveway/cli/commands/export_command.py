@@ -10,7 +10,7 @@ from controller import Pid, SpeedController
 from fmus.errors import FmuError
 from fmus.sources.export import export_controller
 from fmus.sources.parameters import CONTROLLER_FILES, ControllerParameters
-from giveway.cli.run import layers_of
+from giveway.cli.commands.run_command import layers_of
 from giveway.config.files.loading import load
 from giveway.config.option import LANE
 from giveway.cosimulation.preflight import control_step

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from giveway.cli.study_summary import print_summary
+from giveway.cli.screen.study_summary import print_summary
 from giveway.reports.findings import findings
 from giveway.reports.levels import level_table, levels_section
 

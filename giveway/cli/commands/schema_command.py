@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from fmus import VehicleProfile
-from giveway.cli.printing import print_place, writing
+from giveway.cli.screen.printing import print_place, writing
 from giveway.config.files.presets import NAMES
 from giveway.config.files.schema_names import PRESET, PROFILE, RUN, STUDY
 from giveway.config.run_config import EGO_TABLES, RunConfig

@@ -9,7 +9,7 @@ from rich import box
 from rich.console import Group
 from rich.table import Table
 
-from giveway.cli.printing import escape
+from giveway.cli.screen.printing import escape
 from giveway.reports.levels import BETTER, WORSE, LevelTable, Mean, level_table
 from giveway.studies.folder import StudyFolder
 

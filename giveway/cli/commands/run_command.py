@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from giveway.cli.exit import INTERRUPTED, fail
-from giveway.cli.printing import escape, print_json
-from giveway.cli.progress import run_progress
+from giveway.cli.screen.printing import escape, print_json
+from giveway.cli.screen.progress import run_progress
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.errors import GivewayError
@@ -156,7 +156,7 @@ def _is_told_by_name(config: RunConfig) -> bool:
 
 def show(console: Console, result: RunResult, folder: Path) -> None:
     """Print the run's summary and what was written."""
-    from giveway.cli.summary import summary_table
+    from giveway.cli.screen.run_summary import summary_table
 
     console.print(summary_table(result))
     for remark in result.remarks:

@@ -9,7 +9,7 @@ import pytest
 
 from fmus import bundled_fmu
 from fmus.profile.vehicle_profile import read_profile
-from giveway.cli.fmu_inspect import inspect_command
+from giveway.cli.commands.fmu_tools.fmu_inspect import inspect_command
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from giveway.cli.printing import print_place
+from giveway.cli.screen.printing import print_place
 from giveway.replays.page import content_of, write_beside, write_replay
 from giveway.replays.rerun import Predicted, predicted_again
 from giveway.replays.run_folder import PREDICTIONS, RunFolder
