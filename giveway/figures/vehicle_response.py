@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fmus.checking import CheckReport, Identification, Trace
-from fmus.checking.actuator import mean_force
-from fmus.checking.prediction import position_errors, simulate
+from fmus.checking.model_fit.actuator import mean_force
+from fmus.checking.model_fit.prediction import position_errors, simulate
 from giveway.figures.style import (
     BLACK,
     BLUE,

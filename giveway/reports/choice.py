@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import metric
 
 

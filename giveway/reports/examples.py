@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from giveway.errors import GivewayError
-from giveway.figures.study_pairs import PairSide, pair_figure
+from giveway.figures.studies.study_pairs import PairSide, pair_figure
 from giveway.reports.choice import ExamplePair
 from giveway.reports.pictures import Picture
 from giveway.reports.wording import quantity, shown_ego

@@ -16,7 +16,7 @@ from giveway.reports.labels import (
     level_label,
     treatment_labels,
 )
-from giveway.reports.published import agreement, published_frame
+from giveway.reports.tables.published import agreement, published_frame
 from giveway.reports.wording import (
     counted,
     digits_for,
@@ -26,7 +26,7 @@ from giveway.reports.wording import (
     share,
     shown_ego,
 )
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import metric
 
 METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")

@@ -19,7 +19,7 @@ import numpy as np
 from giveway.errors import ResultsError
 from giveway.reports.examples import Drive
 from giveway.run_data.tracks import EgoTrack
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 
 REPLAYS = "replays"
 _LIST = "kept.json"

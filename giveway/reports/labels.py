@@ -9,7 +9,7 @@ import numpy as np
 from giveway.studies.contexts import Context, baseline_level, other_factors
 from giveway.studies.contexts import contexts as contexts_of
 from giveway.studies.design import label_of
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 
 
 def contexts(study: StudyFolder) -> list[Context]:

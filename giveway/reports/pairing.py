@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 import pandas as pd
 
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.record import run_id
 from giveway.studies.statistics import METRICS
 from giveway.studies.statistics import pairs as statistics

@@ -10,12 +10,16 @@ import pandas as pd
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from giveway.figures.study_differences import DifferenceColumn, Differences, differences_figure
-from giveway.figures.study_distributions import DistributionColumn, distributions_figure
-from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
-from giveway.figures.study_fronts import FrontPoint, fronts_figure
-from giveway.figures.study_rows import Row, level_colours
-from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
+from giveway.figures.studies.study_differences import (
+    DifferenceColumn,
+    Differences,
+    differences_figure,
+)
+from giveway.figures.studies.study_distributions import DistributionColumn, distributions_figure
+from giveway.figures.studies.study_forest import Estimate, ForestColumn, forest_figure
+from giveway.figures.studies.study_fronts import FrontPoint, fronts_figure
+from giveway.figures.studies.study_rows import Row, level_colours
+from giveway.figures.studies.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.reports.choice import deciding_metric
 from giveway.reports.intervals import mean_interval, possible
 from giveway.reports.labels import (
@@ -27,9 +31,9 @@ from giveway.reports.labels import (
     treatment_labels,
 )
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
-from giveway.reports.published import SOURCE, published_numbers
+from giveway.reports.tables.published import SOURCE, published_numbers
 from giveway.reports.wording import shown_ego
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import SITUATIONS, metric
 
 ROWS_PER_PICTURE = 8

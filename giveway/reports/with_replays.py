@@ -12,7 +12,7 @@ from giveway.reports.kept_runs import KeptRuns
 from giveway.reports.page import shown_runs, write_report
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.options import StudyOptions
 from giveway.studies.study import StudyProgress, run_study
 from giveway.studies.varying import study_of

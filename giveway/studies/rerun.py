@@ -12,7 +12,7 @@ from giveway.errors import GivewayError
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending, Watcher
 from giveway.studies.execution.perform import rows_of
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.record import RunRecord, Scalar
 
 _PERHAPS = "other software or scenario files since then? Compare its manifest.json"

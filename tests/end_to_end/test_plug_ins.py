@@ -21,7 +21,7 @@ from giveway.cosimulation.preflight import preflight
 from giveway.ego.controllers import make_controller
 from giveway.errors import ConfigError, ControlError
 from giveway.plug_ins.sockets import CONTROLLER
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
 
 SHORT = {"time_limit": 2.0, "crowd": {"pedestrians": 3}}

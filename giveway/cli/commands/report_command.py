@@ -7,7 +7,7 @@ from pathlib import Path
 from rich.console import Console
 
 from giveway.cli.screen.printing import print_place
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 
 
 def report_command(
@@ -34,9 +34,9 @@ def write_all(
     """Write figures, replays and report, and the tables unless those of all runs exist."""
     from giveway.precompile import compile_kernels_once
     from giveway.reports.with_replays import write_report_of
-    from giveway.studies.contents import broken_tables, intact_tables
-    from giveway.studies.output import TABLES, write_tables
-    from giveway.studies.sealing import put_aside
+    from giveway.studies.folder.contents import broken_tables, intact_tables
+    from giveway.studies.folder.output import TABLES, write_tables
+    from giveway.studies.folder.sealing import put_aside
 
     compile_kernels_once(console)
     for file in broken_tables(study.path):

@@ -11,7 +11,7 @@ from giveway.cli.screen.progress import run_progress
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import check_folder
 from giveway.run_data.progress import Ending
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
 
 

@@ -10,8 +10,8 @@ from rich.console import Group
 from rich.table import Table
 
 from giveway.cli.screen.printing import escape
-from giveway.reports.levels import BETTER, WORSE, LevelTable, Mean, level_table
-from giveway.studies.folder import StudyFolder
+from giveway.reports.tables.levels import BETTER, WORSE, LevelTable, Mean, level_table
+from giveway.studies.folder.study_folder import StudyFolder
 
 if TYPE_CHECKING:
     from rich.console import Console

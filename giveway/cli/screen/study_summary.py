@@ -16,7 +16,7 @@ from giveway.cli.screen.study_levels import print_levels
 from giveway.reports.labels import level_label
 from giveway.reports.wording import counted
 from giveway.studies.contexts import other_factors
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.plan import Plan
 from giveway.studies.statistics import metric, precise_enough
 

@@ -19,7 +19,7 @@ from fmus.description.reading import model_of
 from fmus.description.units import quantity, to_si
 from fmus.errors import FmuPlatformError
 from fmus.fmi.validation import findings
-from fmus.profile.controller_draft import ControllerDraft, draft_controller
+from fmus.profile.controllers.controller_draft import ControllerDraft, draft_controller
 from fmus.profile.draft import Draft
 from fmus.profile.draft_profile import draft_profile
 from fmus.text import printable

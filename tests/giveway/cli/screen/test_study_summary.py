@@ -11,7 +11,7 @@ from rich.console import Console
 
 from giveway.cli.screen.study_summary import print_summary
 from giveway.reports.findings import findings
-from giveway.reports.levels import level_table, levels_section
+from giveway.reports.tables.levels import level_table, levels_section
 
 
 @pytest.fixture
