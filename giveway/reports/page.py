@@ -26,7 +26,7 @@ from giveway.reports.labels import contexts
 from giveway.reports.pictures import Picture, study_pictures
 from giveway.reports.tables.levels import levels_section
 from giveway.reports.tables.published import published_frame, published_table
-from giveway.reports.tables.readable_tables import readable_tables as tables
+from giveway.reports.tables import readable_tables as tables
 from giveway.reports.wording import pretty_unit
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import METRICS
