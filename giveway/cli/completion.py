@@ -1,4 +1,4 @@
-"""What the shell may complete: bundled names, and files where a file may stand."""
+"""Completions for the shell: bundled names, and files where a file may stand."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""How help pages look: one plain style for all of them, everyday options first.
+"""Help pages: one plain style for all of them, everyday options first.
 
 Names are never cut: a long one has a line of its own (as click writes definition lists).
 """
@@ -28,8 +28,8 @@ class Commands(typer.Typer):
     """A group of commands in our style.
 
     Args:
-        purpose: of the group.
-        completion: whether it has the options that install the shell's completion.
+        purpose: Purpose of the group.
+        completion: True if it has the options that install the shell's completion.
     """
 
     def __init__(self, purpose: str, *, completion: bool = False) -> None:

@@ -65,7 +65,7 @@ def _named(error: OSError) -> str:
 
 
 def _run(words: list[str]) -> int:
-    """Run the command; its exit code."""
+    """Run the command and return its exit code."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal may lack our characters

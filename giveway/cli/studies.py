@@ -90,7 +90,7 @@ def _study(
     ] = False,
     as_json: JsonFlag = False,
 ) -> None:
-    """Run a study: many paired runs, compared; can be ended at any moment and resumed."""
+    """Run a study: many paired runs, compared. It can be ended at any moment and resumed."""
     from giveway.errors import ConfigError
     from giveway.studies.finding import find_study
 
@@ -155,7 +155,7 @@ def _rerun(
     ] = False,
     trust: _Trust = None,
 ) -> None:
-    """Make one run of a study again, with all trajectories; its numbers must be the study's."""
+    """Make one run of a study again, with all trajectories, and compare its numbers."""
     from giveway.cli.guards.isolated import run_isolated, supervised
     from giveway.processes.child import take_journal_folder
 

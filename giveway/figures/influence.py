@@ -41,9 +41,9 @@ def influence_figure(
 
     Args:
         influence: the model; its vehicle's centre must be at (0, 0), its heading 0.
-        speeds: of the vehicle [m/s].
+        speeds: Speeds of the vehicle [m/s].
         shape: the vehicle's rectangle; the paper's 5 m x 2 m if left out.
-        title: of the whole figure.
+        title: Title of the whole figure.
 
     Raises:
         ValueError: no speed is given.

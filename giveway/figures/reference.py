@@ -22,7 +22,7 @@ def reference_figure(
     """Reference speeds over the gap (figure 3 of Yang & Özgüner 2019).
 
     Args:
-        curves: at most two, each with its label.
+        curves: Curves, at most two, each with its label.
         safe_distance: d_safe [m], where they begin to rise.
         buffer_distance: d_buffer [m], over which the paper's rises to v_r.
 

@@ -41,10 +41,10 @@ def draw_marks(axes: Axes, marks: RoadMarks, states: Mapping[str, str] | None, v
     """Stripes on crossings, and a bar at each stop line in the colour of its light.
 
     Args:
-        axes: to draw into.
+        axes: Axes to draw into.
         marks: crossings and stop lines.
-        states: of the lights by their ids; None: stop lines are grey.
-        view: what is outside is left out.
+        states: Traffic light states by id. None: stop lines are grey.
+        view: Rectangle to show; everything outside is left out.
     """
     marks = marks.within(
         (view.left - LONGEST, view.bottom - LONGEST), (view.right + LONGEST, view.top + LONGEST)

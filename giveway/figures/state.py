@@ -86,7 +86,7 @@ def state_figure(
         safe_distance: d_safe [m], drawn into the gap's panel.
         buffer_distance: d_buffer [m], drawn on top of it; 0: not.
         stop_lines: positions [m] of the front bumper, as in the track, at which lights hold it.
-        title: of the whole figure.
+        title: Title of the whole figure.
 
     Raises:
         ValueError: there is no run, or a run without an instant.
@@ -128,7 +128,7 @@ def state_figure(
 
 
 def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """Which controller acted from when to when [s], one entry per uninterrupted phase.
+    """Return the controllers that acted, with begin and end [s] of each uninterrupted phase.
 
     A command holds until the next instant, so that the last one is not carried out. A run of one
     instant is shown ``SINGLE_INSTANT`` to either side.
@@ -183,7 +183,7 @@ def strokes(
     """Times and distances [m] to draw, with nan wherever another one is in front from there on.
 
     Args:
-        ego: whose the distances are.
+        ego: Ego from which the distances are measured.
         distance: (T,) [m] to what is in front; inf: nothing.
         fastest: [m/s] at which one and the same may move along the way.
     """
@@ -195,7 +195,7 @@ def strokes(
 
 
 def _draw_distances(axes: Axes, ego: EgoTrack, stop_lines: Sequence[float]) -> None:
-    """How far it is to the vehicle in front, to where it has to stop, and to stop lines."""
+    """Draw the distances to the leader, to the stop demanded, and to stop lines."""
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     for distance, fastest, look in (
         (ego.vehicle_gap, FASTEST_VEHICLE, VEHICLE),
@@ -209,7 +209,7 @@ def _draw_distances(axes: Axes, ego: EgoTrack, stop_lines: Sequence[float]) -> N
 
 
 def waits(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """What the ego stood for from when to when [s], one entry per uninterrupted wait."""
+    """Return the causes of waiting, with begin and end [s] of each uninterrupted wait."""
     edges = np.flatnonzero(ego.waits_for[1:] != ego.waits_for[:-1]) + 1
     starts = np.concatenate(([0], edges))
     ends = np.append(edges, ego.time.size - 1)
@@ -320,7 +320,7 @@ def _legend(egos: Sequence[EgoTrack], stop_lines: bool) -> list[Artist]:
 
 
 def phase_handles(egos: Sequence[EgoTrack]) -> list[Artist]:
-    """What the legend shows of the phases that some of the runs have."""
+    """Return the legend's entries for the phases that occur in the runs."""
     acted = {str(name) for ego in egos for name in np.unique(ego.controller)}
     return [
         Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name])

@@ -1,4 +1,4 @@
-"""How giveway's pictures look, whatever the user's matplotlib is configured to.
+"""The style of giveway's pictures, whatever the user's matplotlib is configured to.
 
 Colours are Okabe & Ito's (2008), told apart by all common kinds of colour vision; what is shaded
 differs in lightness as well, for print in black and white.
@@ -88,7 +88,7 @@ def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
     matplotlib's layout solver does not settle.
 
     Args:
-        figure: what to write.
+        figure: Figure to write.
         path: its suffix says the format: .png, .svg or .pdf.
         dpi: pixels per inch of a PNG.
 

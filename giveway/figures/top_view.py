@@ -66,7 +66,8 @@ def top_view_figure(
         crowd: the crowd's track; may be empty.
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
-        times: of the snapshots [s], each taken at the nearest control instant; left out: six over
+        times: Times of the snapshots [s], each taken at the nearest control instant. Left out: six
+            over
             the time in which a pedestrian is within 10 m of the ego, one of them at the closest
             approach and the others evenly.
         background: other vehicles, drawn in the snapshots; from their latest instant on they are
@@ -75,7 +76,7 @@ def top_view_figure(
         marks: crossings and stop lines.
         signals: the lights' states; in a snapshot stop lines have the colour of the instant.
         conflicts: marked among the trajectories.
-        title: of the whole figure.
+        title: Title of the whole figure.
 
     Raises:
         ValueError: the ego's track is empty, or ``times`` is.
@@ -134,7 +135,7 @@ def crowd_view_figure(
         time: (T,) [s] the control instants.
         crowd: the crowd's track.
         road: areas and lines to draw underneath.
-        title: of the figure.
+        title: Title of the figure.
 
     Raises:
         ValueError: no pedestrian was recorded.
@@ -177,7 +178,7 @@ def _corners(
 
 
 def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:
-    """The first instant at which a pedestrian is closest to the ego's body; None: nobody is there.
+    """Return the first instant of the smallest distance to a pedestrian, or None without people.
 
     Somebody inside the rectangle is the closer the deeper.
     """
@@ -262,7 +263,10 @@ def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> No
 def _draw_pedestrian_trajectories(
     axes: Axes, time: NDArray[np.float64], crowd: CrowdTrack, colours: Normalize
 ) -> LineCollection:
-    """Trajectories as short lines in the colours of time; circles mark where they begin."""
+    """Draw trajectories as short lines in the colours of time.
+
+    Circles mark where they begin.
+    """
     groups = PedestrianGroups(crowd)
     places = np.column_stack((crowd.x, crowd.y))[groups.order]
     times = time[crowd.step[groups.order]]
@@ -297,7 +301,7 @@ def _draw_ego_trajectory(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
 
 
 def _thinned(first: int, last: int) -> NDArray[np.int64]:
-    """At most ``SEGMENTS`` + 1 of the records first to last, both ends among them."""
+    """Return at most ``SEGMENTS`` + 1 of the records first to last, both ends among them."""
     count = min(last - first, SEGMENTS) + 1
     return np.round(np.linspace(first, last, count)).astype(np.int64)
 

@@ -51,7 +51,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """Where a vehicle is: x, y [m], heading [rad], and its size round that point [m]."""
+    """The pose of a vehicle: x, y [m], heading [rad], and its size round that point [m]."""
 
     x: float
     y: float
@@ -77,7 +77,7 @@ def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title:
     Args:
         time: (H,) [s] ahead.
         panels: per panel, a curve per predictor.
-        title: of the whole figure.
+        title: Title of the whole figure.
     """
     figure = Figure(figsize=(4.2 * len(panels), 3.6), layout="constrained")
     grid = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
@@ -101,13 +101,13 @@ def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title:
 def tracks_figure(
     observed: Array, predicted: Mapping[str, Array], vehicle: Sequence[Body], title: str
 ) -> Figure:
-    """What was predicted of one window, and what was observed.
+    """Draw what was predicted for one window, and what was observed.
 
     Args:
         observed: (H + 1, n, 2) [m], from the start on.
-        predicted: likewise, by predictor.
-        vehicle: at the start, on the way, at the end; may be empty.
-        title: of the figure.
+        predicted: Predicted trajectories of each predictor, in the same form.
+        vehicle: Poses at the start, on the way and at the end; may be empty.
+        title: Title of the figure.
     """
     figure = Figure(figsize=(6.4, 5.4), layout="constrained")
     axes = figure.subplots()
@@ -139,7 +139,7 @@ def places_figure(place: Array, errors: Mapping[str, Array], body: Body, title: 
         place: (R, 2) [m] before and left of the vehicle; nan without one.
         errors: (R,) [m] by predictor; nan where there is none.
         body: the vehicle's, at the origin.
-        title: of the whole figure.
+        title: Title of the whole figure.
     """
     edges = np.arange(-_REACH, _REACH + _CELL / 2, _CELL)
     means = {name: _cell_means(place, values, edges) for name, values in errors.items()}
@@ -162,7 +162,7 @@ def places_figure(place: Array, errors: Mapping[str, Array], body: Body, title: 
 
 
 def _cell_means(place: Array, values: Array, edges: Array) -> Array:
-    """(k, k) the mean of ``values`` in each cell; nan where there are too few."""
+    """Return the mean of ``values`` in each cell, (k, k), and nan for too few values."""
     good = ~(np.isnan(place).any(axis=1) | np.isnan(values))
     x, y = place[good].T
     count, _, _ = np.histogram2d(x, y, [edges, edges])

@@ -1,4 +1,4 @@
-"""How a vehicle FMU responds: the picture of a check, and that of an identification."""
+"""The response of a vehicle FMU: the picture of a check, and that of an identification."""
 
 from typing import Any
 
@@ -31,7 +31,9 @@ ROWS = ("Force [kN]", "Speed [m/s]", "Acceleration [m/s²]", "Position [m]")
 
 @styled
 def check_figure(report: CheckReport, *, title: str = "") -> Figure | None:
-    """Force, speed, acceleration and position of the drives of a check; None without any.
+    """Draw force, speed, acceleration and position of a check's drives.
+
+    The result is None if there are no drives.
 
     On the left the step response and that of the controller's model, on the right the same drive
     with the FMU's steps and with finer ones, as far as they ran.

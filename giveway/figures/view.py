@@ -52,7 +52,7 @@ class Box(NamedTuple):
         return (self.top - self.bottom) / (self.right - self.left)
 
     def touches(self, points: NDArray[np.float64]) -> bool:
-        """Whether the points' own box meets this one."""
+        """True if the bounding box of the points meets this one."""
         low, high = points.min(axis=0), points.max(axis=0)
         apart = high[0] < self.left or low[0] > self.right
         return bool(not (apart or high[1] < self.bottom or low[1] > self.top))

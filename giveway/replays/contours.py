@@ -32,7 +32,7 @@ def influence_contours(
     Args:
         shape: length and width [m].
         fastest: the highest speed [m/s] that is needed.
-        parameters: of the pedestrian model.
+        parameters: Parameters of the pedestrian model.
 
     Returns:
         ``speeds`` [m/s], ``levels`` [N]; the points ``x``, ``y`` [mm] from the body's centre,
@@ -67,7 +67,7 @@ def influence_contours(
 def _contours(
     shape: tuple[float, float], speed: float, parameters: VciParameters
 ) -> list[list[Array]]:
-    """For each level its pieces, (k, 2) [m] each."""
+    """Return the pieces of each level's contour, (k, 2) [m] each."""
     length, width = shape
     ahead = length / 2 + FRONT_MARGIN + FRONT_MARGIN_PER_SPEED * speed
     half_height = width / 2 + SIDE_MARGIN

@@ -43,7 +43,7 @@ def _corners(shapes: list[Any], frame: Frame) -> dict[str, str]:
 
 
 def _changes(run: RunFolder, head: SignalHead) -> tuple[list[float], str]:
-    """From when on [s] a stop line shows what, one letter for each time."""
+    """Return the times [s] at which a stop line's signal changes, and the letters it changes to."""
     times: list[float] = []
     letters = ""
     rows = run.signals

@@ -68,8 +68,8 @@ def pack_tracks(
     """The rows of pedestrians, or of vehicles, as tracks.
 
     Args:
-        rows: of ``trajectories.csv``.
-        frame: of the page.
+        rows: Rows of ``trajectories.csv``.
+        frame: Coordinate frame of the page.
         hold: [s] for which an object stays in sight after its last row.
         gap: [s] without a row after which an object has been away.
         thin: [s] of which one sample is kept; 0 keeps all.
@@ -115,7 +115,7 @@ def _until(
     gap: float,
     end: float,
 ) -> Array:
-    """How long each track is in sight [s].
+    """Return the time [s] for which each track is in sight.
 
     Distant pedestrians are recorded only from time to time, so that the end of their presence is
     not known; one recorded shortly before the run's end is taken to be there until then.
@@ -128,7 +128,7 @@ def _until(
 def _sparse(
     time: Array, first: NDArray[np.bool_], last: NDArray[np.bool_], thin: float
 ) -> NDArray[np.bool_]:
-    """Which samples to keep: both ends of each track, and one in every ``thin`` seconds."""
+    """Select the samples to keep: both ends of each track, and one in every ``thin`` seconds."""
     if not thin:
         return np.ones(len(time), dtype=np.bool_)
     window = np.floor(time / thin + 1e-9)
@@ -137,7 +137,7 @@ def _sparse(
 
 
 def thinning(rows: pd.DataFrame, step: float, most: int = MOST_SAMPLES) -> float:
-    """Of how many seconds one sample is kept so that about ``most`` remain; 0: all are kept."""
+    """Return the time [s] between samples that leaves about ``most`` of them, or 0 to keep all."""
     if len(rows) <= most:
         return 0.0
     codes, _ = pd.factorize(rows["id"], sort=False)
@@ -152,7 +152,7 @@ def thinning(rows: pd.DataFrame, step: float, most: int = MOST_SAMPLES) -> float
 
 
 def longest_gap(run: RunFolder) -> float:
-    """How long [s] an object may have no row without having been away."""
+    """Return the longest gap [s] between rows that does not mean that the object was away."""
     period = min(run.config.record.far_period, _LONGEST_GAP)
     return 1.5 * max(period, run.step, run.sumo_step)
 

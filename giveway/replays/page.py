@@ -1,4 +1,4 @@
-"""From a results folder to one self-contained page that plays the run."""
+"""One self-contained page, made from a results folder, that plays the run."""
 
 import json
 import math
@@ -57,7 +57,7 @@ def write_replay(
         folder: the results of ``giveway run``, completed or not.
         target: the HTML file to write; replaced if it exists.
         predictions: a ``predictions.csv`` of the same run; None: the folder's own, if it has one.
-        remark: why there are no predictions, for the page.
+        remark: Reason for missing predictions, for the page.
 
     Returns:
         ``target``.
@@ -72,7 +72,7 @@ def write_beside(contents: Sequence[dict[str, Any]], target: Path) -> Path:
     """Make the page that plays two runs side by side, in step since their beginnings.
 
     Args:
-        contents: of each, as :func:`content_of` gives it.
+        contents: Content of each page, as :func:`content_of` gives it.
         target: the HTML file to write; replaced if it exists.
 
     Returns:
@@ -90,7 +90,9 @@ def write_beside(contents: Sequence[dict[str, Any]], target: Path) -> Path:
 
 
 def content_of(folder: Path, predictions: Path | None = None, remark: str = "") -> dict[str, Any]:
-    """What a run's page is given; arguments as of :func:`write_replay`.
+    """Return the content of a run's page.
+
+    The arguments are those of :func:`write_replay`.
 
     Raises:
         ResultsError: the folder holds no run.
@@ -179,7 +181,7 @@ def _title(run: RunFolder) -> str:
 
 
 def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: float) -> list[str]:
-    """What a spectator has to know about the page and the run."""
+    """Return remarks that a spectator needs about the page and the run."""
     notes = []
     error = run.manifest.get("error")
     if error:
@@ -204,7 +206,10 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
 
 
 def _walk_unrecorded(run: RunFolder) -> bool:
-    """Whether SUMO moves persons without a record: those handed back; all, without an ego."""
+    """True if SUMO moves persons without a record.
+
+    These are persons handed back to SUMO, or all persons if there is no ego.
+    """
     counts = run.manifest.get("pedestrians")
     handed_back = isinstance(counts, dict) and bool(counts.get("handed_back"))
     return handed_back or not (run.egos or run.config.crowd.adds_people)
@@ -310,7 +315,7 @@ def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _label(name: str) -> str:
-    """A column's name in words; abbreviations as they are spoken."""
+    """Return a column's name in words, with abbreviations as they are spoken."""
     words = (word.upper() if word in _SPELT else word for word in name.split("_"))
     return " ".join(words)
 

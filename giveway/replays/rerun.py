@@ -15,7 +15,7 @@ PERIOD = 0.25  # [s] of look-ahead between two predicted positions
 
 @dataclass(frozen=True)
 class Predicted:
-    """What the repetition of a run has given.
+    """The outcome of repeating a run.
 
     Attributes:
         file: the predictions, until the context is left; None if there are none.

@@ -31,7 +31,7 @@ _SHOWN = 40  # characters of what is no number
 
 @dataclass(frozen=True)
 class RunFolder:
-    """What a results folder holds, as far as a replay needs it.
+    """The content of a results folder, as far as a replay needs it.
 
     Attributes:
         config: of the run.
@@ -66,7 +66,7 @@ class RunFolder:
 
     @property
     def sumo_step(self) -> float:
-        """SUMO's step [s]; the control step where it is not known."""
+        """SUMO's step [s], or the control step if it is not known."""
         sumo = self.manifest.get("sumo")
         known = sumo.get("step_length") if isinstance(sumo, dict) else None
         return float(known) if isinstance(known, int | float) else self.step
@@ -135,7 +135,10 @@ def _require_run(folder: Path) -> None:
 
 
 def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
-    """A table whose ids are texts, even those of digits; missing texts are empty."""
+    """Read a table whose ids are texts, even those of digits.
+
+    Missing texts become empty ones.
+    """
     texts = {column.name: str for column in columns if column.type == "string"}
     try:
         frame = pd.read_csv(file, dtype={"ego": str} | texts, na_values=[""], keep_default_na=False)

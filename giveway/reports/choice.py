@@ -1,4 +1,4 @@
-"""Which runs a report shows: examples of pairs, and the runs that one would look at first.
+"""The choice of runs for a report: examples of pairs, and the most notable runs.
 
 The choice is not random: the same study gives the same runs, and of equal ones the first in the
 study.
@@ -101,7 +101,7 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
 
     Args:
         study: its runs, design and definition are read.
-        count: at most so many.
+        count: Largest number of them.
     """
     pairs = paired(study)
     name = deciding_metric(pairs)
@@ -139,7 +139,10 @@ def _add(
 
 
 def deciding_metric(pairs: pd.DataFrame) -> str:
-    """Completion time; total wait where no pair has reached its goal on both sides."""
+    """Return the metric to choose by: the completion time.
+
+    It is the total wait if no pair has reached its goal on both sides.
+    """
     reached = pairs["completion_time" + DIFFERENCE].notna()
     return "completion_time" if reached.any() else "total_wait"
 
@@ -162,7 +165,10 @@ def _example(reason: str, row: pd.Series, name: str) -> ExamplePair:
 def _extreme(
     study: StudyFolder, reason: str, name: str, count: int, *, sign: float
 ) -> list[WorstRun]:
-    """The runs with the smallest (+1) or largest (-1) numbers; the largest must be above zero."""
+    """Return the runs with the smallest (+1) or largest (-1) numbers.
+
+    The largest must be above zero.
+    """
     values = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cost = np.where((values > 0.0) | (sign > 0.0), sign * values, np.nan)
     labels = {cell.number: cell.label for cell in study.design.cells}
@@ -194,6 +200,6 @@ def _differing(study: StudyFolder, reason: str, count: int, *, sign: float) -> l
 
 
 def _smallest(cost: NDArray[np.float64], count: int) -> list[int]:
-    """Places of the ``count`` smallest finite values; of equal ones the first."""
+    """Return the indices of the ``count`` smallest finite values, the first of equal ones."""
     order = np.argsort(cost, kind="stable")
     return [int(place) for place in order if np.isfinite(cost[place])][: max(count, 0)]

@@ -23,7 +23,7 @@ TITLES = {
 
 @dataclass(frozen=True)
 class Drive:
-    """How one ego of a run drove.
+    """The drive of one ego in a run.
 
     Attributes:
         ego: its id.
@@ -52,7 +52,7 @@ def example_pictures(
     """A picture of each pair, and a sentence for each that could not be made again.
 
     Args:
-        pairs: which ones.
+        pairs: Pairs to draw.
         drives: gives those of a run of the study, by its id.
     """
     drawn, missing = [], []

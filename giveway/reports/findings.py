@@ -34,7 +34,7 @@ MOST_SENTENCES = 4  # of one metric; more groups than that are counted in one
 
 
 def lead(study: StudyFolder) -> str:
-    """What was compared, on how many crowds."""
+    """Say what was compared, on how many crowds."""
     runs = study.runs
     compared = study.definition.comparison.factor
     seeds = sorted(set(runs["seed"]))
@@ -76,7 +76,7 @@ def findings(study: StudyFolder) -> list[str]:
 
 
 def cautions(study: StudyFolder) -> list[str]:
-    """What a reader has to know before believing the findings."""
+    """Return the remarks that a reader needs before believing the findings."""
     sentences = []
     failed = len(study.failures)
     if failed:
@@ -154,7 +154,7 @@ def _sentence(study: StudyFolder, name: str, rows: Sequence[Mapping[Any, Any]]) 
 
 
 def _size(study: StudyFolder, row: Mapping[Any, Any], unit: str) -> str:
-    """As in "by 1.62 s (95 % interval 0.91 to 2.49 s) where crowd.pedestrians = 30"."""
+    """Return "by 1.62 s (95 % interval 0.91 to 2.49 s) where crowd.pedestrians = 30"."""
     low, high = row["ci_low"], row["ci_high"]
     if row["mean_difference"] < 0:
         low, high = -high, -low
@@ -165,7 +165,7 @@ def _size(study: StudyFolder, row: Mapping[Any, Any], unit: str) -> str:
 
 
 def _where(study: StudyFolder, rows: Sequence[Mapping[Any, Any]]) -> str:
-    """The contexts of some rows, as in " where crowd.pedestrians = 30 or ..."; or nothing."""
+    """Return the contexts of some rows, as in " where crowd.pedestrians = 30 or ...", or ""."""
     places = {context.key: context.label for context in contexts(study)}
     labels = [places.get(context_key(study, row), "") for row in rows]
     return f" where {' or '.join(labels)}" if any(labels) else ""
@@ -184,7 +184,7 @@ def _counted(name: str, verdicts: list[str]) -> str:
 
 
 def _overlaps(study: StudyFolder) -> list[str]:
-    """In how many runs a pedestrian touched the vehicle, level by level."""
+    """Say in how many runs a pedestrian touched the vehicle, level by level."""
     runs = study.runs
     numbers = pd.to_numeric(runs["overlaps"], errors="coerce")
     if not (numbers > 0).any():
@@ -224,7 +224,7 @@ def _overall(study: StudyFolder) -> list[str]:
 
 
 def _have_ego(study: StudyFolder) -> bool:
-    """Whether the runs drive an ego, as far as can be told from those with a result."""
+    """True if the runs drive an ego, as far as those with a result tell."""
     return bool(study.runs["mean_speed"].notna().any()) or bool(len(study.failures))
 
 
@@ -234,5 +234,5 @@ def _quoted(level: str) -> str:
 
 
 def _listed(words: list[str]) -> str:
-    """As in "a, b and c"."""
+    """Return words joined as in "a, b and c"."""
     return " and ".join(filter(None, (", ".join(words[:-1]), words[-1]))) if words else ""

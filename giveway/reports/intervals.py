@@ -18,7 +18,10 @@ def possible(interval: tuple[float, float], least: float = 0.0) -> tuple[float, 
 
 
 def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:
-    """Student's interval of a mean; the mean itself where there is one value, or all are equal."""
+    """Return Student's interval of a mean.
+
+    It is the mean itself if there is one value, or all are equal.
+    """
     mean = float(values.mean())
     if values.size < 2:
         return mean, mean

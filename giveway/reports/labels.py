@@ -1,4 +1,4 @@
-"""How the levels and contexts of a study are labelled in its report."""
+"""Labels of the levels and contexts of a study in its report."""
 
 import math
 from collections.abc import Mapping

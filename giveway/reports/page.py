@@ -24,9 +24,9 @@ from giveway.reports.embedding import inline_svg
 from giveway.reports.examples import TITLES, Drive, example_pictures
 from giveway.reports.labels import contexts
 from giveway.reports.pictures import Picture, study_pictures
+from giveway.reports.tables import readable_tables as tables
 from giveway.reports.tables.levels import levels_section
 from giveway.reports.tables.published import published_frame, published_table
-from giveway.reports.tables import readable_tables as tables
 from giveway.reports.wording import pretty_unit
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import METRICS
@@ -68,7 +68,9 @@ def shown_runs(
 
 
 def _as_many(study: StudyFolder, examples: int | None, worst: int | None) -> tuple[int, int]:
-    """How many pairs and runs a report shows: its runs are made again, the study's were made once.
+    """The numbers of pairs and runs that a report shows.
+
+    The runs shown are made again.
 
     A study of 150 runs or more has the most.
     """
@@ -87,7 +89,9 @@ def write_report(
     replay: Callable[[str], Path | None] | None = None,
     target: Path | None = None,
 ) -> Path:
-    """Draw the figures of a study and write its report; both replace existing ones.
+    """Draw the figures of a study and write its report.
+
+    Both replace existing ones.
 
     Args:
         study: its folder, read.

@@ -40,7 +40,7 @@ def paired(study: StudyFolder) -> pd.DataFrame:
 
 
 def situation_of(pairs: pd.DataFrame, situation: str) -> pd.DataFrame:
-    """The pairs of a situation; "general" are all."""
+    """Return the pairs of a situation, or all pairs for "general"."""
     return pairs if situation == "general" else pairs[pairs["situation"] == situation]
 
 

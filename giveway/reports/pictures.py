@@ -196,7 +196,7 @@ def _forest(study: StudyFolder) -> Iterator[Picture]:
 
 
 def _estimates(study: StudyFolder) -> dict[_Key, Estimate]:
-    """Mean difference and interval of every row of the comparison; nan is N.A."""
+    """Return mean difference and interval of every row of the comparison, with N.A. for nan."""
     return {
         (
             context_key(study, row),
@@ -301,7 +301,7 @@ def _trade_off(study: StudyFolder) -> Iterator[Picture]:
 
 
 def _fronts(study: StudyFolder) -> Iterator[Picture]:
-    """What each level costs the ego, and what it costs the people."""
+    """Draw the cost of each level to the ego against its cost to the people."""
     frame, compared = study.fronts, study.definition.comparison.factor
     if frame.empty:
         return

@@ -1,4 +1,4 @@
-"""From factors and levels to cells: the settings of every combination that is run."""
+"""The design of a study: factors and levels become cells, the settings of each combination."""
 
 import difflib
 import itertools
@@ -162,7 +162,10 @@ def design(definition: StudyDefinition, origin: str) -> Design:
 
 
 def label_of(value: object) -> str:
-    """How a value is written in a label; an empty one is "none", as tables drop empty texts."""
+    """Return a value as written in a label.
+
+    An empty value is "none", since tables drop empty texts.
+    """
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list | tuple):

@@ -1,4 +1,4 @@
-"""How a study is computed, which its results do not depend on."""
+"""Options of computing a study, which its results do not depend on."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from giveway.studies.execution import HANG_LIMIT, Executor, cluster_executor, lo
 
 @dataclass(frozen=True)
 class StudyOptions:
-    """What a user asks for apart from the study itself.
+    """The user's wishes apart from the study itself.
 
     Attributes:
         jobs: worker processes on this machine; None: one per processor that we may use.
@@ -45,7 +45,7 @@ class StudyOptions:
             )
 
     def executor(self) -> Executor:
-        """What makes the runs.
+        """The executor that makes the runs.
 
         Raises:
             WorkerError: a number or an address cannot be used.

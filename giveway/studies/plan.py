@@ -57,7 +57,7 @@ class PlannedRun:
         return self.planned.config.model_copy(update={"seed": self.seed})
 
     def task(self) -> Task:
-        """What a worker needs to make it."""
+        """The task that a worker needs to make it."""
         text = self.config.model_dump_json()
         return Task(self.id, self.key, text, self.planned.inputs, software_identity())
 
@@ -72,7 +72,10 @@ class Plan:
 
     @property
     def seeds(self) -> range:
-        """The seeds of every cell; with [precision], the most there may be."""
+        """Return the seeds of every cell.
+
+        With [precision] these are the most there may be.
+        """
         first = self.definition.first_seed
         return range(first, first + self.definition.replications)
 

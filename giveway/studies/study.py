@@ -47,7 +47,7 @@ class StudyInterruptedError(GivewayError):
 
 @dataclass(frozen=True)
 class StudyProgress:
-    """Where a study stands."""
+    """The progress of a study."""
 
     total: int  # runs, as far as is known
     kept: int  # runs of former sessions
@@ -72,10 +72,10 @@ def run_study(
     """Compute the missing runs of a study, and write its tables.
 
     Args:
-        definition: of the study.
+        definition: Definition of the study.
         origin: its file, for messages.
         out: its folder.
-        options: how it is computed.
+        options: Options of computing it.
         watcher: told of every finished run.
         tell: takes one line for each kept file that is broken, and when the runs of another
             giveway are made again; None: to standard error.
@@ -126,7 +126,7 @@ class _Session:
         self._begun = False
 
     def begin(self) -> None:
-        """Write definition and manifest; remove tables and report of a former session."""
+        """Write definition and manifest, and remove tables and report of a former session."""
         if self._options.force:
             remove_study(self._out)
         for file in broken_files(self._out):
@@ -172,12 +172,15 @@ class _Session:
             write_tables(StudyFolder(self._out), whole=False)
 
     def kept(self) -> str:
-        """What to tell a user who has ended the study."""
+        """Return the message to a user who has ended the study."""
         done = f"{self._kept + self._made:,} of {len(self._plan):,} runs"
         return f"{done} are kept in {self._out}: go on with --resume"
 
     def _make(self, executor: Executor, seeds: range) -> None:
-        """Make the missing runs of ``seeds``; cells with equal settings share them."""
+        """Make the missing runs of ``seeds``.
+
+        Cells with equal settings share runs.
+        """
         missing: defaultdict[str, list[PlannedRun]] = defaultdict(list)
         for run in self._plan.runs(seeds):
             record = self._kept_record(run.key)
@@ -197,7 +200,10 @@ class _Session:
             self._report(record)
 
     def _kept_record(self, key: str) -> RunRecord | None:
-        """The record of a run that has been made; a broken one is named and put aside."""
+        """Return the record of a run that has been made.
+
+        A broken record is reported and put aside.
+        """
         try:
             return self._store.get(key)
         except BrokenFileError as error:
@@ -213,7 +219,7 @@ class _Session:
         self._watcher(StudyProgress(total, self._kept, self._made, self._failed, record))
 
     def _precise(self) -> bool:
-        """Whether the seeds so far tell the difference well enough."""
+        """True if the seeds so far determine the difference precisely enough."""
         definition, design = self._plan.definition, self._plan.design
         assert definition.precision is not None
         made = [
@@ -253,7 +259,9 @@ class _Session:
 
 
 def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, float]]:
-    """How long a study will take [s], from two runs of each cell; nothing is kept.
+    """Estimate the time [s] that a study will take, from two runs of each cell.
+
+    Nothing of these runs is kept.
 
     Returns:
         The whole time on the workers that ``options`` ask for, and the seconds of one run by the

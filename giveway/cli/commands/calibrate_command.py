@@ -72,7 +72,7 @@ def calibrate_command(
 
 
 def _provenance(found: Calibration, settings: dict[str, Any]) -> dict[str, Any]:
-    """How the preset was made, for readers of the file."""
+    """Describe how the preset was made, for readers of the file."""
     return {
         "made_by": "giveway calibrate",
         **settings,

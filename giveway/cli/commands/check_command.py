@@ -1,4 +1,4 @@
-"""What ``giveway check`` does: a battery of made-up scenes, in a process of its own."""
+"""The command ``giveway check``: it tries a plug-in on made-up scenes, in a process of its own."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ def check_command(
     time_step: float | None = None,
     profile: str = "",
 ) -> int:
-    """Print what was found; the exit code is 1 if a rule is broken.
+    """Print what was found and return the exit code: 1 if a rule is broken.
 
     The battery runs in a process of its own, which may hang or end.
 
     Args:
-        name: of the plug-in.
-        words: that set its options.
-        socket: that it is for.
+        name: Name of the plug-in.
+        words: Words of the command line that set its options.
+        socket: Socket for which the plug-in is written.
         limit: [s] for one rule.
         time_step: [s] of the scenes; none: that of a run which sets none.
-        profile: of a controller FMU.
+        profile: Profile of a controller FMU.
 
     Raises:
         GivewayError: it cannot be found, imported or given its options.
@@ -81,7 +81,10 @@ def _configured(
 
 
 def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple[str, str]]:
-    """Rules, and what breaks them; the last one broken if the process hangs or ends in it."""
+    """Return the rules and what breaks each.
+
+    The last one counts as broken if the process hangs or ends in it.
+    """
     spawn = multiprocessing.get_context("spawn")  # a fresh one: nothing of ours is in the way
     ours, theirs = spawn.Pipe(duplex=False)
     process = spawn.Process(
@@ -108,7 +111,10 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
 
 
 def _battery(connection: Connection, config: str, what: str) -> None:
-    """In the process: the findings, and before each rule its name."""
+    """Print each rule's name before it is tried, and its findings.
+
+    This function runs in the process of its own.
+    """
     effective = RunConfig.model_validate_json(config)
     step = effective.time_step or PAPER_STEP
     if what == CONTROLLER.what:

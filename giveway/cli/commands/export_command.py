@@ -40,7 +40,7 @@ def export_command(
     Args:
         scenario: name or path; None: the file's, or the default.
         config: a TOML file.
-        settings: what the flags set.
+        settings: Settings given by flags.
         out: the .fmu file.
         fmi: "2.0" or "3.0".
         force: replace a file that is there.

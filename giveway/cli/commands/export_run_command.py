@@ -43,13 +43,13 @@ FORMATS = {
 def export_run_command(
     folder: Path, to: str, out: Path | None, *, step: float | None = None, force: bool = False
 ) -> int:
-    """Write a run in another format; the exit code is 0.
+    """Write a run in another format and return the exit code 0.
 
     Args:
         folder: the results folder.
         to: one of ``FORMATS``.
         out: the file; None: in the working folder, named after the results folder.
-        step: between two instants [s]; None: as fits the format.
+        step: Time [s] between two instants. None: the one that fits the format.
         force: replace a file that is there.
 
     Raises:

@@ -10,11 +10,11 @@ from giveway.recovery import left_journals, recover_left
 
 
 def recover_command(journal: Path | None, out: Path | None, *, force: bool) -> int:
-    """Write the rows in a journal, or list the journals that there are; the exit code is 0.
+    """Write the rows of a journal, or list the journals, and return the exit code 0.
 
     Args:
         journal: the folder of one; None lists them.
-        out: where to write the rows; None: where the run would have written them.
+        out: Folder for the rows. None: the folder in which the run would have written them.
         force: replace the results there.
 
     Raises:

@@ -24,7 +24,7 @@ def replay_command(
     rerun: bool = True,
     show: bool = False,
 ) -> int:
-    """Write the replay of a run; the exit code is 0.
+    """Write the replay of a run and return the exit code 0.
 
     Args:
         run: a results folder.
@@ -70,7 +70,10 @@ def _predicted(run: Path, console: Console, *, rerun: bool) -> Iterator[Predicte
 
 
 def _worth_it(run: Path) -> bool:
-    """Whether a run may give predictions that are not on record; a crash is not repeated."""
+    """True if a repetition may give predictions that are not recorded.
+
+    A run that crashed is not repeated.
+    """
     folder = RunFolder.read(run)
     if (run / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
         return False

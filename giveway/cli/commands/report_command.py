@@ -13,11 +13,13 @@ from giveway.studies.folder.study_folder import StudyFolder
 def report_command(
     study: Path, *, replays: bool, quiet: bool, trusted: Collection[str] = ()
 ) -> int:
-    """Write figures, replays and report anew; only the runs that are shown are computed again.
+    """Write figures, replays and report anew.
+
+    Only the runs that are shown are computed again.
 
     Args:
         study: the study's folder.
-        replays: whether to make the shown runs again.
+        replays: True if the shown runs are to be made again.
         quiet: print nothing.
         trusted: code, as module:Class, that the study may have imported.
 

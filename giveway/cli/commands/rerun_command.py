@@ -29,7 +29,7 @@ def rerun_command(
     Args:
         study: the study's folder.
         run: the run's id.
-        outputs: what is kept and printed.
+        outputs: Outputs to keep and to print.
         predictions: keep the predicted positions.
         trusted: code, as module:Class, that the study may have imported.
         journal: a folder for the rows in case this process dies.

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outputs:
-    """What the user wants to keep, and to see."""
+    """The outputs that the user wants to keep, and to see."""
 
     folder: Path | None
     force: bool
@@ -54,13 +54,13 @@ def run_command(
     outputs: Outputs,
     journal: Path | None = None,
 ) -> int:
-    """Run once; the exit code is 0, or 130 when the user interrupted.
+    """Run once and return the exit code: 0, or 130 if the user interrupted.
 
     Args:
         scenario: name or path; None: the file's, or the default.
         config: a TOML file.
-        settings: what the flags set.
-        outputs: what is kept and printed.
+        settings: Settings given by flags.
+        outputs: Outputs to keep and to print.
         journal: a folder for the rows in case this process dies.
 
     Raises:
@@ -110,7 +110,7 @@ def run_command(
 
 
 def interrupted(result: RunResult, folder: Path) -> int:
-    """Say what has been kept of a run that the user has ended; the exit code."""
+    """Say what has been kept of a run that the user has ended, and return the exit code."""
     kept = f"rows up to then are in {folder}" if len(result.time) else "there are no rows yet"
     return fail(f"interrupted; {kept}", INTERRUPTED)
 
@@ -138,7 +138,7 @@ def _safe(name: str) -> str:
 
 
 def _is_told_by_name(config: RunConfig) -> bool:
-    """Whether the run is its scenario's own but for what the folder's name tells."""
+    """True if the folder's name tells everything that differs from the scenario's own settings."""
     ego = {key: value for key in ("take_over", "none") if (value := getattr(config.ego, key))}
     told = {
         "scenario": config.scenario,

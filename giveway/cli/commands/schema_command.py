@@ -68,7 +68,7 @@ def _run_schema() -> dict[str, Any]:
 
 
 def _study_schema() -> dict[str, Any]:
-    """A study's; its settings are a run's, by tables or by dotted keys."""
+    """Return the schema of a study file, whose settings are tables or dotted keys."""
     schema, run = StudyDefinition.model_json_schema(), _run_schema()
     schema["$defs"] |= run.pop("$defs") | {"RunConfig": run}
     settings = schema["properties"]["run"]

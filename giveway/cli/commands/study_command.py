@@ -29,7 +29,7 @@ _LINE = 30.0  # [s] between two lines where there is no terminal
 
 @dataclass(frozen=True)
 class StudyRequest:
-    """What the user asked for."""
+    """The study that the user asked for, and how it is to be computed."""
 
     study: str | None  # None: the variations are one
     vary: tuple[str, ...]
@@ -46,7 +46,7 @@ class StudyRequest:
 
 
 def study_command(request: StudyRequest, options: StudyOptions) -> int:
-    """Run a study; the exit code is 0, or 1 if some of its runs have no result.
+    """Run a study and return the exit code: 0, or 1 if some of its runs have no result.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -99,7 +99,10 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
 
 @contextmanager
 def study_progress(console: Console, name: str) -> Iterator[_Watcher]:
-    """A bar with rate, remaining time and failures; without a terminal, a line now and then."""
+    """Show a bar with rate, remaining time and failures.
+
+    Without a terminal a line is printed now and then.
+    """
     if console.quiet:
         yield _Watcher()
     elif console.is_terminal:

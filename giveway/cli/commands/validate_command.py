@@ -74,7 +74,7 @@ def _print(console: Console, found: Validation, preset: str) -> None:
 
 
 def _errors(rows: pd.DataFrame, title: str) -> Table:
-    """ADE / FDE per predictor and horizon; the intervals of the FDE below them."""
+    """Return a table of ADE / FDE per predictor and horizon, with the FDE's intervals below."""
     caption = "ADE / FDE [95 % interval of the FDE, clips resampled]"
     table = Table(title=escape(title), caption=escape(caption))
     table.add_column("")

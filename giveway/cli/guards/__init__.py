@@ -1,1 +1,1 @@
-"""What is checked, or kept in a process of its own, before a command trusts a file."""
+"""Guards: files are checked, or opened in a process of their own, before a command trusts them."""

@@ -21,7 +21,7 @@ def require_archives(config: Path | None, settings: Mapping[str, Any]) -> None:
 
     Args:
         config: a TOML file; None: there is none.
-        settings: what the flags set.
+        settings: Settings given by flags.
 
     Raises:
         ConfigError: the file cannot be read.

@@ -1,4 +1,4 @@
-"""What ``giveway fmu check`` and ``identify`` are asked about: an FMU and its profile."""
+"""Arguments of ``giveway fmu check`` and ``identify``: an FMU and its profile."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def require_number(flag: str, value: float, low: float, high: float, unit: str) 
 
 
 def profile_in(path: Path | None) -> VehicleProfile | None:
-    """The profile that the user names; None without one.
+    """Return the profile that the user names, or None if no profile is named.
 
     Raises:
         ConfigError: it cannot be used.

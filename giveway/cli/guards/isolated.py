@@ -38,7 +38,7 @@ def run_isolated() -> int:
 
 
 def supervised(journal: Path | None, command: Callable[[], int]) -> None:
-    """In the child: make the run, and end with its exit code.
+    """Make the run in the child process, and end with its exit code.
 
     Args:
         journal: folder named by the supervisor; None without one.

@@ -1,1 +1,1 @@
-"""What the terminal shows: tables, progress bars and lines."""
+"""Output to the terminal: tables, progress bars and lines."""

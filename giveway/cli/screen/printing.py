@@ -1,4 +1,4 @@
-"""What several commands print and write alike: findings, the place of a file, its errors."""
+"""Output that several commands share: findings, the place of a file, errors in writing it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def findings_table(
 
     Args:
         title: above the table.
-        styles: of the levels.
+        styles: Style of each level.
         findings: level, subject, text and remedy of each; the remedy may be empty.
     """
     table = Table(
@@ -65,8 +65,8 @@ def writing(file: Path, remedy: str) -> Iterator[None]:
     """Make the folder of a file that is about to be written.
 
     Args:
-        file: that is written within the context.
-        remedy: what to do if it cannot be.
+        file: File that is written within the context.
+        remedy: Advice for a file that cannot be written.
 
     Raises:
         ResultsError: the folder or the file cannot be written.

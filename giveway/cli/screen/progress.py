@@ -71,7 +71,10 @@ def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None
 
 @contextmanager
 def counting(console: Console, what: str) -> Iterator[Callable[[int, int, str], None]]:
-    """A bar that shows how much is done, of how much, and a remark; it vanishes at the end."""
+    """Show a bar of how much is done, with a remark.
+
+    The bar vanishes at the end.
+    """
     columns = (
         TextColumn("{task.description}"),
         BarColumn(bar_width=None),

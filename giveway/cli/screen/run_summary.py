@@ -67,7 +67,10 @@ _COUNTED = (
 
 
 def summary_table(result: RunResult) -> Table:
-    """The summary's most asked-for numbers, with units; a dash where there is none."""
+    """Return a table of the summary's most asked-for numbers, with units.
+
+    A dash stands where there is no number.
+    """
     table = Table(
         title=Text(_title(result)), show_header=len(result.egos) > 1, title_justify="left"
     )
@@ -126,7 +129,7 @@ def _run_title(result: RunResult, ego: EgoResult) -> str:
 
 
 def _counts(result: RunResult) -> list[tuple[str, str]]:
-    """How many persons were taken over from SUMO, and how many vehicles yielded."""
+    """Return the numbers of persons taken over from SUMO and of vehicles that yielded."""
     ledger: dict[str, Any] = result.manifest["pedestrians"]
     lines = []
     if ledger.get("taken_over"):

@@ -1,4 +1,4 @@
-"""What ``giveway study`` prints: the plan before, the findings after."""
+"""Output of ``giveway study``: the plan before the runs, the findings after them."""
 
 from __future__ import annotations
 
@@ -76,11 +76,11 @@ def print_summary(
     """The main rows of what the study shows, failures, and where everything is.
 
     Args:
-        console: to print on.
+        console: Console to print on.
         study: its folder.
-        made: how many of its runs this session has made.
+        made: Number of runs that this session has made.
         elapsed: [s] that making them took.
-        workers: how many made them; None for a cluster.
+        workers: Number of processes that made them. None: a cluster made them.
     """
     if study.definition.reference:
         _print_reference(console, study)
@@ -152,7 +152,7 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
 
 
 def _print_lacking(console: Console, study: StudyFolder, fewest: float) -> None:
-    """How many pairs are missing where there are so few; infinite: none is."""
+    """Return the number of pairs missing for an interval, infinite if none is missing."""
     if fewest < math.inf:
         wanted = study.definition.comparison.minimum_pairs
         more = wanted - int(fewest)
@@ -202,7 +202,7 @@ def _cells(row: Mapping[Any, Any]) -> tuple[str, ...]:
 
 
 def _print_precision(console: Console, study: StudyFolder) -> None:
-    """Whether the seeds were enough, where the study asks for that."""
+    """Say whether the seeds were enough, if the study asks for that."""
     wanted = study.definition.precision
     if wanted is None:
         return

@@ -51,7 +51,7 @@ class Differences:
 
 @dataclass(frozen=True)
 class DifferenceColumn:
-    """What a column of panels shows: a situation, and one of its quantities."""
+    """The content of a column of panels: a situation, and one of its quantities."""
 
     title: str
     quantity: str
@@ -72,8 +72,8 @@ def differences_figure(
     Args:
         columns: a situation each.
         rows: label of a context, and its panels in the order of the columns.
-        title: of the whole figure.
-        source: of the published means, for the legend.
+        title: Title of the whole figure.
+        source: Source of the published means, for the legend.
 
     Raises:
         ValueError: there is no row.
@@ -129,7 +129,7 @@ def _round_up(width: float) -> float:
 
 
 def _has_a_spike(panel: Differences, edges: NDArray[np.float64]) -> bool:
-    """Whether one bin would hide all others.
+    """True if one bin would hide all others.
 
     Most pairs may hardly differ and a few differ by much, and it is those that make the mean.
     """
@@ -211,7 +211,7 @@ def _numbers(panel: Differences, unit: str) -> str:
 
 
 def _count_beyond(axes: Axes, values: NDArray[np.float64], edges: NDArray[np.float64]) -> None:
-    """How many pairs are beyond the axis, at the side where they are."""
+    """Write the number of pairs beyond the axis, at the side where they are."""
     for count, x, text, align in (
         (int((values < edges[0]).sum()), 0.01, "‹ {}", "left"),
         (int((values > edges[-1]).sum()), 0.99, "{} ›", "right"),

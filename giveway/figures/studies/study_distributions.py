@@ -1,4 +1,4 @@
-"""How a study's runs are spread, cell by cell: quartiles, tails and mean of each metric."""
+"""Distributions of a study's runs, cell by cell: quartiles, tails and mean of each metric."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -45,9 +45,9 @@ def distributions_figure(
 
     Args:
         rows: labels of the cells.
-        colours: of the cells.
+        colours: Colours of the cells.
         columns: the metrics; values that are not finite are left out.
-        title: of the whole figure.
+        title: Title of the whole figure.
 
     Raises:
         ValueError: there is no cell or no metric.

@@ -80,8 +80,8 @@ def forest_figure(
     Args:
         rows: their labels.
         columns: the metrics.
-        title: of the whole figure.
-        source: of the published numbers, for the legend.
+        title: Title of the whole figure.
+        source: Source of the published numbers, for the legend.
 
     Raises:
         ValueError: there is no row or no metric.

@@ -1,4 +1,4 @@
-"""What each level costs the ego against what it costs the people: a panel per context."""
+"""The cost of each level to the ego against its cost to the people: a panel per context."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -44,14 +44,16 @@ def fronts_figure(
     y_label: tuple[str, str],
     title: str = "",
 ) -> Figure:
-    """Means of two costs against each other; a line joins those that nobody beats on both sides.
+    """Draw the means of two costs against each other.
+
+    A line joins the levels on the Pareto front.
 
     Args:
         panels: heading and points of each context.
-        colours: by level.
+        colours: Colour of each level.
         x_label: quantity and unit of the ego's cost.
-        y_label: of the people's.
-        title: of the figure.
+        y_label: Label of the people's cost.
+        title: Title of the figure.
 
     Raises:
         ValueError: there is no panel.

@@ -50,7 +50,7 @@ def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
 
     Args:
         sides: normally two, the treatment first.
-        title: of the whole figure.
+        title: Title of the whole figure.
 
     Raises:
         ValueError: there is no side, or one without an instant.

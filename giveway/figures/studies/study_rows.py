@@ -1,4 +1,4 @@
-"""What the pictures of a study share: colours of levels, rows with headings."""
+"""Parts that the pictures of a study share: colours of levels, rows with headings."""
 
 import textwrap
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ class Row:
 
 
 def level_colours(levels: Sequence[str], baseline: str) -> dict[str, str]:
-    """A colour per level of the compared factor; the baseline is grey."""
+    """Return a colour per level of the compared factor, grey for the baseline."""
     others = [level for level in levels if level != baseline]
     colours = {
         level: LEVEL_COLOURS[place % len(LEVEL_COLOURS)] for place, level in enumerate(others)
@@ -41,12 +41,15 @@ def level_colours(levels: Sequence[str], baseline: str) -> dict[str, str]:
 
 
 def wrapped(label: str, width: int = LABEL_WIDTH) -> str:
-    """A label in as many lines as it needs; a dollar sign starts no formula."""
+    """Return a label in as many lines as it needs.
+
+    A dollar sign is escaped, since it would start a formula.
+    """
     return "\n".join(textwrap.wrap(label, width)).replace("$", r"\$")
 
 
 def row_places(rows: Sequence[Row]) -> tuple[list[float], list[tuple[float, str]], float]:
-    """Where rows and headings stand, from the top (0) downwards.
+    """Return the positions of rows and headings, from the top (0) downwards.
 
     Rows whose headings all differ have none: their names hold the heading.
 
@@ -88,7 +91,7 @@ def _names(rows: Sequence[Row]) -> list[str]:
 
 
 def label_rows(axes: Axes, rows: Sequence[Row]) -> list[float]:
-    """Name the rows at the axis, headings in bold; return the rows' places."""
+    """Name the rows at the axis, headings in bold, and return the rows' positions."""
     places, headings, height = row_places(rows)
     names = _names(rows)
     ticks = sorted(

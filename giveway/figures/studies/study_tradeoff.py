@@ -52,14 +52,16 @@ def tradeoff_figure(
     y_label: tuple[str, str],
     title: str = "",
 ) -> Figure:
-    """Means of two metrics against each other; a thin line joins the cells of one context.
+    """Draw the means of two metrics against each other.
+
+    A thin line joins the cells of one context.
 
     Args:
-        points: in the order of the legend.
-        colours: by level.
+        points: Points in the order of the legend.
+        colours: Colour of each level.
         x_label: quantity and unit of the first metric.
-        y_label: of the second.
-        title: of the figure.
+        y_label: Label of the second metric.
+        title: Title of the figure.
 
     Raises:
         ValueError: there is no point.
@@ -141,7 +143,10 @@ def _common(one: Bbox, other: Bbox) -> float:
 
 
 def tags(points: Sequence[TradeOffPoint]) -> list[tuple[tuple[float, float], str]]:
-    """Places and names of the contexts; points close to each other share one."""
+    """Return positions and names of the contexts.
+
+    Points close to each other share one name.
+    """
     width = max(p.x for p in points) - min(p.x for p in points)
     height = max(p.y for p in points) - min(p.y for p in points)
     found: list[tuple[TradeOffPoint, list[str]]] = []

@@ -140,7 +140,7 @@ def _title(context: Context) -> str:
 
 
 def _verdicts(study: StudyFolder, context: Context) -> dict[tuple[str, str, str], str]:
-    """By treatment, ego and metric, over all pairs."""
+    """Return the verdicts by treatment, ego and metric, over all pairs."""
     frame = study.comparison
     return {
         (str(row["treatment"]), str(row["ego"]), str(row["metric"])): str(row["verdict"])
@@ -167,7 +167,7 @@ def _with_half(mean: float, half: float) -> str:
 
 
 def _slowed(row: Mapping[Any, Any]) -> list[Mean]:
-    """In how many runs people slowed the ego, and the completion time of these alone."""
+    """Return the number of runs in which people slowed the ego, and their completion time."""
     share = row["share_slowed"]
     if not math.isfinite(share):
         return [Mean("–")] * len(_SLOWED)
@@ -189,7 +189,7 @@ def _times(study: StudyFolder, cell: int) -> list[Mean]:
 
 
 def levels_section(study: StudyFolder) -> Table | None:
-    """The table of the report; None where the study shows differences only."""
+    """Return the table of the report, or None if the study shows differences only."""
     if study.definition.table != "levels" or study.levels.empty:
         return None
     table = level_table(study)

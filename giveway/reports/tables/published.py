@@ -48,7 +48,7 @@ _WORDS = {
 
 
 def published_frame(study: StudyFolder) -> pd.DataFrame | None:
-    """Table 2 as ``table2`` gives it; None where the study names no such reference."""
+    """Return table 2 as ``table2`` gives it, or None if the study names no such reference."""
     if study.definition.reference != "yang2019":
         return None
     frame = table2(study.comparison)
@@ -92,7 +92,7 @@ def published_table(frame: pd.DataFrame) -> Table:
 
 
 def agreement(frame: pd.DataFrame) -> str:
-    """How many of the published numbers lie within our intervals, as a sentence."""
+    """Say how many of the published numbers lie within our intervals."""
     found = frame["agreement"].astype(str)
     known = int(found.isin(list(_WORDS)).sum())
     if not known:

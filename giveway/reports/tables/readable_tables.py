@@ -112,7 +112,7 @@ def _glance(row: Mapping[Any, Any] | None) -> Cell:
 
 
 def situations_table(study: StudyFolder) -> Table:
-    """How often both, one or neither stopped."""
+    """Return the counts of pairs in which both, one or neither stopped."""
     frame = study.situations
     names = _distinguishing(study, frame)
     shares = {
@@ -182,7 +182,7 @@ def _mean(column: pd.Series) -> Cell:
 
 
 def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[Table]:
-    """One table per reason; runs link to their replay."""
+    """Return one table per reason, in which runs link to their replay."""
     groups: dict[str, list[WorstRun]] = {}
     for run in worst:
         groups.setdefault(run.reason, []).append(run)

@@ -44,7 +44,7 @@ class Table:
 
     @property
     def numeric(self) -> list[bool]:
-        """Which columns hold numbers."""
+        """Flags of the columns that hold numbers."""
         return [
             bool(self.rows) and all(row[k].kind in {"number", "na"} for row in self.rows)
             for k in range(len(self.headings))
@@ -52,7 +52,7 @@ class Table:
 
 
 def number_cell(value: float, digits: int = 2) -> Cell:
-    """A number; N.A. where there is none."""
+    """Return a number as a cell, N.A. for a missing one."""
     return Cell(number(value, digits), "number" if math.isfinite(value) else "na")
 
 

@@ -45,8 +45,8 @@ class ClusterExecutor:
     """The :class:`giveway.studies.execution.executor.Executor` of a Dask cluster.
 
     Args:
-        address: of the scheduler; ``local`` or ``local:N``.
-        limits: of each run.
+        address: Address of the scheduler; ``local`` or ``local:N``.
+        limits: Time limits of each run.
         tell: takes one line when the cluster has to be waited for; None: to standard error.
         patience: [s] to wait for its workers; for its scheduler, 5 s at most.
 
@@ -82,11 +82,11 @@ class ClusterExecutor:
 
     @property
     def workers(self) -> int:
-        """How many runs are made at a time."""
+        """The number of runs that are made at a time."""
         return max(self._threads, self._local, 1)
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        """As the protocol says."""
+        """Compute the tasks as :class:`~giveway.studies.execution.executor.Executor` demands."""
         return ClusterRuns(self, tasks).run()
 
     def __enter__(self) -> Self:
@@ -130,7 +130,7 @@ class ClusterExecutor:
         )
 
     def is_there(self) -> bool:
-        """Whether the cluster has workers, as far as is known from the latest look at it.
+        """True if the cluster had workers at the latest look at it.
 
         Raises:
             WorkerError: there has been no worker for too long.
@@ -163,7 +163,10 @@ class ClusterExecutor:
             self._study = uuid.uuid4().hex
 
     def _missing(self) -> tuple[str, float]:
-        """What the cluster lacks, empty if it can work; and how long [s] that is waited for."""
+        """Return what the cluster lacks, and how long [s] to wait for it.
+
+        The text is empty if the cluster can work.
+        """
         client = self._client
         try:
             if client is None or client.status == "closed":

@@ -25,10 +25,12 @@ _LONGEST: Final = 200  # characters of a reason
 
 
 def reason_against(address: str, limit: float) -> str:
-    """Why there is no Dask scheduler to work with at an address; empty if there is one.
+    """Return the reason why no usable Dask scheduler is at an address.
+
+    The text is empty if there is one.
 
     Args:
-        address: as Dask writes it.
+        address: Address as Dask writes it.
         limit: [s] for it to answer.
     """
     given = json.dumps([sys.path, [address, limit]])
@@ -50,7 +52,7 @@ def reason_against(address: str, limit: float) -> str:
 
 
 def main(address: str, limit: float) -> None:
-    """In the process: look, print the reason, and end at once."""
+    """Look, print the reason and end at once, in the process of its own."""
     import distributed
 
     dask: Any = distributed

@@ -23,17 +23,17 @@ _FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanw
 
 
 class Cluster(Protocol):
-    """What submits runs to workers, and knows whether there are any."""
+    """A client that submits runs to workers, and knows whether there are any."""
 
     @property
     def workers(self) -> int:
-        """How many runs are made at a time."""
+        """The number of runs that are made at a time."""
 
     def submit(self, task: Task, name: str) -> Future:
         """Submit a run, and return the future of its record."""
 
     def is_there(self) -> bool:
-        """Whether the cluster has workers."""
+        """True if the cluster has workers."""
 
     def abandon(self, futures: Iterable[Future]) -> None:
         """Cancel runs, also those that are being made."""
@@ -44,7 +44,7 @@ class ClusterRuns:
 
     Args:
         cluster: makes them.
-        tasks: to be made.
+        tasks: Runs to be made.
     """
 
     def __init__(self, cluster: Cluster, tasks: Iterable[Task]) -> None:
@@ -57,7 +57,7 @@ class ClusterRuns:
         self._number = 0
 
     def run(self) -> Iterator[RunRecord]:
-        """As :meth:`giveway.studies.execution.executor.Executor.run`."""
+        """Do the same as :meth:`giveway.studies.execution.executor.Executor.run`."""
         try:
             while True:
                 there = self._cluster.is_there()
@@ -78,7 +78,7 @@ class ClusterRuns:
                 self._cluster.abandon(future for _, future in self._under_way.values())
 
     def _submit_runs(self) -> bool:
-        """Submit as many runs as may wait; False if there is nothing more to do."""
+        """Submit as many runs as may wait, and return False if there is nothing more to do."""
         while len(self._under_way) < _AHEAD * self._cluster.workers:
             task = self._again.popleft() if self._again else next(self._source, None)
             if task is None:
@@ -95,7 +95,7 @@ class ClusterRuns:
         return bool(self._under_way)
 
     def _record(self, task: Task, future: Future) -> RunRecord | None:
-        """The record of a run; None if it is to be submitted again.
+        """Return the record of a run, or None if the run is to be submitted again.
 
         Raises:
             WorkerError: a worker refuses this study.

@@ -1,4 +1,4 @@
-"""How long a run may take, and how often it is tried."""
+"""Limits of a run: how long it may take, and how often it is tried."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ATTEMPTS: Final = 2  # a run that fails twice is not tried again
 
 @dataclass(frozen=True)
 class Limits:
-    """How long a run may take.
+    """The time limits of a run.
 
     Attributes:
         hang: [s] without progress of the loop.
@@ -41,5 +41,5 @@ class Limits:
         return cls(hang_limit, math.inf if run_limit is None else run_limit)
 
     def quiet(self, phase: Phase) -> float:
-        """For how long [s] nothing may change in that phase of a run."""
+        """Return the time [s] for which nothing may change in that phase of a run."""
         return self.hang if phase in LOOP else _SETTING_UP * self.hang

@@ -49,9 +49,9 @@ class Pool:
     """Makes runs in processes of this machine; may be used by several threads.
 
     Args:
-        slots: how many at a time.
-        limits: of each run.
-        place: for temporary files; None: where they usually are.
+        slots: Number of runs at a time.
+        limits: Time limits of each run.
+        place: Folder for temporary files. None: the system's folder for them.
     """
 
     def __init__(self, slots: int, limits: Limits, place: Path | None = None) -> None:

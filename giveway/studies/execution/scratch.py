@@ -19,7 +19,7 @@ class Scratch:
     """A local temporary folder; making one removes those of processes that were killed.
 
     Args:
-        place: to make it in; None: where temporary folders are.
+        place: Folder to make it in. None: the system's folder for temporary files.
 
     Raises:
         OSError: it cannot be made.
@@ -51,7 +51,7 @@ def _sweep(place: Path) -> None:
 
 
 def _is_gone(process: str) -> bool:
-    """Whether there is no such process on this machine."""
+    """True if there is no such process on this machine."""
     if os.name == "nt" or not process.isdigit():
         return True
     try:

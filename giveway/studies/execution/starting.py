@@ -27,12 +27,12 @@ _ONE_THREAD: Final = dict.fromkeys(
 def start(
     folder: Path, temporary: Path, printed: IO[bytes]
 ) -> tuple[subprocess.Popen[bytes], socket.socket]:
-    """Start a worker; its process, and our end of the connection to it.
+    """Start a worker, and return its process and our end of the connection to it.
 
     Args:
-        folder: of the worker.
-        temporary: where it puts temporary files.
-        printed: where its standard error goes; what it prints otherwise is dropped.
+        folder: Folder of the worker.
+        temporary: Folder for its temporary files.
+        printed: File for its standard error; its standard output is dropped.
 
     Raises:
         OSError: it cannot be started.

@@ -1,4 +1,4 @@
-"""What a study and a worker say to each other: framed messages over a socket.
+"""Messages between a study and a worker: frames over a socket.
 
 What comes from a worker is not trusted, as an FMU in its process can write into any open file. So
 nothing is unpickled, and a message that is incomplete or out of order is refused.
@@ -25,7 +25,7 @@ _PIECE: Final = 1 << 16  # [bytes] read at a time
 
 
 class GarbledError(Exception):
-    """What was received is no message."""
+    """The bytes received are no message."""
 
 
 class Line:
@@ -52,7 +52,7 @@ class Line:
         self._connection.sendall(head + payload)
 
     def receive(self, timeout: float | None = None) -> tuple[bytes, bytes] | None:
-        """The next message, kind and payload; None: it has not come whole within ``timeout`` [s].
+        """Return kind and payload of the next message, or None after ``timeout`` [s] without one.
 
         Raises:
             EOFError: the other side is gone.

@@ -31,9 +31,9 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
 
     Args:
         connection: file descriptor of the socket to it; the port to call, where there are none.
-        folder: of this worker: heartbeat and traceback.
+        folder: Folder of this worker for heartbeat and traceback.
         parent: process id.
-        token: by which a worker that connects proves itself.
+        token: Token by which a worker that connects proves itself.
     """
     die_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the study to decide on
@@ -68,7 +68,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
 
 
 def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, bytes]:
-    """Make the run; the kind and payload of the message that says how it went."""
+    """Make the run, and return kind and payload of the message that reports it."""
     from giveway.studies import identity
     from giveway.studies.execution import perform as performing
 
@@ -84,7 +84,7 @@ def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, byte
 
 
 def _one_line(error: Exception) -> str:
-    """As in "ValueError: what (in file.py, line 12)"."""
+    """Return the error as in "ValueError: what (in file.py, line 12)"."""
     words = "".join(traceback.format_exception_only(error)).split()
     frames = traceback.extract_tb(error.__traceback__)
     place = f" (in {Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""

@@ -60,8 +60,8 @@ class WorkerProcess:
     """A process that makes one run at a time; used by one thread, which outlives it.
 
     Args:
-        folder: for this worker; made here, and removed with it.
-        limits: of its runs.
+        folder: Folder for this worker; it is made here, and removed with the worker.
+        limits: Time limits of its runs.
 
     Attributes:
         overgrown: whether it holds so much more memory than at first that it should be replaced.
@@ -143,7 +143,10 @@ class WorkerProcess:
         raise RunDiedError(self._failure(cause))
 
     def end(self) -> None:
-        """Kill it, with its process group where there are groups; may be called repeatedly."""
+        """Kill it, with its process group where there are groups.
+
+        It may be called repeatedly.
+        """
         if self._removed:
             return  # another process may have its number by now
         with suppress(OSError):
@@ -153,7 +156,10 @@ class WorkerProcess:
                 os.killpg(self._process.pid, signal.SIGKILL)
 
     def remove(self) -> None:
-        """End it, and remove its folder; to be called in its own thread."""
+        """End it, and remove its folder.
+
+        It has to be called in its own thread.
+        """
         self.end()
         self._process.wait()
         self._removed = True
@@ -161,7 +167,7 @@ class WorkerProcess:
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _answer(self) -> tuple[bytes, bytes]:
-        """Wait for the answer; kill a worker whose run stands still or takes too long."""
+        """Wait for the answer, and kill a worker whose run stands still or takes too long."""
         stillness = Stillness(self._heartbeat)
         taken = 0.0
         while (message := self._line.receive(self._poll)) is None:
@@ -190,7 +196,7 @@ class WorkerProcess:
         raise RunDiedError(failure)
 
     def _cause_of_end(self) -> str:
-        """Why it has ended, or why it counts as ended."""
+        """Return the reason why it has ended, or counts as ended."""
         try:
             code = self._process.wait(_ENDING)
         except subprocess.TimeoutExpired:
@@ -210,7 +216,7 @@ class WorkerProcess:
         return f"{cause} {pulse.place}{place}{said}"
 
     def _python_place(self) -> str:
-        """Where Python stood, if it could tell."""
+        """Return the last Python frames before the end, if Python could write them."""
         found = _FRAME.search(text_in(self._folder / TRACEBACK_FILE))
         if found is None:
             return ""

@@ -12,7 +12,7 @@ def write_atomically(path: Path, text: str, *, durable: bool = False) -> None:
     """Write a file under another name and rename it: a kill leaves the old file or the new one.
 
     Args:
-        path: of the file; its folder is made if it does not exist.
+        path: Path of the file; its folder is made if it does not exist.
         text: its content; line ends are kept.
         durable: also flush it to the disk, so that it survives a crash of the machine.
 
@@ -36,7 +36,7 @@ def write_atomically(path: Path, text: str, *, durable: bool = False) -> None:
 
 
 def finished_name(name: str) -> str:
-    """The final name of a file that was being written; other names are returned unchanged."""
+    """Return the final name of a file that was being written, other names unchanged."""
     before, after = _UNFINISHED.split("{}")
     unfinished = name.startswith(before) and name.endswith(after)
     return name[len(before) : -len(after)] if unfinished else name

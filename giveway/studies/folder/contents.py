@@ -1,4 +1,4 @@
-"""What lies in a study's folder beside its records, and whether it is still what was written.
+"""The content of a study's folder beside its records, and whether it is still as written.
 
 The manifest is sealed and names the definition's checksum; the data package is sealed and names
 those of the tables.
@@ -37,7 +37,9 @@ def broken_files(study: Path) -> list[Path]:
 
 
 def read_manifest(study: Path) -> dict[str, Any]:
-    """The manifest of a study, without its seal; that of an earlier giveway has none.
+    """Return the manifest of a study, without its seal.
+
+    A manifest of an earlier giveway has no seal.
 
     Raises:
         BrokenFileError: it is not what was written.

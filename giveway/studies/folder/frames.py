@@ -70,8 +70,8 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
     """``runs.csv``: one row per run and ego, ordered by cell, seed and ego.
 
     Args:
-        records: with the cell and the seed of each.
-        design: of the study.
+        records: Records with the cell and the seed of each.
+        design: Design of the study.
     """
     rows: list[dict[str, Any]] = []
     for cell, seed, record in records:
@@ -87,7 +87,10 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
 
 
 def _typed(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
-    """``frame`` with typed columns; whole numbers become floats where some are missing (nan)."""
+    """Return ``frame`` with typed columns.
+
+    Whole numbers become floats where some are missing (nan).
+    """
     plain: dict[str, Any] = {"integer": "int64", "boolean": "bool"}
     for column in columns:
         if column.type == "number" or (column.type in plain and frame[column.name].isna().any()):
@@ -109,8 +112,8 @@ def cells_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]]) -
     """``cells.csv``: what each cell is, and how many of its runs there are.
 
     Args:
-        cells: of the design.
-        records: by the cell's number.
+        cells: Cells of the design.
+        records: Records by the cell's number.
     """
     rows = []
     for cell in cells:
@@ -127,18 +130,23 @@ def cells_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]]) -
 
 
 def execution_frame(records: Iterable[RunRecord]) -> pd.DataFrame:
-    """``execution.csv``: how each run was computed; differs between equal studies."""
+    """Return ``execution.csv``: how each run was computed.
+
+    It differs between equal studies.
+    """
     names = [column.name for column in EXECUTION_COLUMNS]
     rows = [{"run": record.run, **asdict(record.computing)} for record in records]
     return pd.DataFrame(rows, columns=names)
 
 
 def computing_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]]) -> pd.DataFrame:
-    """``computing.csv``: what the runs of each cell took; differs between equal studies.
+    """Return ``computing.csv``: the computing time of each cell's runs.
+
+    It differs between equal studies.
 
     Args:
-        cells: of the design.
-        records: by the cell's number; those without a result are left out.
+        cells: Cells of the design.
+        records: Records by the cell's number; those without a result are left out.
     """
     rows = []
     for cell in cells:
@@ -162,7 +170,7 @@ def failures_frame(records: Iterable[tuple[Cell, int, RunRecord]], command: str)
     """``failures.csv``: the runs without a result, why, and how to make them again.
 
     Args:
-        records: with the cell and the seed of each; those that did not fail are left out.
+        records: Records with the cell and the seed of each; those that did not fail are left out.
         command: the command that makes a run of this study again, without the run's id.
     """
     rows = [

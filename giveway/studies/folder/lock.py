@@ -26,12 +26,14 @@ _STUDY_FILES = (
 
 @contextmanager
 def reserved(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
-    """Make sure that a study may be written to ``out``, and lock the folder; it is not changed.
+    """Make sure that a study may be written to ``out``, and lock the folder.
+
+    The folder's content is not changed.
 
     Args:
         out: the folder; it is made if it does not exist.
         study: name of the study.
-        options: whether it is to be resumed or replaced.
+        options: Options that say whether it is to be resumed or replaced.
 
     Raises:
         ResultsError: it holds a study and neither resume nor force is given, or another study, or
@@ -86,7 +88,10 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
 
 
 def _name_of(out: Path) -> str | None:
-    """The name of the study in the folder; None if there is none or its manifest is broken."""
+    """Return the name of the study in the folder.
+
+    The result is None if there is none or its manifest is broken.
+    """
     try:
         return str(read_manifest(out)["study"])
     except (OSError, BrokenFileError, KeyError):

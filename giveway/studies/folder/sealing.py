@@ -21,11 +21,11 @@ class BrokenFileError(ResultsError):
 
     Args:
         file: the file.
-        reason: what is wrong with it.
+        reason: Reason why it is refused.
 
     Attributes:
         file: the file.
-        reason: what is wrong with it.
+        reason: Reason why it is refused.
     """
 
     def __init__(self, file: Path, reason: str) -> None:
@@ -45,7 +45,7 @@ def sealed(content: dict[str, Any], software: str) -> dict[str, Any]:
     """``content`` with its seal.
 
     Args:
-        content: of a JSON file.
+        content: Content of a JSON file.
         software: identity of the code that made it.
     """
     return content | {SEAL: _seal(content, software)}
@@ -55,7 +55,7 @@ def read_sealed(file: Path, *, software: str | None = None) -> dict[str, Any]:
     """The content of a sealed file, without its seal.
 
     Args:
-        file: to be read.
+        file: File to be read.
         software: identity of the code that must have made it; None: any.
 
     Raises:
@@ -94,7 +94,7 @@ def put_aside(file: Path, study: Path) -> Path:
     """Move a broken file out of the way, to where whoever wants to know why can look at it.
 
     Args:
-        file: of the study.
+        file: File of the study.
         study: the study's folder.
 
     Returns:

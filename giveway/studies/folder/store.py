@@ -20,7 +20,7 @@ class RecordStore:
     folder makes sure that no other process writes. What has changed since then breaks its seal.
 
     Args:
-        folder: of the study.
+        folder: Folder of the study.
         software: identity of the code that makes its records; None: an earlier giveway, which
             sealed none, has written the study.
     """
@@ -61,7 +61,7 @@ class RecordStore:
         return read_sealed(path, software=self._software)
 
     def put(self, record: RunRecord) -> None:
-        """Keep a finished run; it counts from the moment this returns.
+        """Keep a finished run. It is safe once this returns.
 
         Raises:
             ResultsError: the disk is full or not writable.

@@ -44,7 +44,7 @@ _RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
 
 
 class StudyFolder:
-    """What a study has written, or a study that is running has written so far.
+    """The files that a study has written, or has written so far if it is running.
 
     Args:
         path: its folder.
@@ -108,12 +108,12 @@ class StudyFolder:
 
     @property
     def complete(self) -> bool:
-        """Whether the tables in the folder are those of all runs."""
+        """True if the tables in the folder are those of all runs."""
         return bool(self.manifest.get("complete"))
 
     @property
     def planned(self) -> int:
-        """How many runs it has when it is complete."""
+        """The number of runs of the complete study."""
         return len(self.seeds) * len(self.design.cells)
 
     @cached_property
@@ -144,12 +144,12 @@ class StudyFolder:
 
     @cached_property
     def fronts(self) -> pd.DataFrame:
-        """The ego's side and the people's: one row per cell and ego; none without twins."""
+        """Costs to the ego and to the people: one row per cell and ego with a twin."""
         return fronts(self.levels, self.design, self.definition.comparison)
 
     @cached_property
     def computing(self) -> pd.DataFrame:
-        """What runs and control steps took: one row per cell."""
+        """The computing time of runs and control steps: one row per cell."""
         return computing_frame(self.design.cells, self._by_cell)
 
     @cached_property
@@ -169,7 +169,7 @@ class StudyFolder:
 
     @cached_property
     def situations(self) -> pd.DataFrame:
-        """How often both sides, one side or neither stopped."""
+        """Counts of pairs in which both sides, one side or neither stopped."""
         return situations(self.runs, self.design, self.definition.comparison)
 
     @cached_property
@@ -179,7 +179,7 @@ class StudyFolder:
 
     @cached_property
     def execution(self) -> pd.DataFrame:
-        """How each run was computed."""
+        """The execution of each run: how it was computed."""
         return execution_frame(record for _, _, record in self.records)
 
     def cell_of(self, run: str) -> tuple[Cell, int]:
@@ -202,7 +202,7 @@ class StudyFolder:
         )
 
     def record(self, run: str) -> RunRecord | None:
-        """The record of a run; None if the run has not been made.
+        """Return the record of a run, or None if the run has not been made.
 
         Raises:
             ResultsError: this study has no such run.
@@ -223,7 +223,10 @@ class StudyFolder:
         return None if record is None else record.called(run_id(cell.number, seed))
 
     def _kept_comparison(self) -> pd.DataFrame | None:
-        """``comparison.csv``, which takes long to compute; None if it is not that of all runs."""
+        """Read ``comparison.csv``, which takes long to compute.
+
+        The result is None if the file does not cover all runs.
+        """
         path = self.path / "comparison.csv"
         if not self.complete or path.name not in intact_tables(self.path):
             return None

@@ -1,4 +1,4 @@
-"""What a study shows: paired differences, their intervals and tests, how much of it is luck.
+"""Statistics of a study: paired differences, their intervals and tests.
 
 docs/statistics.md says in words what is computed here.
 """

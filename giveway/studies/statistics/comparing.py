@@ -57,7 +57,10 @@ def differences(pairs: Pairs, name: str, situation: Situation) -> Differences:
 def interval(
     found: Differences, pairs: Pairs, name: str, situation: Situation, comparison: Comparison
 ) -> Interval:
-    """The interval of the mean difference; its draws depend on the names alone."""
+    """Return the interval of the mean difference.
+
+    Its random draws depend on the names alone.
+    """
     return mean_interval(
         found.values,
         confidence=comparison.confidence,
@@ -71,8 +74,8 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
 
     Args:
         runs: a row per run and ego, as ``runs.csv``.
-        design: of the study.
-        comparison: which factor is compared, with which baseline, and how surely.
+        design: Design of the study.
+        comparison: Compared factor, its baseline, and the confidence.
 
     Returns:
         A row per context, ego, treatment, situation and metric, in this order: the context's

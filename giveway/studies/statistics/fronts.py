@@ -22,8 +22,8 @@ def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.D
 
     Args:
         levels: the table of :func:`levels`.
-        design: of the study.
-        comparison: which factor's levels are compared.
+        design: Design of the study.
+        comparison: Factor whose levels are compared.
 
     Returns:
         A row per cell and ego with numbers on both sides, in the order of the design: the
@@ -61,7 +61,7 @@ def on_front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def _row(metrics: pd.DataFrame) -> dict[str, float] | None:
-    """The numbers of one cell and ego; None where a side is missing."""
+    """Return the numbers of one cell and ego, or None if a side is missing."""
     by_name = metrics.set_index("metric")
     if not {EGO, PEOPLE} <= set(by_name.index):
         return None

@@ -21,8 +21,8 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
 
     Args:
         runs: a row per run and ego, as ``runs.csv``.
-        design: of the study.
-        comparison: how sure the intervals are; fewer runs than ``minimum_pairs`` have none.
+        design: Design of the study.
+        comparison: Confidence of the intervals; fewer runs than ``minimum_pairs`` have none.
 
     Returns:
         A row per cell, ego and metric, in this order: the factors, then ``LEVEL_COLUMNS``. A cell

@@ -27,8 +27,8 @@ def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
     What a table holds in memory is thus what is read back from its file.
 
     Args:
-        frame: of numbers and words; it is changed.
-        names: of the columns that hold numbers; these become floats.
+        frame: Table of numbers and words; it is changed.
+        names: Names of the columns that hold numbers; these become floats.
     """
     for name in names:
         values = frame[name].to_numpy(np.float64)

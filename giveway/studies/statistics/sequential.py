@@ -22,7 +22,7 @@ from giveway.studies.statistics.rounding import mean, tabulated
 
 
 def looks(precision: Precision, replications: int) -> Iterator[int]:
-    """After how many seeds to look: at minimum, minimum + batch, ..., and when all are run."""
+    """Return the numbers of seeds after which to look: minimum, minimum + batch, ..., and all."""
     seeds = min(precision.minimum, replications)
     while seeds < replications:
         yield seeds
@@ -38,15 +38,15 @@ def precise_enough(
     *,
     seeds: int | None = None,
 ) -> tuple[bool, pd.DataFrame]:
-    """Whether the interval is narrow enough in every context, for every ego and treatment.
+    """True if the interval is narrow enough in every context, for every ego and treatment.
 
     Args:
         runs: a row per run and ego, as ``runs.csv``, from the study's first seed on; runs beyond
             the look do not matter.
-        design: of the study.
-        comparison: which factor is compared, with which baseline, and how surely.
-        precision: of which metric, in which situation, how narrow, when to look.
-        seeds: how many of the first seeds to look at, from :func:`looks`; None: as many as the
+        design: Design of the study.
+        comparison: Compared factor, its baseline, and the confidence.
+        precision: Metric, situation, width to reach, and when to look.
+        seeds: Number of first seeds to look at, from :func:`looks`. None: as many as the
             last look at which every cell has a run of each.
 
     Returns:

@@ -1,4 +1,4 @@
-"""Whether differences lie to one side of zero: Wilcoxon's signed-rank test, of scipy."""
+"""Test whether differences lie to one side of zero: Wilcoxon's signed-rank test, of scipy."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ _EXACT = 50  # differences up to which every assignment of signs is counted
 
 @dataclass(frozen=True)
 class SignedRank:
-    """What the test says.
+    """The result of the test.
 
     Attributes:
         statistic: smaller one of the two signed-rank sums.

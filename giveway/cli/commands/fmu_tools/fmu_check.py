@@ -42,14 +42,14 @@ def check_command(
     Args:
         path: the .fmu file.
         profile: its profile; None: drafted from its names and units.
-        step: of the controller [s].
+        step: Control step [s].
         out: folder of the picture; None: none is drawn.
         mass: M of the controller's model [kg]; that of a profile's [model] comes first. None:
             1000 kg for the controller, and nothing is known of the vehicle.
         ego_class: SUMO's vehicle class, which tells roughly what it weighs.
         friction: alpha of it [N.s/m]; likewise.
         force_limit: u_max [N].
-        speed: of the rolling start [m/s].
+        speed: Speed of the rolling start [m/s].
         as_json: print the findings as JSON.
 
     Returns:

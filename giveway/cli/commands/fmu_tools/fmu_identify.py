@@ -40,10 +40,10 @@ def identify_command(
         path: the .fmu file.
         profile: its profile; None: ``out`` if that is there, else drafted.
         out: the profile to write; None: only printed.
-        step: of the MPC [s].
-        horizon: of the MPC [steps].
+        step: Time step of the MPC [s].
+        horizon: Prediction horizon of the MPC [steps].
         force_limit: u_max [N].
-        speeds: from which the tests start [m/s].
+        speeds: Speeds from which the tests start [m/s].
         picture: .png, .svg or .pdf to draw; None: none.
         force: replace another file at ``out``.
 
