@@ -20,8 +20,9 @@ HELP = """How should a vehicle drive through a crowd, and what happens to both?
 A vehicle FMU, driven by MPC or PID, and a crowd of VCI pedestrians meet in a SUMO scenario.
 """
 
-_COMPLETING = "_GIVEWAY_COMPLETE"  # with this in the environment a shell asks for completions
-_TYPED = ("COMP_WORDS", "_TYPER_COMPLETE_ARGS")  # the line so far: bash, other shells
+_COMPLETING = "_GIVEWAY_COMPLETE"  # Environment variable that a shell sets to ask for completions
+# Variables with the line typed so far: bash, other shells
+_TYPED = ("COMP_WORDS", "_TYPER_COMPLETE_ARGS")
 
 
 def build_app(arguments: Sequence[str]) -> Commands:

@@ -6,7 +6,7 @@ import sys
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 
 
-_LONGEST = 300  # characters of a word that are shown; a user's file may hold any number
+_LONGEST = 300  # Largest number of characters of a word that are shown
 
 
 def fail(message: str, code: int) -> int:

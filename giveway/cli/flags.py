@@ -171,7 +171,8 @@ def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, 
         if key in values:
             raise ConfigError(f"{socket.set_flag} {word}: '{key}' stands twice; keep one")
         value = toml_value(text.strip())
-        is_word = isinstance(value, float) and not math.isfinite(value)  # nan and inf are words
+        # TOML writes nan and inf as words
+        is_word = isinstance(value, float) and not math.isfinite(value)
         values[key] = text.strip() if is_word else value
     return values
 

@@ -21,7 +21,7 @@ JsonFlag = Annotated[
 
 _KIND = re.compile(r"<(\w+)(?: range)?>")
 _KINDS = {"int": "INTEGER", "float": "NUMBER", "str": "TEXT"}
-_LONGEST = 300  # letters of a command's sentence in the list of commands: all of it
+_LONGEST = 300  # Letters of a command's sentence in the list of commands, so that none is cut
 
 
 class Commands(typer.Typer):

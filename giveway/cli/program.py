@@ -11,7 +11,7 @@ from giveway.cli.exit import fail
 from giveway.errors import GivewayError
 from giveway.processes.interrupts import RaisedSignals, exit_code_of, who_ended
 
-_NO_THREAD = "can't start new thread"  # Python's words, which no class of its own carries
+_NO_THREAD = "can't start new thread"  # Python's message, which has no exception class of its own
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -25,7 +25,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt as error:
         code = fail(who_ended(error), exit_code_of(error))
     except BrokenPipeError:  # the reader of our output has ended
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left goes nowhere
+        # the remaining output is dropped
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1
     except (MemoryError, OSError, ImportError) as error:
         if out_of_memory(error):
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 1,
             )
         else:
-            raise  # a fault of giveway: the traceback is wanted
+            raise  # a defect of giveway: show the traceback
     sys.exit(code)
 
 

@@ -19,12 +19,13 @@ Influence = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
 
 LEVELS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0)  # [N]
 DRAWN = (10.0, 100.0, 1000.0)  # [N]
-LONGEST_ARROW = 400.0  # [N] about 80 kg x 5 m/s^2, the most that the model lets act on a person
+# Force [N] of the longest arrow, about 80 kg x 5 m/s^2: the model's largest force on a person
+LONGEST_ARROW = 400.0
 FAINTEST_ARROW = 20.0  # [N]
 RESOLUTION = 0.1  # [m] of the contours
 ARROW_SPACING = 0.8  # [m]
 SIDE_MARGIN, REAR_MARGIN, FRONT_MARGIN = 4.5, 4.0, 4.5  # [m] shown around the vehicle
-FRONT_MARGIN_PER_SPEED = 1.4  # [s] by which the margin in front grows
+FRONT_MARGIN_PER_SPEED = 1.4  # Growth [m per m/s] of the margin in front with the speed
 
 
 @styled

@@ -10,9 +10,9 @@ from giveway.figures.style import BLACK, BLUE, GREY, quiet_grid, styled
 ReferenceCurve = Callable[[float], float]
 """A gap [m] to the reference speed [m/s] at it."""
 
-_SHOWN = 1.25  # times the distance from which the speed is v_r
+_SHOWN = 1.25  # Length of the axis, as multiples of the distance from which the speed is v_r
 _RESOLUTION = 0.02  # [m]
-_LOOKS = ((BLACK, (0, (4, 2))), (BLUE, "-"))  # as many curves as can be told apart here
+_LOOKS = ((BLACK, (0, (4, 2))), (BLUE, "-"))  # Line styles: as many curves as can be told apart
 
 
 @styled

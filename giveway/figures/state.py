@@ -44,8 +44,10 @@ WAITS = {
     "plan": (SKY_BLUE, "stands, people expected"),
     "none": (ORANGE, "stands, nothing in front"),
 }
-FASTEST_WALK = 3.0  # [m/s] along the way; a gap that changes faster is somebody else's
-FASTEST_VEHICLE = 60.0  # [m/s]; likewise
+# Largest closing speed [m/s] of people; a faster change is another person's gap
+FASTEST_WALK = 3.0
+# Largest closing speed [m/s] of vehicles; a faster change is another vehicle's gap
+FASTEST_VEHICLE = 60.0
 # Colour and opacity of a phase.
 SHADES = {
     "mpc": (SKY_BLUE, 0.14),
@@ -61,10 +63,10 @@ NAMES = {
 }
 DASHES = (0, (4, 2))
 DOTS = (0, (1, 2))
-FARTHEST_SHOWN = 40.0  # [m] of the distances to vehicles and stops
-RESOLUTION = 1e-3  # [m] of distances on record, generously
-SHOWN_ALWAYS = 3  # panels
-SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
+FARTHEST_SHOWN = 40.0  # Largest distance [m] to vehicles and stops that is shown
+RESOLUTION = 1e-3  # Resolution [m] of recorded distances, rounded up
+SHOWN_ALWAYS = 3  # Number of panels that are always shown
+SINGLE_INSTANT = 0.5  # Time [s] shown to either side of a run of one instant
 
 
 @styled
@@ -189,7 +191,8 @@ def strokes(
     """
     known = np.where(np.isfinite(distance), distance, np.nan)
     elapsed = np.diff(ego.time)
-    moved = np.diff(known) + np.diff(ego.position)  # of what is in front, along the way
+    # motion of the object in front, along the path
+    moved = np.diff(known) + np.diff(ego.position)
     other = np.flatnonzero(np.abs(moved) > fastest * elapsed + RESOLUTION) + 1
     return np.insert(ego.time, other, np.nan), np.insert(known, other, np.nan)
 
@@ -261,7 +264,7 @@ def _scale(grid: NDArray[Any], egos: Sequence[EgoTrack], distance: float) -> Non
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
     grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=distance))
     if len(grid) > SHOWN_ALWAYS:
-        # What stands at a stop line is at 0: there has to be room below.
+        # A vehicle at a stop line is at 0: leave room below.
         grid[2, 0].set_ylim(-0.06 * FARTHEST_SHOWN, FARTHEST_SHOWN)
     scale_force(grid[-1, 0], egos)
 

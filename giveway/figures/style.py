@@ -116,7 +116,7 @@ def keep_panels(
         axes.remove()
     for axes in panels[:count:columns]:
         axes.set_ylabel(y)
-    for axes in panels[max(count - columns, 0) : count]:  # nothing is below these
+    for axes in panels[max(count - columns, 0) : count]:  # the lowest panel of each column
         axes.set_xlabel(x)
         axes.tick_params(labelbottom=True)
     return panels[:count]

@@ -33,15 +33,18 @@ from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Signa
 TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
 """Its last third is too light for a line on white."""
 SNAPSHOTS = 6
-ENCOUNTER = 10.0  # [m] snapshots show the time in which a pedestrian is this close to the ego
+ENCOUNTER = 10.0  # Distance [m] to a pedestrian below which snapshots are taken
 MARGIN = 2.0  # [m] around all trajectories
-SURROUNDINGS = 8.0  # [m] shown around the ego's places in the snapshots
-LARGEST_PART = 70.0  # [m] of a side of a shared view; on longer drives it follows the ego
+SURROUNDINGS = 8.0  # Distance [m] shown around the ego's positions in the snapshots
+# Longest side [m] of a shared view; on longer drives the view follows the ego
+LARGEST_PART = 70.0
 VIEW = (50.0, 32.0)  # [m] width and height of a view that follows the ego
-TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
-NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
-SEGMENTS = 150  # at most, per trajectory
-PAUSE = 2.5  # [s] without a record, after which a trajectory begins anew: SUMO moved the person
+TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity tick
+# Corners of the ego's nose, as parts of its length and width
+NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])
+SEGMENTS = 150  # Largest number of segments per trajectory
+# Time [s] without a record after which a trajectory begins anew: SUMO moved the person
+PAUSE = 2.5
 
 
 @styled

@@ -27,7 +27,7 @@ from giveway.figures.style import (
 )
 from giveway.geometry.kernel import Array
 
-_LOOKS: dict[str, tuple[str, Any]] = {  # of each predictor in every picture
+_LOOKS: dict[str, tuple[str, Any]] = {  # Label and colour of each predictor in every picture
     "VCI": (BLUE, "-"),
     "VCI at own pace": (SKY_BLUE, "--"),
     "VCI without f_v": (PURPLE, "-."),
@@ -35,9 +35,9 @@ _LOOKS: dict[str, tuple[str, Any]] = {  # of each predictor in every picture
     "goalCV": (GREEN, (0, (5, 1))),
 }
 _OTHER: tuple[str, Any] = (ORANGE, (0, (1, 1)))
-_REACH = 8.0  # [m] round the vehicle
+_REACH = 8.0  # Distance [m] shown round the vehicle
 _CELL = 1.0  # [m]
-_FEWEST = 3  # in a cell that is coloured
+_FEWEST = 3  # Smallest number of errors in a cell that is coloured
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,8 @@ DASHES = (0, (4, 2))
 MODEL: dict[str, Any] = {"color": BLACK, "linewidth": 0.9, "linestyle": DASHES, "zorder": 4}
 MEASURED: dict[str, Any] = {"color": BLUE, "zorder": 3}
 FINER: dict[str, Any] = {"color": ORANGE, "linewidth": 2.6, "zorder": 2.5}
-EXACT = 1e-6  # [m] a position error below is that of rounding; its distribution is no picture
-LARGEST = 1e30  # what matplotlib can still draw; diverging FMUs go beyond
+EXACT = 1e-6  # Position error [m] below which only rounding is left, which is not drawn
+LARGEST = 1e30  # Largest value that matplotlib can draw; diverging FMUs exceed it
 ROWS = ("Force [kN]", "Speed [m/s]", "Acceleration [m/s²]", "Position [m]")
 
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SLENDEREST = 2.2  # the overview is at most so much taller than wide, and twice so much wider
+# Largest ratio of height to width of the overview; of width to height it is twice this
+SLENDEREST = 2.2
 
 
 class Box(NamedTuple):

@@ -11,7 +11,7 @@ from giveway.replays.packing import Frame, packed
 from giveway.replays.run_folder import RunFolder
 from giveway.run_data.road_marks import SignalHead, shown
 
-_DARK = "-"  # shown for a light of which nothing is known, or that is out
+_DARK = "-"  # Letter of a light that is off or unknown
 
 
 def pack_marks(run: RunFolder, frame: Frame) -> dict[str, Any]:

@@ -17,9 +17,9 @@ from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 
 MILLIMETRES = 1000.0  # per metre
-MOST_SAMPLES = 700_000  # of all tracks together: 17 MB of page
+MOST_SAMPLES = 700_000  # Largest number of samples of all tracks: 17 MB of the page
 MOST_PREDICTED = 250_000  # 3 MB
-_LONGEST_GAP = 10.0  # [s] over which no positions are interpolated
+_LONGEST_GAP = 10.0  # Longest gap [s] over which positions are interpolated
 _WINDOWS = (2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 100, 200, 500, 1000)  # steps
 
 

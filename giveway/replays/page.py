@@ -40,9 +40,10 @@ _SHOWN = (
     "peak_deceleration", "rms_jerk",
 )  # fmt: skip
 _SPELT = ("mpc", "ttc", "pet", "rms")
-_BODY = (5.0, 2.0)  # [m] length and width of an ego, where the folder does not tell
-_BEYOND_DRIVE = 150.0  # [m] of corridor after the end of the drive
-_PASSENGER_CAR = (4.3, 1.8)  # [m] SUMO's passenger car, likewise
+_BODY = (5.0, 2.0)  # Length and width [m] of an ego if the folder does not have them
+_BEYOND_DRIVE = 150.0  # Length [m] of the corridor after the end of the drive
+# Length and width [m] of SUMO's passenger car, if the folder does not have them
+_PASSENGER_CAR = (4.3, 1.8)
 _MADE_WITHOUT = (
     "No predictions: the run did not record them; 'giveway run --record-predictions 0.25' does."
 )
@@ -236,7 +237,7 @@ def _egos(
         kinds[kind] = max(kinds.get(kind, 0.0), fastest)
     contours = [
         influence_contours(body, fastest, parameters_of(preset))
-        | ({} if model == "vci" else {"levels": []})  # others feel no such force
+        | ({} if model == "vci" else {"levels": []})  # other models have no such force
         for (body, preset, model), fastest in kinds.items()
     ]
     egos = []

@@ -25,8 +25,9 @@ from giveway.run_data.scene import Scene
 from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"
-_ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})  # in every row
-_SHOWN = 40  # characters of what is no number
+# Columns with a number in every row
+_ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})
+_SHOWN = 40  # Characters shown of a text that is not a number
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,7 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
         if len(chosen) == extremes:
             middle = table[name + DIFFERENCE]
             _add(chosen, reason, table, name, (middle - middle.median()).abs())
-    chosen = [*chosen[extremes:], *chosen[:extremes]]  # what is typical stands first
+    chosen = [*chosen[extremes:], *chosen[:extremes]]  # typical pairs come first
     by_wait = waiting["longest_wait" + DIFFERENCE]
     _add(chosen, "stop-and-wait", waiting, "longest_wait", (by_wait - by_wait.median()).abs())
     return chosen[: max(count, 0)]

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from giveway.figures.style import house_style
 
-# Black is the page's ink, so that a dark page has light lines; white is its paper.
+# Black becomes the page's text colour, white its background: a dark page has light lines.
 _COLOURS = {
     "#000000": "currentColor",
     "#505050": "var(--muted)",

@@ -30,7 +30,8 @@ from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import metric
 
 METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
-MOST_SENTENCES = 4  # of one metric; more groups than that are counted in one
+# Largest number of sentences about a metric; further groups are counted in one
+MOST_SENTENCES = 4
 
 
 def lead(study: StudyFolder) -> str:
@@ -106,7 +107,7 @@ def _too_few(study: StudyFolder) -> str:
     frame = study.comparison[study.comparison["verdict"] != "N.A."]
     level = 1.0 - study.definition.comparison.confidence
     most = int(frame["n"].max()) if len(frame) else 0
-    smallest = 2.0 ** (1 - most)  # p where all differences have one sign
+    smallest = 2.0 ** (1 - most)  # p-value if all differences have one sign
     if not most or smallest <= level or frame["verdict"].isin(["better", "worse"]).any():
         return ""
     return (

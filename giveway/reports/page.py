@@ -35,8 +35,8 @@ _MEANINGS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 REPORT = "report.html"
 FIGURES = "figures"
 _FORMATS = (".png", ".svg")
-_EXAMPLES = 4  # pairs, at most
-_WORST = 5  # runs for each reason, at most
+_EXAMPLES = 4  # Largest number of example pairs
+_WORST = 5  # Largest number of runs for each reason
 _NAMES = ("differences", "forest", "distributions", "tradeoff", "fronts", "example")
 
 
@@ -165,7 +165,7 @@ def _drawn(
 ) -> Drawn:
     """Write the picture's files, and draw it for the page."""
     picture.figure.draw_without_rendering()
-    with house_style():  # which has no layout engine, unlike the user's settings perhaps
+    with house_style():  # it has no layout engine; the user's settings may have one
         picture.figure.set_layout_engine(None)  # the arrangement is found once, for all formats
     for suffix in _FORMATS:
         save_figure(picture.figure, folder / f"{picture.name}{suffix}")

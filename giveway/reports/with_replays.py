@@ -79,7 +79,7 @@ def _make(
                 checked = checked_run(study, run, predictions=True, trusted=trusted)
                 result = _whole(rerun(study, run, folder, checked=checked, pictures=False))
             except GivewayError as error:
-                lost[run] = error  # its scenario has changed or is missing
+                lost[run] = error  # the run's scenario has changed or is missing
                 continue
             write_replay(folder, kept.page(run))
             kept.keep(run, drives_of(result))

@@ -39,7 +39,8 @@ _NAMING_FILES = (
     ("crowd", "preset"),
     ("perception", "preset"),
 )
-_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})  # make the rows
+# Files that make the rows, in packages otherwise left out
+_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})
 _IRRELEVANT_VERSIONS = frozenset({"platform", "machine", "pandas", "python"})
 
 

@@ -117,7 +117,7 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
         raise ConfigError(f"{origin}: [comparison] {error}") from None
     baseline = None if wanted.baseline is None else factor.level(wanted.baseline)
     if baseline is None and (wanted.baseline is None or factor.name in definition.only):
-        baseline = factor.levels[-1]  # that of the study may be left out
+        baseline = factor.levels[-1]  # the study's baseline may be left out
     if baseline is None:
         known = ", ".join(level.label for level in factor.levels)
         raise ConfigError(

@@ -16,7 +16,7 @@ from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.record import RunRecord, Scalar
 
 _PERHAPS = "other software or scenario files since then? Compare its manifest.json"
-PREDICTIONS = 0.25  # [s] between two predicted positions that are kept
+PREDICTIONS = 0.25  # Time [s] between two predicted positions that are kept
 
 
 class OtherNumbersError(GivewayError):

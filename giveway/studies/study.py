@@ -49,10 +49,10 @@ class StudyInterruptedError(GivewayError):
 class StudyProgress:
     """The progress of a study."""
 
-    total: int  # runs, as far as is known
-    kept: int  # runs of former sessions
-    made: int  # runs of this session
-    failed: int  # of both
+    total: int  # Number of runs, as far as known
+    kept: int  # Number of runs kept from former sessions
+    made: int  # Number of runs made in this session
+    failed: int  # Number of failed runs among kept and made ones
     latest: RunRecord | None
 
     @property
@@ -160,7 +160,8 @@ class _Session:
 
     def end(self) -> None:
         """Write the tables, then mark the study as complete."""
-        self._write_manifest(complete=False)  # precision has decided how many seeds there are
+        # the precision reached has fixed the number of seeds
+        self._write_manifest(complete=False)
         write_tables(StudyFolder(self._out), whole=True)
         self._write_manifest(complete=True)
 
@@ -275,7 +276,8 @@ def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, flo
         for record in executor.run(iter(tasks)):
             cell = record.run.partition("-")[0].removeprefix("c")
             taken = math.nan if record.failed else record.computing.seconds
-            seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))  # the first warms up
+            # the first run is slower: it warms up
+            seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))
     return float(np.nansum([*seconds.values()])) * len(seeds) / workers, seconds
 
 

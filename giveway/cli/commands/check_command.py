@@ -18,9 +18,9 @@ from giveway.errors import ConfigError
 from giveway.plug_ins.sockets import CONTROLLER, RULE, SENSOR, Socket
 from pedestrian_model import JUPEDSIM_MODELS
 
-LIMIT = 60.0  # [s] that a rule may take: most take a tenth of a second
-_START = 60.0  # [s] more for the first: kernels may have to be compiled
-_END = 5.0  # [s] in which a process that has closed its pipe is gone
+LIMIT = 60.0  # Time limit [s] of a rule; most take a tenth of a second
+_START = 60.0  # Extra time [s] for the first rule: kernels may have to be compiled
+_END = 5.0  # Time [s] for a process that has closed its pipe to end
 
 
 def check_command(
@@ -85,7 +85,8 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
 
     The last one counts as broken if the process hangs or ends in it.
     """
-    spawn = multiprocessing.get_context("spawn")  # a fresh one: nothing of ours is in the way
+    # a fresh process, without threads or state of ours
+    spawn = multiprocessing.get_context("spawn")
     ours, theirs = spawn.Pipe(duplex=False)
     process = spawn.Process(
         target=_battery, args=(theirs, config.model_dump_json(), socket.what), daemon=True

@@ -19,13 +19,13 @@ from giveway.replays.run_folder import RunFolder
 
 
 class _Format(NamedTuple):
-    suffix: str  # of the file's name
-    step: float | None  # [s] where none is given; None: the control step
+    suffix: str  # Suffix of the file's name
+    step: float | None  # Default step [s]; None: the control step
     write: Callable[[RunFolder, Sampled, Path], str]
 
 
 def _film(run: RunFolder, samples: Sampled, file: Path) -> str:
-    from giveway.exports.film import write_gif, write_mp4  # matplotlib comes with it
+    from giveway.exports.film import write_gif, write_mp4  # imports matplotlib
 
     return (write_gif if file.suffix == ".gif" else write_mp4)(run, samples, file)
 
@@ -68,7 +68,7 @@ def export_run_command(
         with writing(file, "name another file with --out"):
             told = found.write(run, samples, file)
     except BaseException:
-        file.unlink(missing_ok=True)  # half a file is none
+        file.unlink(missing_ok=True)  # do not leave half a file
         raise
     console = Console()
     print_place(console, "Written", file)

@@ -31,7 +31,7 @@ _LINE = 30.0  # [s] between two lines where there is no terminal
 class StudyRequest:
     """The study that the user asked for, and how it is to be computed."""
 
-    study: str | None  # None: the variations are one
+    study: str | None  # None if the study consists of variations given by flags
     vary: tuple[str, ...]
     only: tuple[str, ...]
     config: Path | None
@@ -81,7 +81,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         from giveway.cli.commands.report_command import write_all
 
         imported = {one.name for cell in planned.cells for one in foreign_code(cell.config)}
-        write_all(study, console, trusted=imported)  # the user's own word, a moment ago
+        write_all(study, console, trusted=imported)  # the user has just confirmed this
     if request.as_json:
         print_json(
             {

@@ -55,4 +55,5 @@ def supervised(journal: Path | None, command: Callable[[], int]) -> None:
             code = fail(f"{who_ended(error)} before the run began", INTERRUPTED)
         except GivewayError as error:
             code = fail(str(error), error.exit_code)
-        raise SystemExit(code)  # inside: a failed run that crashes while it ends is no success
+        # raised inside: a failed run that then crashes while it ends still fails
+        raise SystemExit(code)

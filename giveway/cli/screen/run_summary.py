@@ -33,7 +33,7 @@ _SHOWN = (
     ("Steps in which the MPC acted", "mpc_feasibility_rate", "%"),
     ("Steps in which the safety layer acted", "safety_share", "%"),
 )
-_OF_THE_LAW = (  # shown where the law of the road has a say on an ego's way
+_OF_THE_LAW = (  # Metrics that are shown if traffic law applies on an ego's route
     ("People met at crossings", "encounters", ""),
     ("of these let pass", "yielding_rate", "%"),
     ("Failures to yield", "failures_to_yield", ""),
@@ -43,7 +43,7 @@ _OF_THE_LAW = (  # shown where the law of the road has a say on an ego's way
     ("Stops without a cause", "stops_without_cause", ""),
     ("Farthest that somebody was pushed back", "pushed_back", "m"),
 )
-_OF_THE_PEOPLE = (  # shown where there is a twin
+_OF_THE_PEOPLE = (  # Metrics that are shown if there is a twin
     ("People's delay, all together", "people_delay", "s"),
     ("on average", "mean_people_delay", "s"),
     ("of one in twenty at least", "people_delay_95", "s"),
@@ -51,7 +51,7 @@ _OF_THE_PEOPLE = (  # shown where there is a twin
     ("People who gave way, of those who crossed", "share_gave_way", "%"),
     ("Delay of background vehicles", "traffic_delay", "s"),
 )
-_OF_WALKS = (  # shown where there is no ego
+_OF_WALKS = (  # Metrics that are shown if there is no ego
     ("Mean walking speed", "mean_walking_speed", "m/s"),
     ("Time slower than 0.2 m/s, on average", "mean_slow_time", "s"),
     ("Way, on average", "mean_walk", "m"),

@@ -16,7 +16,7 @@ from giveway.studies.folder.study_folder import StudyFolder
 if TYPE_CHECKING:
     from rich.console import Console
 
-_GAP = 3  # between two columns: padding on both sides, and the box's own blank
+_GAP = 3  # Characters between two columns: padding on both sides, and the box's own blank
 _COLOURS = {"better": "green", "worse": "red"}
 
 

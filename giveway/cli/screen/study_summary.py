@@ -33,7 +33,7 @@ _SHOWN = (
     ("overlaps", "general"),
     ("mean_people_delay", "general"),
 )
-_OF_TWINS = frozenset({"mean_people_delay"})  # nothing is said of it in a study without twins
+_OF_TWINS = frozenset({"mean_people_delay"})  # not shown in a study without twins
 _MOST_ROWS = 40  # about a screen; comparison.csv has them all
 _BYTES_PER_RUN = 4096  # a file's block on most disks
 
@@ -152,7 +152,7 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
 
 
 def _print_lacking(console: Console, study: StudyFolder, fewest: float) -> None:
-    """Return the number of pairs missing for an interval, infinite if none is missing."""
+    """Say how many pairs are missing for intervals, if the fewest (``fewest``) are too few."""
     if fewest < math.inf:
         wanted = study.definition.comparison.minimum_pairs
         more = wanted - int(fewest)

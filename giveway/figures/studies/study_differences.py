@@ -23,9 +23,9 @@ from giveway.figures.style import BLACK, BLUE, GREY, ORANGE, quiet_grid, styled
 from giveway.run_data.writing import digits_for, number, pretty_unit
 
 BINS = 48
-TAIL = 2.5  # [%] of the differences at either end that the picture may leave out
-SPIKE = 30.0  # times the median bin, beyond which a bin hides the others
-EQUAL = 5e-7  # differences count to six decimals
+TAIL = 2.5  # Share [%] of the differences at either end that the picture may leave out
+SPIKE = 30.0  # Ratio to the median bin from which a bin hides the others
+EQUAL = 5e-7  # Differences below this are 0: tables have six decimals
 DASHES = (0, (4, 2))
 
 

@@ -28,7 +28,7 @@ LOOKS = {  # colour and marker
     "slowed": (ORANGE, "D"),
 }
 PAPER = "#ffffff"
-SPREAD = 0.26  # of a row, between the situations
+SPREAD = 0.26  # Offset between the situations, as a part of a row
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,9 @@ from giveway.figures.studies.study_rows import wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
 from giveway.run_data.writing import with_unit
 
-SAME_PLACE = 0.05  # of the picture's width and height
-DOT = 4.0  # [pt] half of what a point takes up
+# Distance below which two points share a label, as a part of the picture's size
+SAME_PLACE = 0.05
+DOT = 4.0  # Radius [pt] of a point
 PLACES: tuple[tuple[tuple[float, float], str], ...] = tuple(
     ((sign * across, up), side)
     for reach in (1, 2, 4)

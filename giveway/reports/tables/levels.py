@@ -36,7 +36,7 @@ _SHOWN = {
     "conflicts": "conflicts",
     "safety_share": "safety acts",
 }
-_OF_TWINS = {  # shown where a run has a twin
+_OF_TWINS = {  # Metrics that are shown if a run has a twin
     "mean_people_delay": "people's delay",
     "worst_people_delay": "worst delay",
     "share_gave_way": "gave way",

@@ -39,7 +39,7 @@ def published_numbers(study: StudyFolder) -> dict[Key, float]:
     return found
 
 
-_DIGITS = 2  # of a mean without an interval
+_DIGITS = 2  # Digits of a mean without an interval
 _WORDS = {
     "inside": "inside our interval",
     "below": "below our interval",

@@ -30,15 +30,16 @@ if TYPE_CHECKING:
 Client = Any  # Dask's classes, whose methods mostly have no types
 Cluster = Any
 
-PATIENCE: Final = 300.0  # [s] to wait for a worker to come back
-_SCHEDULER_PATIENCE: Final = 5.0  # [s] to wait for the scheduler to do so, which knows nothing then
+PATIENCE: Final = 300.0  # Time [s] to wait for a worker to come back
+# Time [s] to wait for the scheduler to come back; it then has lost all tasks
+_SCHEDULER_PATIENCE: Final = 5.0
 _LOCAL: Final = re.compile(r"local(?::([1-9]\d*))?")
 _REMOTE: Final = re.compile(r"(?!local:)([\w.+-]+://\S+|[\w.-]+:\d+)")
 _LOCAL_WORKERS: Final = 2
-_LOOK: Final = 1.0  # [s] between two looks at the cluster
-_CONNECT: Final = 5.0  # [s] for one attempt
-_CLOSING: Final = 5.0  # [s] for the workers to end the study's processes
-_LEAVING: Final = 1.0  # [s] for a cluster that does not answer any more
+_LOOK: Final = 1.0  # Time [s] between two checks of the cluster
+_CONNECT: Final = 5.0  # Time limit [s] of one attempt to connect
+_CLOSING: Final = 5.0  # Time [s] for the workers to end the study's processes
+_LEAVING: Final = 1.0  # Time [s] to leave a cluster that does not answer any more
 
 
 class ClusterExecutor:
@@ -73,11 +74,11 @@ class ClusterExecutor:
         self._limits = limits
         self._tell = tell or _to_stderr
         self._patience = patience
-        self._study = uuid.uuid4().hex  # names our pools to the workers
+        self._study = uuid.uuid4().hex  # identifies our pools for the workers
         self._cluster: Cluster | None = None
         self._client: Client | None = None
         self._threads = 0
-        self._missed = 0.0  # [s] since when there has been no worker; 0: there is one
+        self._missed = 0.0  # Time [s] at which the last worker was lost; 0 while there is one
         self._looked = 0.0
 
     @property
@@ -190,7 +191,7 @@ class ClusterExecutor:
         from giveway.studies.execution.cluster_task import ignore_interrupts
 
         dask: Any = distributed
-        # What it would print of a lost connection, we say ourselves.
+        # Our own messages report a lost connection.
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         reason = "" if self._local else reason_against(self._address, _CONNECT)
         if reason:

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 Future = Any  # Dask's, most of whose methods have no types
 
-_AHEAD: Final = 3  # runs per worker that are submitted, so that no worker waits for the network
-_LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
-_FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
+_AHEAD: Final = 3  # Runs submitted per worker, so that no worker waits for the network
+_LOOK: Final = 1.0  # Time [s] between two checks of the cluster and of Ctrl-C
+_FETCH: Final = 30.0  # Time [s] for a result to arrive; after it the worker counts as dead
 
 
 class Cluster(Protocol):
@@ -51,7 +51,8 @@ class ClusterRuns:
         self._cluster = cluster
         self._source = iter(tasks)
         self._again: deque[Task] = deque()
-        self._killed: dict[str, int] = {}  # by run: how many times Dask gave it up as deadly
+        # number of times that Dask gave a run up because it killed workers, by run
+        self._killed: dict[str, int] = {}
         self._under_way: dict[str, tuple[Task, Future]] = {}
         self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._number = 0
@@ -87,7 +88,7 @@ class ClusterRuns:
             name = f"{task.run}-{self._number}"
             try:
                 future = self._cluster.submit(task, name)
-            except Exception:  # of many kinds; the next look at the cluster tells which
+            except Exception:  # many kinds of errors; the next check of the cluster says which
                 self._again.append(task)
                 return True
             self._under_way[name] = (task, future)
@@ -111,7 +112,7 @@ class ClusterRuns:
         except KilledWorker as error:
             return self._died(task, error)
         except Exception as error:
-            if future.status != "error":  # its worker died before it could be fetched
+            if future.status != "error":  # the worker died before the result could be fetched
                 return None
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise WorkerError(

@@ -19,7 +19,7 @@ from giveway.studies.record import Task
 RECORD: Final = "record"
 REFUSED: Final = "refused"
 
-_POOLS: Final[dict[str, Pool]] = {}  # of this Dask worker, by study
+_POOLS: Final[dict[str, Pool]] = {}  # Pools of this Dask worker, by study
 _LOCK: Final = threading.Lock()
 
 

@@ -9,9 +9,11 @@ from typing import Final
 from giveway.processes.heartbeat import LOOP, Phase
 from giveway.studies.execution.executor import WorkerError
 
-HANG_LIMIT: Final = 120.0  # [s] of wall clock without progress of the loop
-_SETTING_UP: Final = 5.0  # times that, as a large network takes minutes to load
-ATTEMPTS: Final = 2  # a run that fails twice is not tried again
+# Wall-clock time [s] without progress of the loop that counts as a hang
+HANG_LIMIT: Final = 120.0
+# Factor on the hang limit before the loop: a large network takes minutes to load
+_SETTING_UP: Final = 5.0
+ATTEMPTS: Final = 2  # Number of attempts at a run
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import RunRecord, Task
 
-_AHEAD: Final = 2  # runs per worker that are taken from the plan, so that none waits
-_LOOK: Final = 1.0  # [s] of one wait; some systems notice Ctrl-C only after it
+_AHEAD: Final = 2  # Runs taken from the plan per worker, so that no worker waits
+_LOOK: Final = 1.0  # Length [s] of one wait; some systems notice Ctrl-C only after it
 
 
 class LocalExecutor:

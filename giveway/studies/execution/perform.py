@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from giveway.run_data.tracks import Timings
 
 
-_LONGEST_FAILURE = 2000  # characters
+_LONGEST_FAILURE = 2000  # Largest number of characters of a failure's message
 _STATM = Path("/proc/self/statm")
 
 

@@ -34,11 +34,14 @@ if TYPE_CHECKING:
 
 Delivery = Callable[[RunRecord | Exception], None]
 
-_IDLE_LIMIT: Final = 300.0  # [s] after which a worker without work is ended
-_MOST_FAILED_STARTS: Final = 5  # in turn, without a finished run in between
-_PAUSE: Final = 0.1  # [s] after the first of them; it doubles, as memory may become free
-_LOOK: Final = 1.0  # [s] after which a waiting caller looks whether the pool has been closed
-_JOIN: Final = 10.0  # [s] for a slot to notice that its worker has been killed
+_IDLE_LIMIT: Final = 300.0  # Time [s] after which a worker without work is ended
+# Failed starts in a row, without a finished run in between, after which the pool gives up
+_MOST_FAILED_STARTS: Final = 5
+# Pause [s] after the first failed start; it doubles, since memory may become free
+_PAUSE: Final = 0.1
+# Interval [s] at which a waiting caller checks whether the pool has been closed
+_LOOK: Final = 1.0
+_JOIN: Final = 10.0  # Time [s] for a slot to notice that its worker has been killed
 
 
 class ClosedError(Exception):

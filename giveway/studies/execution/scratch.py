@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Final
 
 _PREFIX: Final = "giveway-workers-"
-_KEPT: Final = 86400.0  # [s] for which a folder is kept, as its owner may run in another container
+# Time [s] for which a folder is kept, since its owner may run in another container
+_KEPT: Final = 86400.0
 
 
 class Scratch:
@@ -29,7 +30,7 @@ class Scratch:
         place = place or Path(tempfile.gettempdir())
         _sweep(place)
         self._path = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=place))
-        # A signal may raise before whoever asked for the folder has it: it goes with the process.
+        # A signal may raise before the caller has the folder: remove it when the process ends.
         self._gone = weakref.finalize(self, shutil.rmtree, self._path, ignore_errors=True)
         self._numbers = itertools.count(1)
 

@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-START_LIMIT: Final = 600.0  # [s] to import everything and compile the kernels, on a busy machine
+# Time [s] to import everything and compile the kernels, on a busy machine
+START_LIMIT: Final = 600.0
 _BOOT: Final = "from giveway.studies.execution.worker import main; main(*arguments)"
 _ONE_THREAD: Final = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"
-)  # runs are parallel already; pools of threads would only cost memory
+)  # runs are parallel already: thread pools would only cost memory
 
 
 def start(
@@ -86,6 +87,6 @@ def _popen(
         stderr=printed,
         env=_ONE_THREAD | os.environ | places,
         pass_fds=pass_fds,
-        start_new_session=True,  # Ctrl-C in the terminal is not for it
-        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # likewise on Windows
+        start_new_session=True,  # Ctrl-C in the terminal must not reach the worker
+        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # the same on Windows
     )

@@ -20,8 +20,8 @@ ERROR: Final = b"eror"  # an unexpected exception, one line
 REFUSED: Final = b"rfsd"  # why the run would not be the one that was planned, one line
 _KINDS: Final = {READY, TASK, RECORD, ERROR, REFUSED}
 _HEAD: Final = struct.Struct("<4sIII")  # kind, number, bytes of payload, their CRC-32
-_LIMIT: Final = 1 << 26  # [bytes] of a payload
-_PIECE: Final = 1 << 16  # [bytes] read at a time
+_LIMIT: Final = 1 << 26  # Largest payload [bytes]
+_PIECE: Final = 1 << 16  # Bytes read at a time
 
 
 class GarbledError(Exception):

@@ -20,10 +20,12 @@ from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.studies.execution.wire import ERROR, READY, RECORD, REFUSED, Line
 from giveway.studies.record import Task
 
-SUMO_FILE: Final = "sumo"  # what SUMO has printed during the run
-_HIGH: Final = 200  # FMUs that wrongly close files, or write to them, use low numbers
-_TIDY: Final = 25  # runs between two looks for their garbage
-_OOM_SCORE: Final = "500"  # if memory runs out, the system ends a worker and not the study
+SUMO_FILE: Final = "sumo"  # File with SUMO's messages during the run
+# Lowest number of our own files: FMUs that wrongly close or write files use low ones
+_HIGH: Final = 200
+_TIDY: Final = 25  # Number of runs between two garbage collections
+# Linux score: if memory runs out, the system ends a worker and not the study
+_OOM_SCORE: Final = "500"
 
 
 def main(connection: int, folder: str, parent: int, token: str = "") -> None:
@@ -51,9 +53,10 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
 
         keep_unpacked()  # this worker's temporary files go with it
         keep_scratch()
-        import_libsumo()  # if it is missing, that is not the failure of a run
-        compile_kernels_once()  # half a minute of compiling must not look like a hanging run
-        gc.freeze()  # what is loaded stays
+        import_libsumo()  # here, since a missing libsumo must not count as a failed run
+        # here, since half a minute of compiling must not look like a hanging run
+        compile_kernels_once()
+        gc.freeze()  # modules stay loaded: exclude them from garbage collection
         line.send(READY)
         runs = itertools.count(1)
         with contextlib.suppress(EOFError), processes_reused():
@@ -63,7 +66,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
                 heartbeat.beat(Phase.LOADING)
                 line.send(*_answer(task, heartbeat, Path(folder)))
                 if next(runs) % _TIDY == 0:
-                    gc.collect()  # a run leaves too little to start it
+                    gc.collect()  # a run leaves too few objects to trigger it
     os._exit(0)  # destructors of native code have nothing left to save
 
 
@@ -79,7 +82,7 @@ def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, byte
     try:
         record = performing.perform(task, Journal(None, heartbeat), folder / SUMO_FILE)
         return RECORD, record.to_json().encode()
-    except Exception as error:  # whatever it is, the study goes on
+    except Exception as error:  # any error: the study continues
         return ERROR, _one_line(error).encode("utf-8", "replace")
 
 

@@ -36,11 +36,12 @@ if TYPE_CHECKING:
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import Task
 
-_POLL: Final = 0.25  # [s] between two looks at a worker that sends nothing
-_ENDING: Final = 2.0  # [s] from a connection's end to that of its process
-_MOST_PRINTED: Final = 1 << 26  # [bytes] after which what it has printed is dropped
-_TAIL: Final = 4096  # [bytes] in which the last line is searched for
-_GROWTH: Final = 256.0  # [MB] that a worker may hold more than after its first run
+_POLL: Final = 0.25  # Time [s] between two checks of a worker that sends nothing
+_ENDING: Final = 2.0  # Time [s] between the end of a connection and the end of its process
+_MOST_PRINTED: Final = 1 << 26  # Size [bytes] of the output at which it is dropped
+_TAIL: Final = 4096  # Bytes at the end in which the last line is searched
+# Growth [MB] of a worker's memory after its first run at which it is replaced
+_GROWTH: Final = 256.0
 _FRAME: Final = re.compile(r'File "([^"]+)", line (\d+) in (\w+)')
 
 
@@ -82,7 +83,7 @@ class WorkerProcess:
         self._heartbeat = Heartbeat.supervised_by(os.getpid(), folder)
         self._printed = folder / STDERR_FILE
         self._printed_by_sumo = folder / SUMO_FILE
-        # Appended to, so that it may be emptied while it is open.
+        # Opened for appending, so that it may be emptied while it is open.
         with self._printed.open("ab") as printed:
             self._process, connection = start(folder, temporary, printed)
         self._line = Line(connection)
@@ -148,7 +149,7 @@ class WorkerProcess:
         It may be called repeatedly.
         """
         if self._removed:
-            return  # another process may have its number by now
+            return  # another process may have this process id by now
         with suppress(OSError):
             if sys.platform == "win32":
                 self._process.kill()
@@ -177,7 +178,8 @@ class WorkerProcess:
                 self._kill(stood_still(quiet))
             elif taken >= self._limits.run:
                 self._kill(f"not finished within {taken:g} s, the limit of a run,")
-            if self._process.poll() is not None:  # its child may hold the connection
+            # a child of the worker may hold the connection open
+            if self._process.poll() is not None:
                 raise EOFError
             with suppress(OSError):
                 if self._printed.stat().st_size > _MOST_PRINTED:
@@ -202,7 +204,7 @@ class WorkerProcess:
         except subprocess.TimeoutExpired:
             self.end()
             return "native code closed files that are not its own"
-        self.end()  # with the processes that it has started
+        self.end()  # and the processes that it has started
         return cause_of_end(code)
 
     def _failure(self, cause: str) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from giveway.errors import ResultsError
 
-_UNFINISHED = ".{}.new"  # of a file that is being written; it stays if the process is killed
+_UNFINISHED = ".{}.new"  # Name of a file that is being written; it stays if the process is killed
 
 
 def write_atomically(path: Path, text: str, *, durable: bool = False) -> None:

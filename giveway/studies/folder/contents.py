@@ -20,8 +20,9 @@ from giveway.studies.folder.sealing import (
 DEFINITION = "study.toml"
 MANIFEST = "manifest.json"
 PACKAGE = "datapackage.json"
-_SEALED = {"study", "seeds", "complete", "identity", "definition", "cells"}  # of the manifest
-SHA256 = "sha256:"  # before a checksum in a data package
+# Keys of the manifest that its seal covers
+_SEALED = {"study", "seeds", "complete", "identity", "definition", "cells"}
+SHA256 = "sha256:"  # Prefix of a checksum in a data package
 
 
 def broken_files(study: Path) -> list[Path]:

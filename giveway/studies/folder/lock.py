@@ -69,7 +69,7 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
     present = {path.name for path in out.iterdir()} - {LOCK}
     foreign = sorted(name for name in present if finished_name(name) not in _STUDY_FILES)
     beginning = not (options.resume and present & _STUDY_FILES)
-    if foreign and beginning:  # foreign files do not harm a study that goes on
+    if foreign and beginning:  # foreign files do not harm a study that is resumed
         raise ResultsError(
             f"{out}: holds '{foreign[0]}', which no study of giveway wrote; name another folder "
             "with --out"

@@ -13,7 +13,7 @@ from giveway.errors import ResultsError
 
 SEAL = "seal"
 ASIDE = "broken"  # the folder for files whose seal is broken
-_UNREADABLE = (ValueError, RecursionError)  # of text, or of JSON
+_UNREADABLE = (ValueError, RecursionError)  # Errors of reading text or JSON
 
 
 class BrokenFileError(ResultsError):

@@ -66,7 +66,7 @@ class RecordStore:
         Raises:
             ResultsError: the disk is full or not writable.
         """
-        assert self._software is not None  # no run is added to what an earlier giveway has written
+        assert self._software is not None  # no run is added to a study of an earlier giveway
         content = sealed(json.loads(record.to_json()), self._software)
         text = json.dumps(content, ensure_ascii=False, allow_nan=False) + "\n"
         write_atomically(self._path(record.key), text, durable=True)

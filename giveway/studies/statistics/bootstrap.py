@@ -24,8 +24,8 @@ BCA = "BCa"
 PERCENTILE = "percentile"
 CONSTANT = "constant"
 
-MOST_FOR_BCA = 10_000  # numbers; leaving each of n out once takes n^2 additions
-_NUMBERS_AT_ONCE = 300_000  # drawn: a few megabytes, which a processor's cache holds
+MOST_FOR_BCA = 10_000  # Largest sample for BCa: its jackknife takes n^2 additions
+_NUMBERS_AT_ONCE = 300_000  # Numbers drawn at a time: a few megabytes fit the processor's cache
 
 Item = TypeVar("Item")
 Row = TypeVar("Row")
@@ -111,7 +111,7 @@ def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int
     method = BCA if whole.size <= MOST_FOR_BCA else PERCENTILE
     with _quiet(), np.errstate(all="ignore"):
         low, high = interval(method=method).confidence_interval
-    if not low < high:  # nan: BCa is not defined; the other way round: beyond the pole
+    if not low < high:  # nan: BCa is not defined; low > high: beyond the pole of its formula
         method = PERCENTILE
         low, high = interval(method=method).confidence_interval
     return Interval(float(low) / per_one, float(high) / per_one, method)

@@ -96,7 +96,7 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
     numbers = numbers_of(COMPARISON_COLUMNS)
     frame[numbers] = frame[numbers].astype(np.float64)
-    # The slowed pairs are some of the general ones: a look at them corrects nobody else's tests.
+    # Slowed pairs are a subset of the general ones; their tests do not enter the correction.
     for family in (frame["situation"] != "slowed", frame["situation"] == "slowed"):
         frame.loc[family, "q_value"] = q_values(frame.loc[family, "p_value"].to_numpy())
     frame["verdict"] = [_verdict(row, comparison) for row in frame.to_dict("records")]

@@ -12,7 +12,7 @@ DECIMALS = 6
 _PER_ONE = 10.0**DECIMALS
 _DIGITS = 6
 _PROBABILITIES = frozenset({"p_value", "q_value"})
-_COARSE = 1e9  # beyond it a double's last digit is larger than the sixth decimal
+_COARSE = 1e9  # Magnitude from which a double does not resolve the sixth decimal
 
 
 def to_decimals(values: Array) -> Array:

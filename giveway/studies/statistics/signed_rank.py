@@ -7,7 +7,7 @@ import scipy  # scipy.stats is loaded where it is first used: that takes a secon
 
 from giveway.geometry.kernel import Array
 
-_EXACT = 50  # differences up to which every assignment of signs is counted
+_EXACT = 50  # Largest number of differences for the exact distribution
 
 
 @dataclass(frozen=True)
