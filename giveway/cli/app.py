@@ -8,12 +8,12 @@ from typing import Annotated
 import typer
 
 from giveway import errors
-from giveway.cli.check import build_check
+from giveway.cli.check_commands import build_check
 from giveway.cli.completion import complete_scenario
-from giveway.cli.fmu import build_export, build_fmu
+from giveway.cli.fmu_commands import build_export, build_fmu
 from giveway.cli.help import Commands, JsonFlag
-from giveway.cli.studies import add_studies
-from giveway.cli.validation import add_validation
+from giveway.cli.study_commands import add_studies
+from giveway.cli.validation_commands import add_validation
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 

@@ -5,7 +5,7 @@ from typing import Any, cast
 import numpy as np
 from contourpy import contour_generator
 
-from giveway.figures.influence import (
+from giveway.figures.influence_figure import (
     DRAWN,
     FRONT_MARGIN,
     FRONT_MARGIN_PER_SPEED,
@@ -13,7 +13,7 @@ from giveway.figures.influence import (
     SIDE_MARGIN,
 )
 from giveway.geometry.kernel import Array
-from giveway.replays.packing import MILLIMETRES, packed
+from giveway.replays.packed_tracks import MILLIMETRES, packed
 from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 _RESOLUTION = 0.15  # [m]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from giveway.figures.road import bands
-from giveway.replays.packing import Frame, packed
+from giveway.replays.packed_tracks import Frame, packed
 from giveway.replays.run_folder import RunFolder
 from giveway.run_data.road_marks import SignalHead, shown
 

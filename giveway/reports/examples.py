@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from giveway.errors import GivewayError
 from giveway.figures.studies.study_pairs import PairSide, pair_figure
 from giveway.reports.choice import ExamplePair
-from giveway.reports.pictures import Picture
+from giveway.reports.study_pictures import Picture
 from giveway.reports.wording import quantity, shown_ego
 from giveway.results.run_result import RunResult
 from giveway.run_data.tracks import EgoTrack

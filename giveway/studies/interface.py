@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.options import StudyOptions
 from giveway.studies.study import StudyProgress, run_study
+from giveway.studies.study_options import StudyOptions
 from giveway.studies.varying import study_of
 
 

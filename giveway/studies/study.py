@@ -17,18 +17,18 @@ from giveway.results.provenance import software_versions
 from giveway.studies.definition import StudyDefinition, dump_definition
 from giveway.studies.execution import Executor
 from giveway.studies.folder.atomic_files import write_atomically
-from giveway.studies.folder.contents import DEFINITION, MANIFEST, broken_files, read_manifest
+from giveway.studies.folder.folder_contents import DEFINITION, MANIFEST, broken_files, read_manifest
 from giveway.studies.folder.frames import runs_frame
 from giveway.studies.folder.lock import remove_derived_files, remove_study, reserved
-from giveway.studies.folder.output import write_tables
 from giveway.studies.folder.sealing import BrokenFileError, fingerprint, put_aside, sealed
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.folder.table_files import write_tables
 from giveway.studies.identity import software_identity
-from giveway.studies.options import StudyOptions
 from giveway.studies.plan import Plan, PlannedRun, plan
 from giveway.studies.record import RunRecord
 from giveway.studies.statistics import looks, precise_enough
+from giveway.studies.study_options import StudyOptions
 
 __all__ = [
     "StudyInterruptedError",

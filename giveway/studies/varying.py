@@ -77,7 +77,7 @@ def study_of(study: Mapping[str, Any] | str | Path) -> tuple[StudyDefinition, st
         ConfigError: it is none.
     """
     from giveway.studies.definition import read_definition
-    from giveway.studies.finding import find_study
+    from giveway.studies.study_files import find_study
 
     if isinstance(study, Mapping):
         values = {"name": "study", "replications": _SEEDS, **study}

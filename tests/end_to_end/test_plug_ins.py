@@ -22,7 +22,7 @@ from giveway.ego.controllers import make_controller
 from giveway.errors import ConfigError, ControlError
 from giveway.plug_ins.sockets import CONTROLLER
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.rerun import checked_run, rerun
+from giveway.studies.repeated_run import checked_run, rerun
 
 SHORT = {"time_limit": 2.0, "crowd": {"pedestrians": 3}}
 

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from giveway.cli.screen.printing import escape, print_place, writing
-from giveway.cli.screen.progress import counting
+from giveway.cli.screen.progress_bars import counting
 from giveway.config.files.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
 from giveway.precompile import compile_kernels_once

@@ -9,8 +9,8 @@ from pathlib import Path
 from rich.console import Console
 
 from giveway.cli.screen.printing import print_place
-from giveway.replays.page import content_of, write_beside, write_replay
-from giveway.replays.rerun import Predicted, predicted_again
+from giveway.replays.repetition import Predicted, predicted_again
+from giveway.replays.replay_page import content_of, write_beside, write_replay
 from giveway.replays.run_folder import PREDICTIONS, RunFolder
 
 _AGAIN = "Making the run once more for its predictions (--no-rerun skips this) ..."

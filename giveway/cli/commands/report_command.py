@@ -36,9 +36,9 @@ def write_all(
     """Write figures, replays and report, and the tables unless those of all runs exist."""
     from giveway.precompile import compile_kernels_once
     from giveway.reports.with_replays import write_report_of
-    from giveway.studies.folder.contents import broken_tables, intact_tables
-    from giveway.studies.folder.output import TABLES, write_tables
+    from giveway.studies.folder.folder_contents import broken_tables, intact_tables
     from giveway.studies.folder.sealing import put_aside
+    from giveway.studies.folder.table_files import TABLES, write_tables
 
     compile_kernels_once(console)
     for file in broken_tables(study.path):

@@ -7,12 +7,12 @@ from rich.console import Console
 
 from giveway.cli.commands.run_command import Outputs, interrupted, show
 from giveway.cli.screen.printing import escape
-from giveway.cli.screen.progress import run_progress
+from giveway.cli.screen.progress_bars import run_progress
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import check_folder
 from giveway.run_data.progress import Ending
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.rerun import checked_run, rerun
+from giveway.studies.repeated_run import checked_run, rerun
 
 
 def rerun_command(

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.screen.printing import escape, print_json
-from giveway.cli.screen.progress import run_progress
+from giveway.cli.screen.progress_bars import run_progress
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.errors import GivewayError

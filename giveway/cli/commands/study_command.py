@@ -18,9 +18,9 @@ from giveway.config.files.foreign_code import foreign_code
 from giveway.precompile import compile_kernels_once
 from giveway.processes.processors import processors
 from giveway.studies.definition import changed, read_definition
-from giveway.studies.finding import find_study
 from giveway.studies.plan import plan
 from giveway.studies.study import StudyOptions, StudyProgress, estimate, run_study
+from giveway.studies.study_files import find_study
 from giveway.studies.varying import chosen, varied
 
 _REFRESH = 0.2  # [s] of wall clock between two redraws

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from giveway.cli.screen.printing import escape, print_place
-from giveway.cli.screen.progress import counting
+from giveway.cli.screen.progress_bars import counting
 from giveway.config.files.presets import parameters_of, require_steady_preset
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import check_folder

@@ -10,7 +10,7 @@ from rich.console import Group
 from rich.table import Table
 
 from giveway.cli.screen.printing import escape
-from giveway.reports.tables.levels import BETTER, WORSE, LevelTable, Mean, level_table
+from giveway.reports.tables.level_table import BETTER, WORSE, LevelTable, Mean, level_table
 from giveway.studies.folder.study_folder import StudyFolder
 
 if TYPE_CHECKING:

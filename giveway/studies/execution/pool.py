@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
-from giveway.studies.execution.scratch import Scratch
+from giveway.studies.execution.temporary_folder import Scratch
 from giveway.studies.execution.worker_process import (
     NotBegunError,
     RunDiedError,

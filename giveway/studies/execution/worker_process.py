@@ -19,8 +19,7 @@ from giveway.processes.causes import cause_of_end, let_speak, stood_still, text_
 from giveway.processes.child import STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Stillness
 from giveway.studies.execution.executor import WorkerError
-from giveway.studies.execution.starting import START_LIMIT, start
-from giveway.studies.execution.wire import (
+from giveway.studies.execution.worker_messages import (
     ERROR,
     READY,
     RECORD,
@@ -29,7 +28,8 @@ from giveway.studies.execution.wire import (
     GarbledError,
     Line,
 )
-from giveway.studies.execution.worker import SUMO_FILE
+from giveway.studies.execution.worker_program import SUMO_FILE
+from giveway.studies.execution.worker_start import START_LIMIT, start
 from giveway.studies.record import RunRecord
 
 if TYPE_CHECKING:

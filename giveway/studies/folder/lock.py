@@ -9,11 +9,11 @@ import filelock
 
 from giveway.errors import ResultsError
 from giveway.studies.folder.atomic_files import finished_name
-from giveway.studies.folder.contents import DEFINITION, MANIFEST, PACKAGE, read_manifest
-from giveway.studies.folder.output import TABLES
+from giveway.studies.folder.folder_contents import DEFINITION, MANIFEST, PACKAGE, read_manifest
 from giveway.studies.folder.sealing import ASIDE, BrokenFileError
 from giveway.studies.folder.store import RECORDS
-from giveway.studies.options import StudyOptions
+from giveway.studies.folder.table_files import TABLES
+from giveway.studies.study_options import StudyOptions
 
 LOCK = ".lock"
 REPORT = "report.html"

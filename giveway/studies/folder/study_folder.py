@@ -14,7 +14,7 @@ import pandas as pd
 from giveway.errors import ResultsError
 from giveway.studies.definition import StudyDefinition, parse_definition
 from giveway.studies.design import Cell, Design, design
-from giveway.studies.folder.contents import (
+from giveway.studies.folder.folder_contents import (
     DEFINITION,
     MANIFEST,
     intact_tables,
@@ -32,13 +32,7 @@ from giveway.studies.folder.frames import (
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.identity import run_key
 from giveway.studies.record import RunRecord, run_id
-from giveway.studies.statistics import (
-    COMPARISON_COLUMNS,
-    compare,
-    fronts,
-    levels,
-    situations,
-)
+from giveway.studies.statistics import COMPARISON_COLUMNS, compare, fronts, levels, situations
 
 _RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
 

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 
 from giveway.geometry.kernel import Array
-from giveway.studies.columns import COMPARISON_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Comparison, Situation
 from giveway.studies.design import Design
@@ -18,6 +17,7 @@ from giveway.studies.statistics.pairs import Pairs, paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
 from giveway.studies.statistics.signed_rank import SignedRank, q_values, signed_rank
 from giveway.studies.statistics.situations import SITUATIONS, share, within
+from giveway.studies.table_columns import COMPARISON_COLUMNS, numbers_of
 
 BETTER = "better"
 WORSE = "worse"

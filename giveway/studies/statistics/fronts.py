@@ -3,11 +3,11 @@
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import FRONT_COLUMNS, numbers_of
 from giveway.studies.contexts import contexts
 from giveway.studies.definition import Comparison
 from giveway.studies.design import Design
 from giveway.studies.statistics.rounding import tabulated
+from giveway.studies.table_columns import FRONT_COLUMNS, numbers_of
 
 EGO, PEOPLE = "completion_time", "mean_people_delay"
 """The metrics of the two sides; what a free drive takes is the same for all levels of a context."""

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import PRECISION_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Comparison, Precision
 from giveway.studies.design import Design
@@ -19,6 +18,7 @@ from giveway.studies.statistics.comparing import differences, interval
 from giveway.studies.statistics.metrics import metric
 from giveway.studies.statistics.pairs import Pairs, paired
 from giveway.studies.statistics.rounding import mean, tabulated
+from giveway.studies.table_columns import PRECISION_COLUMNS, numbers_of
 
 
 def looks(precision: Precision, replications: int) -> Iterator[int]:

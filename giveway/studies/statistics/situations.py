@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from giveway.studies.columns import SITUATION_COLUMNS
 from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Comparison, Situation
 from giveway.studies.design import Design
 from giveway.studies.statistics.pairs import Pairs, paired
+from giveway.studies.table_columns import SITUATION_COLUMNS
 
 Mask = NDArray[np.bool_]
 

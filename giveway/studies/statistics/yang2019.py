@@ -4,8 +4,8 @@ import math
 
 import pandas as pd
 
-from giveway.studies.columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
 from giveway.studies.definition import Situation
+from giveway.studies.table_columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
 
 PEDESTRIANS = (30, 20, 10)
 METRIC_OF: dict[Situation, str] = {

@@ -11,7 +11,7 @@ import sys
 import pytest
 
 from giveway.reports import with_replays
-from giveway.reports.page import shown_runs
+from giveway.reports.report_page import shown_runs
 from giveway.reports.with_replays import write_report_of
 from giveway.studies.folder.study_folder import StudyFolder
 

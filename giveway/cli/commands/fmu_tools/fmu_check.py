@@ -15,7 +15,7 @@ from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
-from giveway.cli.guards.fmu_files import profile_in, require_fmu, require_number, save_picture
+from giveway.cli.guards.fmu_arguments import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.screen.printing import findings_table, print_json, print_place
 from giveway.errors import ConfigError
 

@@ -7,7 +7,7 @@ from rich.console import Console
 from fmus import FmuError
 from fmus.description.binaries import this_platform
 from fmus.sources.foreign import compile_fmu
-from giveway.cli.guards.fmu_files import require_fmu
+from giveway.cli.guards.fmu_arguments import require_fmu
 from giveway.cli.screen.printing import print_place, writing
 from giveway.errors import ConfigError, VehicleError
 

@@ -16,7 +16,7 @@ from fmus.checking.profile_file import profile_text, with_model
 from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
-from giveway.cli.guards.fmu_files import profile_in, require_fmu, require_number, save_picture
+from giveway.cli.guards.fmu_arguments import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.screen.printing import escape, print_place, writing
 from giveway.config.files.schema_names import PROFILE, with_schema
 from giveway.errors import ConfigError, VehicleError

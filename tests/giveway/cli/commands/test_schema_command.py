@@ -13,7 +13,7 @@ from jsonschema import Draft202012Validator
 from fmus import bundled_fmu
 from giveway.config.files.presets import preset_text
 from giveway.studies.definition import dump_definition, read_definition
-from giveway.studies.finding import find_study
+from giveway.studies.study_files import find_study
 from pedestrian_model import SIM
 from sumo_scenarios import available, find
 

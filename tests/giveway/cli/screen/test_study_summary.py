@@ -10,8 +10,8 @@ import pytest
 from rich.console import Console
 
 from giveway.cli.screen.study_summary import print_summary
-from giveway.reports.findings import findings
-from giveway.reports.tables.levels import level_table, levels_section
+from giveway.reports.findings_in_words import findings
+from giveway.reports.tables.level_table import level_table, levels_section
 
 
 @pytest.fixture

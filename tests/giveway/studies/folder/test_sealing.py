@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from giveway.cli.commands.report_command import write_all
-from giveway.studies.folder.contents import broken_files
+from giveway.studies.folder.folder_contents import broken_files
 from giveway.studies.folder.sealing import SEAL, BrokenFileError
 from giveway.studies.folder.study_folder import StudyFolder
 

@@ -6,7 +6,7 @@ import sys
 PROGRAM = """
 import sys
 from pathlib import Path
-from giveway.studies.execution.scratch import Scratch
+from giveway.studies.execution.temporary_folder import Scratch
 scratch = Scratch(Path(sys.argv[1]))
 scratch.folder().mkdir()
 raise KeyboardInterrupt

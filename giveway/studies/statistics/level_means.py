@@ -4,13 +4,13 @@ import numpy as np
 import pandas as pd
 
 from giveway.geometry.kernel import Array
-from giveway.studies.columns import LEVEL_COLUMNS, numbers_of
 from giveway.studies.definition import Comparison
 from giveway.studies.design import Cell, Design
 from giveway.studies.statistics.bootstrap import mean_interval, seed_of, side_by_side
 from giveway.studies.statistics.metrics import METRICS, Metric
 from giveway.studies.statistics.pairs import cleaned, without_result
 from giveway.studies.statistics.rounding import mean, tabulated
+from giveway.studies.table_columns import LEVEL_COLUMNS, numbers_of
 
 
 def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:

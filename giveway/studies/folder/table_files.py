@@ -9,14 +9,8 @@ import pandas as pd
 
 from giveway.results.folder import package_of
 from giveway.run_data.columns import Column
-from giveway.studies.columns import (
-    COMPARISON_COLUMNS,
-    FRONT_COLUMNS,
-    LEVEL_COLUMNS,
-    SITUATION_COLUMNS,
-)
 from giveway.studies.folder.atomic_files import write_atomically
-from giveway.studies.folder.contents import PACKAGE, SHA256
+from giveway.studies.folder.folder_contents import PACKAGE, SHA256
 from giveway.studies.folder.frames import (
     COMPUTING_COLUMNS,
     EXECUTION_COLUMNS,
@@ -28,6 +22,12 @@ from giveway.studies.folder.sealing import fingerprint, sealed
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.identity import software_identity
 from giveway.studies.statistics.rounding import tabulated
+from giveway.studies.table_columns import (
+    COMPARISON_COLUMNS,
+    FRONT_COLUMNS,
+    LEVEL_COLUMNS,
+    SITUATION_COLUMNS,
+)
 
 TABLES = (
     "runs",

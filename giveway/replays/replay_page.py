@@ -21,7 +21,7 @@ from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
 from giveway.replays.events import events, why
 from giveway.replays.marks import pack_marks
-from giveway.replays.packing import (
+from giveway.replays.packed_tracks import (
     Frame,
     longest_gap,
     pack_predictions,

@@ -17,7 +17,7 @@ from giveway.errors import GivewayError
 from giveway.journal.journal import Journal
 from giveway.processes.child import TRACEBACK_FILE, die_with
 from giveway.processes.heartbeat import Heartbeat, Phase
-from giveway.studies.execution.wire import ERROR, READY, RECORD, REFUSED, Line
+from giveway.studies.execution.worker_messages import ERROR, READY, RECORD, REFUSED, Line
 from giveway.studies.record import Task
 
 SUMO_FILE: Final = "sumo"  # File with SUMO's messages during the run

@@ -21,7 +21,6 @@ from giveway.figures.studies.study_fronts import FrontPoint, fronts_figure
 from giveway.figures.studies.study_rows import Row, level_colours
 from giveway.figures.studies.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.reports.choice import deciding_metric
-from giveway.reports.intervals import mean_interval, possible
 from giveway.reports.labels import (
     baseline_label,
     compared_labels,
@@ -31,6 +30,7 @@ from giveway.reports.labels import (
     treatment_labels,
 )
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
+from giveway.reports.student_intervals import mean_interval, possible
 from giveway.reports.tables.published import SOURCE, published_numbers
 from giveway.reports.wording import shown_ego
 from giveway.studies.folder.study_folder import StudyFolder

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from giveway.studies.execution.wire import RECORD, TASK, GarbledError, Line
+from giveway.studies.execution.worker_messages import RECORD, TASK, GarbledError, Line
 
 
 @pytest.fixture

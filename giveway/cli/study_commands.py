@@ -92,7 +92,7 @@ def _study(
 ) -> None:
     """Run a study: many paired runs, compared. It can be ended at any moment and resumed."""
     from giveway.errors import ConfigError
-    from giveway.studies.finding import find_study
+    from giveway.studies.study_files import find_study
 
     if (study is None) == (not vary) or (config is not None and not vary):
         raise ConfigError(
@@ -133,7 +133,7 @@ def _study(
 def _studies() -> None:
     """List the bundled studies."""
     from giveway.studies.definition import read_definition
-    from giveway.studies.finding import bundled_studies, find_study
+    from giveway.studies.study_files import bundled_studies, find_study
 
     for name in bundled_studies():
         typer.echo(f"{name:14} {read_definition(find_study(name)).description}")

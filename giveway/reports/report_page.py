@@ -18,14 +18,14 @@ from giveway.errors import ResultsError
 from giveway.figures.style import house_style, save_figure
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
-from giveway.reports import findings
+from giveway.reports import findings_in_words as findings
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
 from giveway.reports.examples import TITLES, Drive, example_pictures
 from giveway.reports.labels import contexts
-from giveway.reports.pictures import Picture, study_pictures
+from giveway.reports.study_pictures import Picture, study_pictures
 from giveway.reports.tables import readable_tables as tables
-from giveway.reports.tables.levels import levels_section
+from giveway.reports.tables.level_table import levels_section
 from giveway.reports.tables.published import published_frame, published_table
 from giveway.reports.wording import pretty_unit
 from giveway.studies.folder.study_folder import StudyFolder

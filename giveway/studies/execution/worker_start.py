@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 # Time [s] to import everything and compile the kernels, on a busy machine
 START_LIMIT: Final = 600.0
-_BOOT: Final = "from giveway.studies.execution.worker import main; main(*arguments)"
+_BOOT: Final = "from giveway.studies.execution.worker_program import main; main(*arguments)"
 _ONE_THREAD: Final = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"
 )  # runs are parallel already: thread pools would only cost memory

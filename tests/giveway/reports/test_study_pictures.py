@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.reports.intervals import mean_interval, possible
+from giveway.reports.student_intervals import mean_interval, possible
 
 
 def test_an_interval_of_clearances_does_not_reach_below_contact() -> None:
