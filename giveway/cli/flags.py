@@ -155,7 +155,7 @@ def set_rules(words: Sequence[str]) -> dict[str, Any]:
 
 
 def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, Any]:
-    """The options of somebody else's code, from words like ``headway=1.5``.
+    """Return the options of a plug-in, from words like ``headway=1.5``.
 
     Raises:
         ConfigError: a word is no key and value, or a key stands twice.

@@ -36,7 +36,7 @@ def influence_figure(
     shape: VehicleShape | None = None,
     title: str = "Vehicle influence on a standing pedestrian",
 ) -> Figure:
-    """Magnitude (contours) and direction (arrows) of f_v around the vehicle, a panel per speed.
+    """Draw magnitude (contours) and direction (arrows) of f_v round the vehicle, a panel per speed.
 
     Figure 2 of Yang & Özgüner 2019, seen from the vehicle: x ahead of its centre, y to its left.
 

@@ -38,7 +38,7 @@ def draw_road(axes: Axes, road: Road) -> None:
 
 
 def draw_marks(axes: Axes, marks: RoadMarks, states: Mapping[str, str] | None, view: Box) -> None:
-    """Stripes on crossings, and a bar at each stop line in the colour of its light.
+    """Draw stripes on crossings, and a bar at each stop line in the colour of its light.
 
     Args:
         axes: Axes to draw into.

@@ -78,7 +78,7 @@ def state_figure(
     stop_lines: Sequence[float] = (),
     title: str = "",
 ) -> Figure:
-    """Speed, gap and force of one run, or of several side by side on the same scales.
+    """Draw speed, gap and force of one run, or of several side by side on the same scales.
 
     Where there are vehicles, stops or stop lines, a panel of its own has the distances to them. A
     bar above the speed says what the ego stands for.
@@ -165,7 +165,7 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 
 def draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
-    """The gap to whoever is in front, one stroke for each person, and the safe distances."""
+    """Draw the gap to the pedestrian in front, a stroke for each person, and the safe distances."""
     draw_safe_distances(axes, safe_distance, buffer_distance)
     if not np.isfinite(ego.gap).any():
         axes.text(

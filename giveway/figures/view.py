@@ -36,7 +36,7 @@ class Box(NamedTuple):
         return cls(*(middle - half).tolist(), *(middle + half).tolist())
 
     def less_slender(self) -> Box:
-        """The same view, widened where it is too slender to be drawn next to or above others."""
+        """Return the same view, widened if too slender to be drawn next to or above others."""
         width, height = self.right - self.left, self.top - self.bottom
         more_x = max(0.0, height / SLENDEREST - width) / 2.0
         more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0

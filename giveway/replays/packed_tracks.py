@@ -24,7 +24,7 @@ _WINDOWS = (2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 100, 200, 500, 1000)  # steps
 
 
 def packed(values: Any, dtype: DTypeLike) -> str:
-    """An array as base64 of its little-endian bytes."""
+    """Return an array as base64 of its little-endian bytes."""
     array = np.ascontiguousarray(values, dtype=np.dtype(dtype).newbyteorder("<"))
     return base64.b64encode(array.tobytes()).decode("ascii")
 

@@ -19,7 +19,7 @@ class Predicted:
 
     Attributes:
         file: the predictions, until the context is left; None if there are none.
-        remark: why there are none.
+        remark: Reason why there are none.
     """
 
     file: Path | None

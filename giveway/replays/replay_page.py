@@ -289,7 +289,7 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
 
 
 def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
-    """The front bumper's trajectory, to a centimetre, extended straight on at its end.
+    """Return the front bumper's trajectory, to a centimetre, extended straight on at its end.
 
     The rest of its path is not recorded.
     """
@@ -326,7 +326,7 @@ def _is_number(value: object) -> bool:
 
 
 def _met(met: pd.DataFrame, names: dict[str, int]) -> dict[str, Any]:
-    """Each pedestrian's closest approach to this ego, by the index of its name."""
+    """Return each pedestrian's closest approach to this ego, by the index of the id."""
     if not {"id", "minimum_clearance"} <= set(met):
         return {}
     known = met[met["id"].isin(list(names))].dropna(subset=["minimum_clearance"])

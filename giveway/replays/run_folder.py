@@ -35,13 +35,14 @@ class RunFolder:
     """The content of a results folder, as far as a replay needs it.
 
     Attributes:
-        config: of the run.
+        config: Configuration of the run.
         egos: the configuration of each ego that has rows, by its id, in the order of departure.
         ego, trajectories, pedestrians: the tables.
-        summary: of ``summary.json``: the first ego's row, all rows under ``egos`` if several.
-        manifest: of ``manifest.json``.
+        summary: Content of ``summary.json``: the first ego's row, all rows under ``egos`` if
+            several.
+        manifest: Content of ``manifest.json``.
         scene: the road and the bodies.
-        signals: what the lights showed from when on; empty where no light is on record.
+        signals: Recorded states of the lights with their times; empty if no light is recorded.
         time: (T,) [s] every instant that has a row.
     """
 

@@ -20,12 +20,12 @@ class ExamplePair:
     """Two runs on the same crowd, side by side.
 
     Attributes:
-        reason: why it is shown: median (with a stop), best, worst or stop-and-wait.
+        reason: Reason to show it: median (with a stop), best, worst or stop-and-wait.
         context: label of the other factors' levels; empty without any.
         ego: its id; empty where a run has none.
         treatment: label of the compared level.
         baseline: label of the level that is subtracted.
-        seed: of both runs.
+        seed: Seed of both runs.
         run: id of the treatment's run.
         run_baseline: id of the baseline's run.
         metric: name of the one by which the pair was chosen.
@@ -49,14 +49,14 @@ class WorstRun:
     """A run that is worth looking at.
 
     Attributes:
-        reason: the heading of its table.
-        run: its id; of a pair, the treatment's.
-        partner: the baseline's run of a pair; else empty.
+        reason: Heading of its table.
+        run: Id of the run; of a pair, the treatment's.
+        partner: Id of the baseline's run of a pair; else empty.
         cell: label of its levels.
         ego: id of the ego; may be empty.
-        metric: name of the one that is extreme.
-        value: of the metric, or the pair's difference.
-        unit: of the value.
+        metric: Name of the metric that is extreme.
+        value: Value of the metric, or the pair's difference.
+        unit: Unit of the value.
     """
 
     reason: str

@@ -27,7 +27,7 @@ class Drive:
 
     Attributes:
         ego: its id.
-        track: of the run.
+        track: Track of the run.
         safe_distance: d_safe [m].
         buffer_distance: d_buffer [m].
     """

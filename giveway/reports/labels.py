@@ -13,7 +13,7 @@ from giveway.studies.folder.study_folder import StudyFolder
 
 
 def contexts(study: StudyFolder) -> list[Context]:
-    """The contexts of a study in the order of its design."""
+    """Return the contexts of a study in the order of its design."""
     return contexts_of(study.design, study.definition.comparison)
 
 

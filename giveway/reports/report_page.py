@@ -45,9 +45,9 @@ class Drawn:
     """A picture in the page.
 
     Attributes:
-        picture: with its caption; its name is its id in the page.
+        picture: Picture with its caption; its name is its id in the page.
         title: above it; may be empty.
-        svg: how it is drawn in the page.
+        svg: Picture as SVG for the page.
         links: label and address of replays that belong to it.
     """
 

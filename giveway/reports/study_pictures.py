@@ -55,8 +55,8 @@ class Picture:
     """One figure of a study.
 
     Attributes:
-        name: of its files, without suffix; unique within the study.
-        section: of the report that it belongs to.
+        name: Name of its files, without suffix; unique within the study.
+        section: Section of the report that it belongs to.
         caption: one or two sentences beneath it.
         alt: description for readers who do not see the picture.
         figure: the picture.

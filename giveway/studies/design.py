@@ -49,9 +49,9 @@ class Level:
     """One value of a factor.
 
     Attributes:
-        label: how tables and pictures call it.
+        label: Name of it in tables and pictures.
         value: the option's value; the label, for a level that has a name.
-        settings: what it sets.
+        settings: Options that it sets.
     """
 
     label: str
@@ -66,7 +66,7 @@ class Factor:
     Attributes:
         name: an option, as ``crowd.pedestrians``, or a name of the user's.
         levels: its values.
-        unit: of an option; None without one.
+        unit: Unit of an option; None without a unit.
     """
 
     name: str
@@ -84,8 +84,8 @@ class Cell:
     """One combination of levels.
 
     Attributes:
-        number: from 1 on, in the order of the design.
-        levels: by factor.
+        number: Number from 1 on, in the order of the design.
+        levels: Level of each factor.
     """
 
     number: int
@@ -277,7 +277,7 @@ def _factor(name: str, levels: list[Level], place: str, unit: str | None = None)
 def _only(
     factors: tuple[Factor, ...], wanted: Mapping[str, Sequence[Any]], origin: str
 ) -> tuple[Factor, ...]:
-    """The factors with the wanted levels alone, in the study's order.
+    """Return the factors with the wanted levels alone, in the study's order.
 
     Raises:
         ConfigError: there is no such factor or level.

@@ -158,7 +158,7 @@ def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:
 
 
 def _option_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """The files that ``sumo.options`` name, such as additional files."""
+    """Return the files that ``sumo.options`` name, such as additional files."""
     named = [
         (option, Path(piece.strip()))
         for option, value in parse_options(config.sumo.options).items()

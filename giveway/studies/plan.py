@@ -25,7 +25,7 @@ class PlannedCell:
         cell: levels and number.
         config: the effective configuration of its first run.
         inputs: SHA-256 of each file that its runs read.
-        digest: of everything that its runs have in common.
+        digest: Hash of everything that its runs have in common.
     """
 
     cell: Cell
@@ -48,7 +48,7 @@ class PlannedRun:
 
     @property
     def key(self) -> str:
-        """The name of its record."""
+        """The key of its record."""
         return run_key(self.planned.digest, self.seed)
 
     @property
@@ -128,7 +128,7 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
 
 
 def _require_metric(definition: StudyDefinition, origin: str) -> None:
-    """Make sure that what is to be known precisely is something that is compared."""
+    """Make sure that the metric of [precision] is one that is compared."""
     if definition.precision is None:
         return
     try:
@@ -152,7 +152,7 @@ def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCel
 
 
 def _require_people(cell: Cell, config: RunConfig, scenario: Scenario) -> None:
-    """Make sure that a study that varies the crowd has somebody in each of its cells.
+    """Make sure that a study that varies the crowd has pedestrians in each of its cells.
 
     Raises:
         ConfigError: neither giveway nor the scenario has anybody walk in this one.

@@ -51,12 +51,12 @@ class Computing:
 
     Attributes:
         seconds: wall clock of the run, set-up and metrics included.
-        attempts: how often it was tried.
+        attempts: Number of attempts.
         worker: host and process id.
         memory: resident set of the worker after the run [MB].
-        control_median: of the time of one control step, prediction and controller [ms].
+        control_median: Median time of one control step, prediction and controller [ms].
         control_max: the longest one [ms]; the run's first step is left out of both.
-        twin: of the seconds, those that following the run and its twin took; nan: no twin.
+        twin: Part of the seconds spent on following the run and on its twin; nan without a twin.
     """
 
     seconds: float = math.nan
@@ -75,11 +75,11 @@ class RunRecord:
     Attributes:
         run: id in its study.
         key: content hash of everything that can change a number of it.
-        ending: as in the summary: completed, time limit, ..., failed, crashed.
+        ending: Ending as in the summary: completed, time limit, ..., failed, crashed.
         rows: one per ego: the columns of ``summary.csv``; one row of the run's head without egos.
         remarks: notes on what is unusual about the run.
         failure: one line: why it failed or crashed, and where; empty if it did not.
-        computing: how it was computed.
+        computing: Execution of the run.
     """
 
     run: str

@@ -29,7 +29,7 @@ def checked_run(
     """A run of a study, ready to be made again.
 
     Args:
-        study: whose.
+        study: Study that has the run.
         run_id: such as ``c2-s17``.
         predictions: the predicted positions are to be kept, for the replay.
         trusted: code, as module:Class, that the study may have imported.

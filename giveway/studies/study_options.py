@@ -12,10 +12,10 @@ class StudyOptions:
     """The user's wishes apart from the study itself.
 
     Attributes:
-        jobs: worker processes on this machine; None: one per processor that we may use.
-        cluster: address of a Dask scheduler instead, or "local:N".
-        resume: go on with what is in the folder.
-        force: replace what is in the folder.
+        jobs: Number of worker processes on this machine. None: one per processor that we may use.
+        cluster: Address of a Dask scheduler instead, or "local:N".
+        resume: True to continue the study in the folder.
+        force: True to replace the content of the folder.
         retry_failed: make failed runs again.
         hang_limit: [s] without progress after which a run's worker is killed.
         run_limit: [s] of wall clock that one run may take; None: no limit.

@@ -15,7 +15,7 @@ _SEEDS = 20
 
 
 def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefinition:
-    """The study of some options' values: all combinations of them.
+    """Return the study of all combinations of some options' values.
 
     Args:
         variations: like ``planner.conflict_weight=0.3,0.6``.
@@ -71,7 +71,7 @@ def _parsed(variation: str) -> tuple[str, list[Any]]:
 
 
 def study_of(study: Mapping[str, Any] | str | Path) -> tuple[StudyDefinition, str]:
-    """The study that a caller of the Python API means, and where it is from, for messages.
+    """Return the study that a caller of the Python API means, and its origin for messages.
 
     Raises:
         ConfigError: it is none.

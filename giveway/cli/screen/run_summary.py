@@ -97,7 +97,7 @@ def summary_table(result: RunResult) -> Table:
 
 
 def _shown(result: RunResult) -> Iterator[tuple[str, str, str]]:
-    """Label, column and unit of what is shown of each ego."""
+    """Return label, column and unit of each number shown of an ego."""
     if result.egos:
         yield from _SHOWN
     if result.effect is not None:

@@ -35,9 +35,9 @@ class Differences:
 
     Attributes:
         values: (n,) treatment minus baseline, one per pair.
-        share: of all pairs of the context; nan: not known.
-        mean: of the values; nan where it is not reported (N.A.).
-        low, high: its interval.
+        share: Share of all pairs of the context; nan if not known.
+        mean: Mean of the values; nan if it is not reported (N.A.).
+        low, high: Interval of the mean.
         published: the mean in the literature, or None.
     """
 

@@ -36,10 +36,10 @@ class Estimate:
     """A mean difference.
 
     Attributes:
-        mean: nan where it is not reported (N.A.).
-        low: lower end of its interval.
-        high: upper end.
-        shown: whether interval and test show a difference; hollow if they do not.
+        mean: Mean difference; nan if it is not reported (N.A.).
+        low: Lower end of its interval.
+        high: Upper end of its interval.
+        shown: True if interval and test show a difference; the marker is hollow otherwise.
         published: the mean in the literature, or None.
     """
 
@@ -56,9 +56,9 @@ class ForestColumn:
 
     Attributes:
         quantity: its name in words.
-        unit: of the difference.
+        unit: Unit of the difference.
         better: "lower", "higher" or empty.
-        estimates: by the row's number and the situation.
+        estimates: Estimates by the row's number and the situation.
     """
 
     quantity: str

@@ -21,10 +21,10 @@ class FrontPoint:
     """One level in one context.
 
     Attributes:
-        level: of the compared factor.
-        x, y: means.
+        level: Level of the compared factor.
+        x, y: Means of both costs.
         x_interval, y_interval: their intervals (low, high); nan: too few runs.
-        front: whether no other level is better on both sides.
+        front: True if no other level is better on both sides.
     """
 
     level: str

@@ -32,8 +32,8 @@ class PairSide:
     """One run of a pair.
 
     Attributes:
-        label: of the compared level.
-        ego: its track.
+        label: Label of the compared level.
+        ego: Track of the ego.
         safe_distance: d_safe [m] of its controller.
         buffer_distance: d_buffer [m] on top of it; 0: it has none.
     """

@@ -31,8 +31,8 @@ class TradeOffPoint:
 
     Attributes:
         context: short label of the other factors' levels.
-        level: of the compared factor.
-        x, y: means.
+        level: Level of the compared factor.
+        x, y: Means of both costs.
         x_interval, y_interval: their intervals (low, high).
     """
 

@@ -62,7 +62,7 @@ class Mean:
 
     @property
     def mark(self) -> str:
-        """A plus where it is better, a minus where it is worse."""
+        """A plus if the level is better, a minus if it is worse."""
         return {"better": BETTER, "worse": WORSE}.get(self.verdict, "")
 
 
@@ -80,9 +80,9 @@ class LevelTable:
     """The table, as the terminal and the report show it.
 
     Attributes:
-        headings: what each column of means is, and its unit.
+        headings: Metric and unit of each column of means.
         rows: context by context.
-        baseline: what the verdicts compare with.
+        baseline: Level with which the verdicts compare.
     """
 
     headings: tuple[tuple[str, str], ...]
@@ -91,7 +91,7 @@ class LevelTable:
 
 
 def level_table(study: StudyFolder) -> LevelTable:
-    """The main metrics of every level in every context, and what a control step took.
+    """Return the main metrics of every level in every context, and the time of a control step.
 
     Half of the interval's width stands for both of its ends, which ``levels.csv`` has.
     """

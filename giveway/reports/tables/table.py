@@ -12,9 +12,9 @@ class Cell:
     """One cell of a table.
 
     Attributes:
-        text: what it says.
-        kind: class of its look: number, better, worse, none, na, code.
-        link: of the text; relative to the report.
+        text: Text of the cell.
+        kind: Style class: number, better, worse, none, na, code.
+        link: Link of the text, relative to the report.
     """
 
     text: str
@@ -28,9 +28,9 @@ class Table:
 
     Attributes:
         name: its id in the page.
-        caption: what it shows.
-        headings: of the columns.
-        rows: of cells, as many as headings.
+        caption: Caption that says what the table shows.
+        headings: Headings of the columns.
+        rows: Rows of cells, as many cells as headings.
         filters: columns by whose values rows can be chosen.
         note: beneath it.
     """

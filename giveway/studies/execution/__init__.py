@@ -43,7 +43,7 @@ def cluster_executor(
     run_limit: float | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> Executor:
-    """Runs on a Dask cluster, in one process of our own for each thread of its workers.
+    """Make an executor on a Dask cluster: one process of ours for each thread of its workers.
 
     Args:
         address: Address of its scheduler, as ``tcp://host:8786``; ``local`` or ``local:N`` makes a

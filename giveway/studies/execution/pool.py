@@ -228,7 +228,7 @@ class Pool:
 
 
 def _named(task: Task, failure: str) -> str:
-    """The failure, with the name of the controller that it happened in, if it is nobody of ours."""
+    """Return the failure, with the controller's name if the controller is not one of giveway's."""
     from giveway.config.files.foreign_code import named_in
 
     return named_in(failure, task.run_config)

@@ -65,7 +65,7 @@ class WorkerProcess:
         limits: Time limits of its runs.
 
     Attributes:
-        overgrown: whether it holds so much more memory than at first that it should be replaced.
+        overgrown: True if its memory has grown so much that it should be replaced.
 
     Raises:
         OSError: it cannot be started.
@@ -187,7 +187,7 @@ class WorkerProcess:
         return message
 
     def _kill(self, cause: str) -> None:
-        """Have it write where it hangs, then kill it.
+        """Have the worker write where it hangs, then kill it.
 
         Raises:
             RunDiedError: always.

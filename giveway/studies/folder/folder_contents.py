@@ -80,7 +80,7 @@ def intact_tables(study: Path) -> frozenset[str]:
 
 
 def broken_tables(study: Path) -> list[Path]:
-    """Those tables in a study's folder, and their description, that are not what was written.
+    """Return the tables in a study's folder, and their description, that have changed since.
 
     Missing ones are not among them, nor are those of an earlier giveway, which has sealed none.
     """

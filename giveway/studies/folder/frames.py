@@ -109,7 +109,7 @@ def as_written(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
 
 
 def cells_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]]) -> pd.DataFrame:
-    """``cells.csv``: what each cell is, and how many of its runs there are.
+    """Return ``cells.csv``: each cell's levels, and the number of its runs.
 
     Args:
         cells: Cells of the design.

@@ -91,7 +91,7 @@ def read_json(file: Path) -> dict[str, Any]:
 
 
 def put_aside(file: Path, study: Path) -> Path:
-    """Move a broken file out of the way, to where whoever wants to know why can look at it.
+    """Move a broken file into a folder of its own, so that it can be examined.
 
     Args:
         file: File of the study.

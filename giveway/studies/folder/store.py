@@ -33,7 +33,7 @@ class RecordStore:
         return self._folder / key[:2] / f"{key}.json"
 
     def get(self, key: str) -> RunRecord | None:
-        """The record, or None: the run is yet to be made.
+        """Return the record, or None if the run is yet to be made.
 
         Raises:
             BrokenFileError: the file is not what was written.

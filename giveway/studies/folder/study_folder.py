@@ -45,7 +45,7 @@ class StudyFolder:
 
     Attributes:
         path: its folder.
-        definition: as it was run.
+        definition: Definition of the study as it was run.
         design: its factors and cells.
         manifest: software, input files, the cells' digests.
 
@@ -177,7 +177,7 @@ class StudyFolder:
         return execution_frame(record for _, _, record in self.records)
 
     def cell_of(self, run: str) -> tuple[Cell, int]:
-        """The cell and the seed of a run.
+        """Return the cell and the seed of a run.
 
         Raises:
             ResultsError: this study has no such run.
@@ -204,7 +204,7 @@ class StudyFolder:
         return self._kept_record(*self.cell_of(run))
 
     def key_of(self, run: str) -> str:
-        """The key of a run's record: another one where settings, input files or code differ.
+        """Return the key of a run's record, which differs if settings, input files or code differ.
 
         Raises:
             ResultsError: this study has no such run.

@@ -37,7 +37,7 @@ class Interval:
 
     Attributes:
         low: lower end.
-        high: upper end.
+        high: Upper end of its interval.
         method: BCa; percentile, where BCa is not defined or not needed; constant, where nothing
             varies.
     """
@@ -124,7 +124,7 @@ class _Resampled(NamedTuple):
 
 
 def _resampled_means(whole: Array, resamples: int, seed: int) -> Array:
-    """(resamples,) the means that scipy's bootstrap would draw with that seed, bit by bit.
+    """Return the means (resamples,) that scipy's bootstrap would draw with that seed, bit by bit.
 
     Numbers that are whole add up exactly in any order; and half as many bits are drawn here as
     scipy draws, of the same numbers, which takes half the time.

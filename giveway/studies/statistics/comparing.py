@@ -30,8 +30,8 @@ class Differences:
     """The pairs that count for one metric in one situation: a number on both sides.
 
     Attributes:
-        treated: of the treatment's runs (n,).
-        based: of the baseline's runs (n,).
+        treated: Numbers of the treatment's runs (n,).
+        based: Numbers of the baseline's runs (n,).
         values: treatment minus baseline (n,), to six decimals as both are, so that equal
             differences are equal numbers and share their rank.
     """

@@ -14,7 +14,7 @@ EGO, PEOPLE = "completion_time", "mean_people_delay"
 
 
 def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
-    """Each cell's mean time to the goal and mean delay of people, and whether any cell is better.
+    """Return each cell's mean time to the goal and people's mean delay, and the Pareto front.
 
     A cell is on the Pareto front of its context where no other level of the compared factor has
     both means as small and one of them smaller. A cell of which a run did not arrive has no fair

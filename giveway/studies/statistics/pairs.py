@@ -28,7 +28,7 @@ class Pairs:
         ego: SUMO id; empty without one.
         treatment: label of the level that is compared.
         baseline: label of the level that is subtracted.
-        seeds: of the pairs (n,).
+        seeds: Seeds of the pairs (n,).
         treated: metrics of the treatment's runs (n, metrics), nan where there is no number.
         based: the same of the baseline's runs; row i of both has seed i.
     """
@@ -75,7 +75,7 @@ class _Side:
 
 
 def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterator[Pairs]:
-    """All pairs, context by context in the design's order, then ego, then treatment.
+    """Return all pairs, by context in the design's order, then by ego, then by treatment.
 
     A run that failed or crashed belongs to each ego of its context, as it would have had them
     all. Levels that share no seed have no pairs.

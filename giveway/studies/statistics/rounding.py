@@ -22,7 +22,7 @@ def to_decimals(values: Array) -> Array:
 
 
 def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
-    """``frame`` as it is written: six decimals, probabilities with six significant digits.
+    """Round ``frame`` as in files: to six decimals, probabilities to six significant digits.
 
     What a table holds in memory is thus what is read back from its file.
 
@@ -40,7 +40,7 @@ def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
 
 
 def in_units(values: Array) -> tuple[Array, float]:
-    """Finite numbers as whole ones, whose sums are exact and equal in any order.
+    """Return finite numbers as whole ones, whose sums are exact and equal in any order.
 
     Returns:
         ``values`` in units of the sixth decimal, and the units per one. Numbers beyond 1e9 are

@@ -17,7 +17,7 @@ class SignedRank:
     Attributes:
         statistic: smaller one of the two signed-rank sums.
         p_value: two-sided.
-        direction: to which side of zero the ranks lean, 1 or -1; 0: to none.
+        direction: Side of zero to which the ranks lean, 1 or -1; 0 for neither.
     """
 
     statistic: float

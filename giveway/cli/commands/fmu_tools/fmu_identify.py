@@ -148,7 +148,7 @@ def _summary(path: Path, found: Identification) -> Table:
 
 
 def _small(value: float) -> str:
-    """Two digits, and what is mere rounding as 0."""
+    """Return a number with two digits, and rounding errors as 0."""
     return f"{value:.2g}" if value > 1e-9 else "0"
 
 

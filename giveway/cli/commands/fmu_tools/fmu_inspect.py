@@ -129,7 +129,7 @@ def _interface(interface: Interface) -> Text:
 
 
 def _platforms(model: Model) -> Text:
-    """All platforms, and whether one of them is this."""
+    """Return all platforms, and whether this one is among them."""
     text = Text(printable(", ".join(model.platforms)) or "none")
     for kind, interface in model.interfaces.items():
         try:
