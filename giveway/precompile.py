@@ -174,7 +174,7 @@ def help_compiling(parent: int) -> None:
 
 def _tiny_run() -> None:
     """Call every kernel once: a free drive, people on the path, background vehicles, walls."""
-    hard = {"soft": False, "gap_choice": False}  # then nothing is planned, and the PID brakes
+    hard = {"soft": False, "gap_choice": False}  # then there is no plan, and the PID brakes
     for settings in (
         _FREE,
         _PLANNING,

@@ -66,7 +66,7 @@ def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
 
 def _rule(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Does a rule of the road? An ego drives along a made-up road, without SUMO."""
-    from giveway.cli.check_command import check_command
+    from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import RULE
 
     raise typer.Exit(check_command(name, set_ or (), RULE, time_step=time_step))

@@ -13,7 +13,8 @@ from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.plug_ins.sockets import RULE
-from giveway.studies.columns import (
+from giveway.studies.definition import StudyDefinition
+from giveway.studies.table_columns import (
     COMPARISON_COLUMNS,
     FRONT_COLUMNS,
     LEVEL_COLUMNS,
@@ -21,7 +22,6 @@ from giveway.studies.columns import (
     SITUATION_COLUMNS,
     TABLE_2_COLUMNS,
 )
-from giveway.studies.definition import StudyDefinition
 
 _RESERVED = frozenset(
     {"run", "cell", "seed", "ego", "ending", "runs", "failed", "seconds", "twin"}
