@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _usage(error: Any) -> str:
-    """A usage error; of a flag that is gone: what to write instead."""
+    """Return the message of a usage error; for a removed flag, it says what to write instead."""
     from giveway.config.old_keys import OLD_FLAGS
 
     instead = OLD_FLAGS.get(getattr(error, "option_name", ""))

@@ -229,7 +229,7 @@ def _named_factor(
 
 
 def _plugged_location(table: str, key: str) -> tuple[str, ...]:
-    """Where an option of another package's code stands: of a rule below the rule's name."""
+    """Return the location of a plug-in's option; a rule's options are below the rule's name."""
     rule, _, own = key.rpartition(".")
     is_option = table == RULE.options and rule and ":" not in own
     return (table, rule, own) if is_option else (table, key)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from giveway.cli.check_command import check_command
+from giveway.cli.commands.check_command import check_command
 from support.plug_ins import installed, printed  # noqa: F401 - a fixture
 
 import giveway
