@@ -74,7 +74,7 @@ def _rule(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
 
 def _sensor(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Does a sensor? It looks at people in made-up scenes, without SUMO."""
-    from giveway.cli.check_command import check_command
+    from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import SENSOR
 
     raise typer.Exit(check_command(name, set_ or (), SENSOR, time_step=time_step))

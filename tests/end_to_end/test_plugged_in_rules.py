@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from giveway.cli.commands.check_command import check_command
 from support.plug_ins import installed, printed  # noqa: F401 - a fixture
 
 import giveway
+from giveway.cli.commands.check_command import check_command
 from giveway.errors import ConfigError, ControlError, RuleError
 from giveway.plug_ins.sockets import RULE
 
