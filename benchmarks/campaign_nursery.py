@@ -192,7 +192,7 @@ def _spare_processes() -> None:
     A case that dies of that is typed again as a user does, and judged by what is said then.
     """
     from giveway.processes import child
-    from giveway.studies.options import StudyOptions
+    from giveway.studies.study_options import StudyOptions
 
     child._supervised = True  # the scenario is not read first by a child
     StudyOptions.executor = lambda _: _Here()  # type: ignore[method-assign,assignment]

@@ -28,12 +28,12 @@ from fmus.isolation import (
     processes_reused,
 )
 from fmus.profile.bundled import bundled_fmu, is_bundled
-from fmus.profile.controller_preparation import (
+from fmus.profile.controllers.controller_preparation import (
     PreparedController,
     choose_controller_profile,
     prepare_controller,
 )
-from fmus.profile.controller_profile import (
+from fmus.profile.controllers.controller_profile import (
     ControllerProfile,
     make_controller_profile,
     read_controller_profile,

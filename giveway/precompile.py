@@ -143,7 +143,7 @@ def _compile_all() -> None:
 
 @contextlib.contextmanager
 def _helper() -> Iterator[subprocess.Popen[bytes] | None]:
-    """Start a process that compiles beside this one; None if no processor is left for it."""
+    """Start a process that compiles beside this one, or None if no processor is left for it."""
     try:
         helper = _started() if processors() > 1 else None
     except OSError:

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fmus.checking.fitting import SETTLING, STANDSTILL, Drive, Fit, fit, prepare
 from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
-from fmus.checking.prediction import position_errors, speed_errors
-from fmus.checking.remarks import fit_remarks, saturation_remarks
-from fmus.checking.saturation import force_limits
-from fmus.checking.sides import Sides, fit_apart, side_remarks
+from fmus.checking.model_fit.fitting import SETTLING, STANDSTILL, Drive, Fit, fit, prepare
+from fmus.checking.model_fit.prediction import position_errors, speed_errors
+from fmus.checking.model_fit.remarks import fit_remarks, saturation_remarks
+from fmus.checking.model_fit.saturation import force_limits
+from fmus.checking.model_fit.sides import Sides, fit_apart, side_remarks
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
 from fmus.isolation import processes_reused
 from fmus.profile.advice import gain_line

@@ -7,10 +7,10 @@ import numpy as np
 from fmus.checking.consistency import SPEED_UNITS, unit_of
 from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
-from fmus.checking.fitting import Fit, fit, prepare
 from fmus.checking.manoeuvres import Trace
-from fmus.checking.prediction import position_errors
-from fmus.checking.saturation import ResistanceModel, saturation
+from fmus.checking.model_fit.fitting import Fit, fit, prepare
+from fmus.checking.model_fit.prediction import position_errors
+from fmus.checking.model_fit.saturation import ResistanceModel, saturation
 from fmus.checking.scale import GROSS, gross_error
 from fmus.profile.advice import gain_line
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from fmus.errors import FmuStepError
 from fmus.fmi import load
 from fmus.fmi.status import STATUS_NAMES, WARNING
-from fmus.profile.controller_preparation import PreparedController
+from fmus.profile.controllers.controller_preparation import PreparedController
 
 
 class ControllerFmu:

@@ -20,7 +20,7 @@ from fmus.text import printable
 
 if TYPE_CHECKING:
     from fmus.isolation.hosted import Hosted
-    from fmus.profile.controller_preparation import PreparedController
+    from fmus.profile.controllers.controller_preparation import PreparedController
     from fmus.profile.preparation import Prepared
 
 _END_TIMEOUT = 5.0  # [s] time for an FMU to end by itself

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from fmus.driving.controller import ControllerFmu
 from fmus.driving.vehicle import VehicleFmu
-from fmus.profile.controller_preparation import PreparedController
+from fmus.profile.controllers.controller_preparation import PreparedController
 from fmus.profile.preparation import Prepared
 
 

@@ -10,7 +10,7 @@ from fmus.isolation import processor
 from fmus.isolation.fmu_process import FmuProcess, while_starting
 from fmus.isolation.hosted import HostedController
 from fmus.isolation.wire import LOAD, START, STEP
-from fmus.profile.controller_preparation import PreparedController
+from fmus.profile.controllers.controller_preparation import PreparedController
 
 
 class IsolatedController:

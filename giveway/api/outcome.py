@@ -19,7 +19,7 @@ from giveway.results.ego_result import EgoResult, results_of_egos
 from giveway.results.provenance import manifest
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
-from giveway.sumo.road_marks import road_marks
+from giveway.sumo.network.painted_marks import road_marks
 from sumo_scenarios import Scenario
 
 TRAFFIC_DIFFERS = (

@@ -8,20 +8,21 @@ from typing import Annotated
 import typer
 
 from giveway import errors
-from giveway.cli.check import build_check
+from giveway.cli.check_commands import build_check
 from giveway.cli.completion import complete_scenario
-from giveway.cli.fmu import build_export, build_fmu
+from giveway.cli.fmu_commands import build_export, build_fmu
 from giveway.cli.help import Commands, JsonFlag
-from giveway.cli.studies import add_studies
-from giveway.cli.validation import add_validation
+from giveway.cli.study_commands import add_studies
+from giveway.cli.validation_commands import add_validation
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
 A vehicle FMU, driven by MPC or PID, and a crowd of VCI pedestrians meet in a SUMO scenario.
 """
 
-_COMPLETING = "_GIVEWAY_COMPLETE"  # with this in the environment a shell asks for completions
-_TYPED = ("COMP_WORDS", "_TYPER_COMPLETE_ARGS")  # the line so far: bash, other shells
+_COMPLETING = "_GIVEWAY_COMPLETE"  # Environment variable that a shell sets to ask for completions
+# Variables with the line typed so far: bash, other shells
+_TYPED = ("COMP_WORDS", "_TYPER_COMPLETE_ARGS")
 
 
 def build_app(arguments: Sequence[str]) -> Commands:
@@ -132,19 +133,19 @@ def _run(
     ] = True,
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
-    from giveway.cli.isolated import run_isolated, supervised
+    from giveway.cli.guards.isolated import run_isolated, supervised
     from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
     if journal is None:
-        from giveway.cli.fmu_gate import require_archives
+        from giveway.cli.guards.archive_check import require_archives
 
         require_archives(config, settings)
         if scenario is not None:
             _require_scenario(scenario)
         if isolate:
             raise typer.Exit(run_isolated())
-    from giveway.cli.run import Outputs, run_command
+    from giveway.cli.commands.run_command import Outputs, run_command
 
     outputs = Outputs(
         out, force=force, parquet=parquet, pictures=pictures, quiet=quiet, as_json=as_json
@@ -170,7 +171,7 @@ def _config(
     config: Annotated[Path | None, typer.Option(help="As for run.")] = None,
 ) -> None:
     """Print the effective configuration as TOML, with units."""
-    from giveway.cli.run import layers_of
+    from giveway.cli.commands.run_command import layers_of
     from giveway.config.files.layers import dump_toml
     from giveway.config.files.loading import load
 
@@ -181,7 +182,7 @@ def _schema(
     out: Annotated[Path, typer.Option(help="Folder for them.")] = Path(),
 ) -> None:
     """Write JSON schemas, with which editors complete and check run, study and other TOML files."""
-    from giveway.cli.schema import schema_command
+    from giveway.cli.commands.schema_command import schema_command
 
     raise typer.Exit(schema_command(out))
 
@@ -196,7 +197,7 @@ def _doctor(
     as_json: JsonFlag = False,
 ) -> None:
     """Examine the installation, and a scenario: findings and their remedies."""
-    from giveway.cli.doctor import doctor_command
+    from giveway.cli.commands.doctor_command import doctor_command
 
     raise typer.Exit(doctor_command(scenario, as_json=as_json))
 
@@ -211,7 +212,7 @@ def _recover(
     force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
 ) -> None:
     """Write the rows of a run that was killed (SIGKILL, a crash of the machine) as its results."""
-    from giveway.cli.recover import recover_command
+    from giveway.cli.commands.recover_command import recover_command
 
     raise typer.Exit(recover_command(journal, out, force=force))
 
@@ -248,7 +249,7 @@ def _influence(
     width: Annotated[float, typer.Option(help="Vehicle width in m.")] = 2.0,
 ) -> None:
     """Draw the vehicle's influence on a pedestrian (figure 2 of Yang & Özgüner 2019)."""
-    from giveway.cli.plot import influence_command
+    from giveway.cli.commands.plot_command import influence_command
 
     influence_command(out, speeds, preset=preset, length=length, width=width)
 
@@ -259,6 +260,6 @@ def _reference(
     ),
 ) -> None:
     """Draw both PIDs' reference speed over the gap (figure 3 of Yang & Özgüner 2019)."""
-    from giveway.cli.plot import reference_command
+    from giveway.cli.commands.plot_command import reference_command
 
     reference_command(out)

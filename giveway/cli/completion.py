@@ -1,4 +1,4 @@
-"""What the shell may complete: bundled names, and files where a file may stand."""
+"""Completions for the shell: bundled names, and files where a file may stand."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ def complete_scenario(incomplete: str) -> list[str]:
 
 def complete_study(incomplete: str) -> list[str]:
     """Bundled studies, and definitions of studies."""
-    from giveway.studies.finding import bundled_studies
+    from giveway.studies.study_files import bundled_studies
 
     return _beginning(bundled_studies(), incomplete) + _files(incomplete, ".toml")
 

@@ -6,7 +6,7 @@ import sys
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 
 
-_LONGEST = 300  # characters of a word that are shown; a user's file may hold any number
+_LONGEST = 300  # Largest number of characters of a word that are shown
 
 
 def fail(message: str, code: int) -> int:
@@ -22,12 +22,12 @@ def fail(message: str, code: int) -> int:
 
 
 def visible(text: str) -> str:
-    """``text`` with a question mark for what would steer a terminal; its lines stay lines."""
+    """Return ``text`` with question marks for control characters other than line breaks."""
     return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
 
 
 def _shortened(word: str) -> str:
-    """A word without its middle, if that is long; its ends say what it is."""
+    """Return a word, without its middle if it is long."""
     left_out = len(word) - _LONGEST
     half = _LONGEST // 2
     if left_out <= 0:

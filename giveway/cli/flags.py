@@ -88,7 +88,9 @@ _EVERYDAY = frozenset(
 
 
 def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """``command`` with one flag per configuration option; those given arrive as ``settings``.
+    """Return ``command`` with one flag per configuration option.
+
+    Flags that are given arrive as ``settings``.
 
     Values arrive as text and are validated by the configuration, with the same messages as those
     of a TOML file.
@@ -152,7 +154,7 @@ def set_rules(words: Sequence[str]) -> dict[str, Any]:
 
 
 def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, Any]:
-    """The options of somebody else's code, from words like ``headway=1.5``.
+    """Return the options of a plug-in, from words like ``headway=1.5``.
 
     Raises:
         ConfigError: a word is no key and value, or a key stands twice.
@@ -168,7 +170,8 @@ def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, 
         if key in values:
             raise ConfigError(f"{socket.set_flag} {word}: '{key}' stands twice; keep one")
         value = toml_value(text.strip())
-        is_word = isinstance(value, float) and not math.isfinite(value)  # nan and inf are words
+        # TOML writes nan and inf as words
+        is_word = isinstance(value, float) and not math.isfinite(value)
         values[key] = text.strip() if is_word else value
     return values
 
@@ -203,7 +206,7 @@ def _annotation(option: Option) -> Any:
 
 
 def _help(option: Option) -> str:
-    """What the option means, its unit and its default, as a sentence."""
+    """Return the meaning, the unit and the default of an option as a sentence."""
     default = option.field.get_default(call_default_factory=True)
     shown = ",".join(map(str, default)) if isinstance(default, tuple) else default
     shown = {True: "yes", False: ""}.get(shown, shown) if isinstance(shown, bool) else shown
@@ -217,7 +220,7 @@ def _help(option: Option) -> str:
 
 
 def _choices(annotation: Any) -> Callable[[str], list[str]] | None:
-    """Completes the words that an option may be; None: it takes others than words."""
+    """Return the completion of an option's words, or None if it takes other values."""
     if typing.get_origin(annotation) in (typing.Union, types.UnionType):
         annotation = typing.get_args(annotation)[0]
     if typing.get_origin(annotation) is not Literal:

@@ -1,4 +1,4 @@
-"""How help pages look: one plain style for all of them, everyday options first.
+"""Help pages: one plain style for all of them, everyday options first.
 
 Names are never cut: a long one has a line of its own (as click writes definition lists).
 """
@@ -21,15 +21,15 @@ JsonFlag = Annotated[
 
 _KIND = re.compile(r"<(\w+)(?: range)?>")
 _KINDS = {"int": "INTEGER", "float": "NUMBER", "str": "TEXT"}
-_LONGEST = 300  # letters of a command's sentence in the list of commands: all of it
+_LONGEST = 300  # Letters of a command's sentence in the list of commands, so that none is cut
 
 
 class Commands(typer.Typer):
     """A group of commands in our style.
 
     Args:
-        purpose: of the group.
-        completion: whether it has the options that install the shell's completion.
+        purpose: Purpose of the group.
+        completion: True if it has the options that install the shell's completion.
     """
 
     def __init__(self, purpose: str, *, completion: bool = False) -> None:

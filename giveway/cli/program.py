@@ -10,7 +10,7 @@ from giveway.cli.exit import fail
 from giveway.errors import GivewayError
 from giveway.processes.interrupts import RaisedSignals, exit_code_of, who_ended
 
-_NO_THREAD = "can't start new thread"  # Python's words, which no class of its own carries
+_NO_THREAD = "can't start new thread"  # Python's message, which has no exception class of its own
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -24,7 +24,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt as error:
         code = fail(who_ended(error), exit_code_of(error))
     except BrokenPipeError:  # the reader of our output has ended
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left goes nowhere
+        # the remaining output is dropped
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1
     except (MemoryError, OSError, ImportError) as error:
         if out_of_memory(error):
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 1,
             )
         else:
-            raise  # a fault of giveway: the traceback is wanted
+            raise  # a defect of giveway: show the traceback
     sys.exit(code)
 
 
@@ -66,7 +67,7 @@ def _named(error: OSError) -> str:
 
 
 def _run(words: list[str]) -> int:
-    """Run the command; its exit code."""
+    """Run the command and return its exit code."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal may lack our characters

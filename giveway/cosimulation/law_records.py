@@ -13,8 +13,8 @@ from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
 from giveway.journal.recorder import Recorder
 from giveway.run_data.way import CrossingOnWay, EgoWay, Halt, JunctionOnWay, StopLine
-from giveway.sumo.crossings import Crossing
-from giveway.sumo.lane_path import Light
+from giveway.sumo.network.lane_path import Light
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.session import SumoSession
 
 _SAMPLE = 0.5  # [m] between the points of the path that are looked at

@@ -8,7 +8,7 @@ import numpy as np
 from giveway.crowd.roster import Roster
 from giveway.crowd.zone import Zone
 from giveway.geometry.kernel import Array
-from giveway.sumo.persons import Arrival, Person
+from giveway.sumo.persons.scenario_persons import Arrival, Person
 from giveway.sumo.session import SumoSession
 from giveway.walkways import WalkNetwork
 from pedestrian_model import Crowd, Surroundings, Walls

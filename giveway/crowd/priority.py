@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.crowd.crossings import ASIDE, have_priority, is_near, is_open, place_on, use_of
-from giveway.sumo.crossings import Crossing
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from pedestrian_model import Crowd
 
 _FADE = 1.0  # [m] behind a crossing

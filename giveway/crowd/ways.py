@@ -11,7 +11,7 @@ import numpy as np
 
 from giveway.config.tables.flows import FlowConfig, Place, is_line
 from giveway.geometry.kernel import Array
-from giveway.sumo.crossings import Crossing
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.walkways.reading import Signal
 
 _BODY = 0.27  # [m] from a line's ends; half of a shoulder breadth

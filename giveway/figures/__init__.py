@@ -1,6 +1,6 @@
 """Pictures of runs; importing this imports matplotlib, never pyplot and no display."""
 
-from giveway.figures.influence import influence_figure
+from giveway.figures.influence_figure import influence_figure
 from giveway.figures.reference import reference_figure
 from giveway.figures.state import state_figure
 from giveway.figures.style import save_figure

@@ -24,7 +24,7 @@ def density_figure(
         found: the density.
         measures: drawn as lines.
         conflicts: severity and place of each.
-        title: of the figure.
+        title: Title of the figure.
     """
     aspect = (found.top - found.bottom) / (found.right - found.left)
     height = min(max(7.5 * aspect, 4.0), 9.0)

@@ -10,9 +10,9 @@ from giveway.figures.style import BLACK, BLUE, GREY, quiet_grid, styled
 ReferenceCurve = Callable[[float], float]
 """A gap [m] to the reference speed [m/s] at it."""
 
-_SHOWN = 1.25  # times the distance from which the speed is v_r
+_SHOWN = 1.25  # Length of the axis, as multiples of the distance from which the speed is v_r
 _RESOLUTION = 0.02  # [m]
-_LOOKS = ((BLACK, (0, (4, 2))), (BLUE, "-"))  # as many curves as can be told apart here
+_LOOKS = ((BLACK, (0, (4, 2))), (BLUE, "-"))  # Line styles: as many curves as can be told apart
 
 
 @styled
@@ -22,7 +22,7 @@ def reference_figure(
     """Reference speeds over the gap (figure 3 of Yang & Özgüner 2019).
 
     Args:
-        curves: at most two, each with its label.
+        curves: Curves, at most two, each with its label.
         safe_distance: d_safe [m], where they begin to rise.
         buffer_distance: d_buffer [m], over which the paper's rises to v_r.
 

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 Road = Sequence[NDArray[np.float64]]
 """Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""
 
-STRIPE = 0.5  # [m] of paint, and as much without
-LONGEST = 20.0  # [m] of a crossing: one that reaches into the view ends no farther outside
-UNPAINTED = "#CFCFCF"  # of a crossing, so that white stripes are seen
+STRIPE = 0.5  # Length [m] of a painted stripe, and of the gap behind it
+LONGEST = 20.0  # Largest length [m] of a crossing that is drawn outside of the view
+UNPAINTED = "#CFCFCF"  # Colour of a crossing's ground, so that white stripes are seen
 LIGHTS = {"G": "#009E73", "y": "#E69F00", "r": "#D7191C", "": GREY}
 
 
@@ -38,13 +38,13 @@ def draw_road(axes: Axes, road: Road) -> None:
 
 
 def draw_marks(axes: Axes, marks: RoadMarks, states: Mapping[str, str] | None, view: Box) -> None:
-    """Stripes on crossings, and a bar at each stop line in the colour of its light.
+    """Draw stripes on crossings, and a bar at each stop line in the colour of its light.
 
     Args:
-        axes: to draw into.
+        axes: Axes to draw into.
         marks: crossings and stop lines.
-        states: of the lights by their ids; None: stop lines are grey.
-        view: what is outside is left out.
+        states: Traffic light states by id. None: stop lines are grey.
+        view: Rectangle to show; everything outside is left out.
     """
     marks = marks.within(
         (view.left - LONGEST, view.bottom - LONGEST), (view.right + LONGEST, view.top + LONGEST)

@@ -44,8 +44,10 @@ WAITS = {
     "plan": (SKY_BLUE, "stands, people expected"),
     "none": (ORANGE, "stands, nothing in front"),
 }
-FASTEST_WALK = 3.0  # [m/s] along the way; a gap that changes faster is somebody else's
-FASTEST_VEHICLE = 60.0  # [m/s]; likewise
+# Largest closing speed [m/s] of people; a faster change is another person's gap
+FASTEST_WALK = 3.0
+# Largest closing speed [m/s] of vehicles; a faster change is another vehicle's gap
+FASTEST_VEHICLE = 60.0
 # Colour and opacity of a phase.
 SHADES = {
     "mpc": (SKY_BLUE, 0.14),
@@ -61,10 +63,10 @@ NAMES = {
 }
 DASHES = (0, (4, 2))
 DOTS = (0, (1, 2))
-FARTHEST_SHOWN = 40.0  # [m] of the distances to vehicles and stops
-RESOLUTION = 1e-3  # [m] of distances on record, generously
-SHOWN_ALWAYS = 3  # panels
-SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
+FARTHEST_SHOWN = 40.0  # Largest distance [m] to vehicles and stops that is shown
+RESOLUTION = 1e-3  # Resolution [m] of recorded distances, rounded up
+SHOWN_ALWAYS = 3  # Number of panels that are always shown
+SINGLE_INSTANT = 0.5  # Time [s] shown to either side of a run of one instant
 
 
 @styled
@@ -76,7 +78,7 @@ def state_figure(
     stop_lines: Sequence[float] = (),
     title: str = "",
 ) -> Figure:
-    """Speed, gap and force of one run, or of several side by side on the same scales.
+    """Draw speed, gap and force of one run, or of several side by side on the same scales.
 
     Where there are vehicles, stops or stop lines, a panel of its own has the distances to them. A
     bar above the speed says what the ego stands for.
@@ -86,7 +88,7 @@ def state_figure(
         safe_distance: d_safe [m], drawn into the gap's panel.
         buffer_distance: d_buffer [m], drawn on top of it; 0: not.
         stop_lines: positions [m] of the front bumper, as in the track, at which lights hold it.
-        title: of the whole figure.
+        title: Title of the whole figure.
 
     Raises:
         ValueError: there is no run, or a run without an instant.
@@ -128,7 +130,7 @@ def state_figure(
 
 
 def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """Which controller acted from when to when [s], one entry per uninterrupted phase.
+    """Return the controllers that acted, with begin and end [s] of each uninterrupted phase.
 
     A command holds until the next instant, so that the last one is not carried out. A run of one
     instant is shown ``SINGLE_INSTANT`` to either side.
@@ -163,7 +165,7 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 
 def draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
-    """The gap to whoever is in front, one stroke for each person, and the safe distances."""
+    """Draw the gap to the pedestrian in front, a stroke for each person, and the safe distances."""
     draw_safe_distances(axes, safe_distance, buffer_distance)
     if not np.isfinite(ego.gap).any():
         axes.text(
@@ -183,19 +185,20 @@ def strokes(
     """Times and distances [m] to draw, with nan wherever another one is in front from there on.
 
     Args:
-        ego: whose the distances are.
+        ego: Ego from which the distances are measured.
         distance: (T,) [m] to what is in front; inf: nothing.
         fastest: [m/s] at which one and the same may move along the way.
     """
     known = np.where(np.isfinite(distance), distance, np.nan)
     elapsed = np.diff(ego.time)
-    moved = np.diff(known) + np.diff(ego.position)  # of what is in front, along the way
+    # motion of the object in front, along the path
+    moved = np.diff(known) + np.diff(ego.position)
     other = np.flatnonzero(np.abs(moved) > fastest * elapsed + RESOLUTION) + 1
     return np.insert(ego.time, other, np.nan), np.insert(known, other, np.nan)
 
 
 def _draw_distances(axes: Axes, ego: EgoTrack, stop_lines: Sequence[float]) -> None:
-    """How far it is to the vehicle in front, to where it has to stop, and to stop lines."""
+    """Draw the distances to the leader, to the stop demanded, and to stop lines."""
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     for distance, fastest, look in (
         (ego.vehicle_gap, FASTEST_VEHICLE, VEHICLE),
@@ -209,7 +212,7 @@ def _draw_distances(axes: Axes, ego: EgoTrack, stop_lines: Sequence[float]) -> N
 
 
 def waits(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """What the ego stood for from when to when [s], one entry per uninterrupted wait."""
+    """Return the causes of waiting, with begin and end [s] of each uninterrupted wait."""
     edges = np.flatnonzero(ego.waits_for[1:] != ego.waits_for[:-1]) + 1
     starts = np.concatenate(([0], edges))
     ends = np.append(edges, ego.time.size - 1)
@@ -261,7 +264,7 @@ def _scale(grid: NDArray[Any], egos: Sequence[EgoTrack], distance: float) -> Non
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
     grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=distance))
     if len(grid) > SHOWN_ALWAYS:
-        # What stands at a stop line is at 0: there has to be room below.
+        # A vehicle at a stop line is at 0: leave room below.
         grid[2, 0].set_ylim(-0.06 * FARTHEST_SHOWN, FARTHEST_SHOWN)
     scale_force(grid[-1, 0], egos)
 
@@ -320,7 +323,7 @@ def _legend(egos: Sequence[EgoTrack], stop_lines: bool) -> list[Artist]:
 
 
 def phase_handles(egos: Sequence[EgoTrack]) -> list[Artist]:
-    """What the legend shows of the phases that some of the runs have."""
+    """Return the legend's entries for the phases that occur in the runs."""
     acted = {str(name) for ego in egos for name in np.unique(ego.controller)}
     return [
         Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name])

@@ -1,4 +1,4 @@
-"""How giveway's pictures look, whatever the user's matplotlib is configured to.
+"""The style of giveway's pictures, whatever the user's matplotlib is configured to.
 
 Colours are Okabe & Ito's (2008), told apart by all common kinds of colour vision; what is shaded
 differs in lightness as well, for print in black and white.
@@ -88,7 +88,7 @@ def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
     matplotlib's layout solver does not settle.
 
     Args:
-        figure: what to write.
+        figure: Figure to write.
         path: its suffix says the format: .png, .svg or .pdf.
         dpi: pixels per inch of a PNG.
 
@@ -116,7 +116,7 @@ def keep_panels(
         axes.remove()
     for axes in panels[:count:columns]:
         axes.set_ylabel(y)
-    for axes in panels[max(count - columns, 0) : count]:  # nothing is below these
+    for axes in panels[max(count - columns, 0) : count]:  # the lowest panel of each column
         axes.set_xlabel(x)
         axes.tick_params(labelbottom=True)
     return panels[:count]

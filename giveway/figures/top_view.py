@@ -33,15 +33,18 @@ from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Signa
 TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
 """Its last third is too light for a line on white."""
 SNAPSHOTS = 6
-ENCOUNTER = 10.0  # [m] snapshots show the time in which a pedestrian is this close to the ego
+ENCOUNTER = 10.0  # Distance [m] to a pedestrian below which snapshots are taken
 MARGIN = 2.0  # [m] around all trajectories
-SURROUNDINGS = 8.0  # [m] shown around the ego's places in the snapshots
-LARGEST_PART = 70.0  # [m] of a side of a shared view; on longer drives it follows the ego
+SURROUNDINGS = 8.0  # Distance [m] shown around the ego's positions in the snapshots
+# Longest side [m] of a shared view; on longer drives the view follows the ego
+LARGEST_PART = 70.0
 VIEW = (50.0, 32.0)  # [m] width and height of a view that follows the ego
-TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
-NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
-SEGMENTS = 150  # at most, per trajectory
-PAUSE = 2.5  # [s] without a record, after which a trajectory begins anew: SUMO moved the person
+TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity tick
+# Corners of the ego's nose, as parts of its length and width
+NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])
+SEGMENTS = 150  # Largest number of segments per trajectory
+# Time [s] without a record after which a trajectory begins anew: SUMO moved the person
+PAUSE = 2.5
 
 
 @styled
@@ -66,7 +69,8 @@ def top_view_figure(
         crowd: the crowd's track; may be empty.
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
-        times: of the snapshots [s], each taken at the nearest control instant; left out: six over
+        times: Times of the snapshots [s], each taken at the nearest control instant. Left out: six
+            over
             the time in which a pedestrian is within 10 m of the ego, one of them at the closest
             approach and the others evenly.
         background: other vehicles, drawn in the snapshots; from their latest instant on they are
@@ -75,7 +79,7 @@ def top_view_figure(
         marks: crossings and stop lines.
         signals: the lights' states; in a snapshot stop lines have the colour of the instant.
         conflicts: marked among the trajectories.
-        title: of the whole figure.
+        title: Title of the whole figure.
 
     Raises:
         ValueError: the ego's track is empty, or ``times`` is.
@@ -134,7 +138,7 @@ def crowd_view_figure(
         time: (T,) [s] the control instants.
         crowd: the crowd's track.
         road: areas and lines to draw underneath.
-        title: of the figure.
+        title: Title of the figure.
 
     Raises:
         ValueError: no pedestrian was recorded.
@@ -177,7 +181,7 @@ def _corners(
 
 
 def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:
-    """The first instant at which a pedestrian is closest to the ego's body; None: nobody is there.
+    """Return the first instant of the smallest distance to a pedestrian, or None without people.
 
     Somebody inside the rectangle is the closer the deeper.
     """
@@ -262,7 +266,10 @@ def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> No
 def _draw_pedestrian_trajectories(
     axes: Axes, time: NDArray[np.float64], crowd: CrowdTrack, colours: Normalize
 ) -> LineCollection:
-    """Trajectories as short lines in the colours of time; circles mark where they begin."""
+    """Draw trajectories as short lines in the colours of time.
+
+    Circles mark where they begin.
+    """
     groups = PedestrianGroups(crowd)
     places = np.column_stack((crowd.x, crowd.y))[groups.order]
     times = time[crowd.step[groups.order]]
@@ -297,7 +304,7 @@ def _draw_ego_trajectory(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
 
 
 def _thinned(first: int, last: int) -> NDArray[np.int64]:
-    """At most ``SEGMENTS`` + 1 of the records first to last, both ends among them."""
+    """Return at most ``SEGMENTS`` + 1 of the records first to last, both ends among them."""
     count = min(last - first, SEGMENTS) + 1
     return np.round(np.linspace(first, last, count)).astype(np.int64)
 

@@ -1,4 +1,4 @@
-"""How a vehicle FMU responds: the picture of a check, and that of an identification."""
+"""The response of a vehicle FMU: the picture of a check, and that of an identification."""
 
 from typing import Any
 
@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fmus.checking import CheckReport, Identification, Trace
-from fmus.checking.actuator import mean_force
-from fmus.checking.prediction import position_errors, simulate
+from fmus.checking.model_fit.actuator import mean_force
+from fmus.checking.model_fit.prediction import position_errors, simulate
 from giveway.figures.style import (
     BLACK,
     BLUE,
@@ -24,14 +24,16 @@ DASHES = (0, (4, 2))
 MODEL: dict[str, Any] = {"color": BLACK, "linewidth": 0.9, "linestyle": DASHES, "zorder": 4}
 MEASURED: dict[str, Any] = {"color": BLUE, "zorder": 3}
 FINER: dict[str, Any] = {"color": ORANGE, "linewidth": 2.6, "zorder": 2.5}
-EXACT = 1e-6  # [m] a position error below is that of rounding; its distribution is no picture
-LARGEST = 1e30  # what matplotlib can still draw; diverging FMUs go beyond
+EXACT = 1e-6  # Position error [m] below which only rounding is left, which is not drawn
+LARGEST = 1e30  # Largest value that matplotlib can draw; diverging FMUs exceed it
 ROWS = ("Force [kN]", "Speed [m/s]", "Acceleration [m/s²]", "Position [m]")
 
 
 @styled
 def check_figure(report: CheckReport, *, title: str = "") -> Figure | None:
-    """Force, speed, acceleration and position of the drives of a check; None without any.
+    """Draw force, speed, acceleration and position of a check's drives.
+
+    The result is None if there are no drives.
 
     On the left the step response and that of the controller's model, on the right the same drive
     with the FMU's steps and with finer ones, as far as they ran.

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SLENDEREST = 2.2  # the overview is at most so much taller than wide, and twice so much wider
+# Largest ratio of height to width of the overview; of width to height it is twice this
+SLENDEREST = 2.2
 
 
 class Box(NamedTuple):
@@ -35,7 +36,7 @@ class Box(NamedTuple):
         return cls(*(middle - half).tolist(), *(middle + half).tolist())
 
     def less_slender(self) -> Box:
-        """The same view, widened where it is too slender to be drawn next to or above others."""
+        """Return the same view, widened if too slender to be drawn next to or above others."""
         width, height = self.right - self.left, self.top - self.bottom
         more_x = max(0.0, height / SLENDEREST - width) / 2.0
         more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0
@@ -52,7 +53,7 @@ class Box(NamedTuple):
         return (self.top - self.bottom) / (self.right - self.left)
 
     def touches(self, points: NDArray[np.float64]) -> bool:
-        """Whether the points' own box meets this one."""
+        """True if the bounding box of the points meets this one."""
         low, high = points.min(axis=0), points.max(axis=0)
         apart = high[0] < self.left or low[0] > self.right
         return bool(not (apart or high[1] < self.bottom or low[1] > self.top))

@@ -1,5 +1,5 @@
 """Replays: one page that plays a run, or two in step, in any browser and without a network."""
 
-from giveway.replays.page import content_of, write_beside, write_replay
+from giveway.replays.replay_page import content_of, write_beside, write_replay
 
 __all__ = ["content_of", "write_beside", "write_replay"]

@@ -5,7 +5,7 @@ from typing import Any, cast
 import numpy as np
 from contourpy import contour_generator
 
-from giveway.figures.influence import (
+from giveway.figures.influence_figure import (
     DRAWN,
     FRONT_MARGIN,
     FRONT_MARGIN_PER_SPEED,
@@ -13,7 +13,7 @@ from giveway.figures.influence import (
     SIDE_MARGIN,
 )
 from giveway.geometry.kernel import Array
-from giveway.replays.packing import MILLIMETRES, packed
+from giveway.replays.packed_tracks import MILLIMETRES, packed
 from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 _RESOLUTION = 0.15  # [m]
@@ -32,7 +32,7 @@ def influence_contours(
     Args:
         shape: length and width [m].
         fastest: the highest speed [m/s] that is needed.
-        parameters: of the pedestrian model.
+        parameters: Parameters of the pedestrian model.
 
     Returns:
         ``speeds`` [m/s], ``levels`` [N]; the points ``x``, ``y`` [mm] from the body's centre,
@@ -67,7 +67,7 @@ def influence_contours(
 def _contours(
     shape: tuple[float, float], speed: float, parameters: VciParameters
 ) -> list[list[Array]]:
-    """For each level its pieces, (k, 2) [m] each."""
+    """Return the pieces of each level's contour, (k, 2) [m] each."""
     length, width = shape
     ahead = length / 2 + FRONT_MARGIN + FRONT_MARGIN_PER_SPEED * speed
     half_height = width / 2 + SIDE_MARGIN

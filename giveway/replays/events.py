@@ -1,4 +1,4 @@
-"""What happened in a run, in words: why each controller acted, and the events on the time line."""
+"""The events of a run in words: why each controller acted, and what the time line shows."""
 
 import re
 from collections.abc import Iterator
@@ -36,10 +36,10 @@ _SAFETY = {
 
 
 def why(reason: str, status: str) -> dict[str, Any]:
-    """Why a controller acted, and whether the QP was infeasible.
+    """Say why a controller acted, and whether the QP was infeasible.
 
     Args:
-        reason: as in ``ego.csv``.
+        reason: Reason as written in ``ego.csv``.
         status: the solver's.
     """
     infeasible = reason.startswith("infeasible") or status.startswith("infeasible")
@@ -51,7 +51,10 @@ def why(reason: str, status: str) -> dict[str, Any]:
 
 
 def _manoeuvre(name: str) -> str | None:
-    """Why the planning MPC chose a manoeuvre; None if it is not one of its manoeuvres."""
+    """Say why the planning MPC chose a manoeuvre.
+
+    The result is None if the word is not one of its manoeuvres.
+    """
     aimed = _AIMED.fullmatch(name)
     if aimed is None:
         return _MANOEUVRES.get(name)
@@ -66,7 +69,7 @@ def events(rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig) -> list[
     Args:
         rows: one ego's of ``ego.csv``.
         met: this ego's rows of ``pedestrians.csv``.
-        config: of this ego.
+        config: Configuration of this ego.
 
     Returns:
         For each event its ``kind``, ``from`` and ``to`` [s], a ``text``, and ``who`` was met.
@@ -107,7 +110,10 @@ def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dic
 
 
 def _phases(active: NDArray[np.bool_], time: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
-    """Start and end [s] of each active phase; a command holds until the next instant."""
+    """Return start and end [s] of each active phase.
+
+    A command holds until the next instant.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate(([False], active, [False])).astype(np.int8)))
     for start, end in zip(edges[::2], edges[1::2], strict=True):
         yield float(time[start]), float(time[min(end, len(time) - 1)])

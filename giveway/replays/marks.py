@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from giveway.figures.road import bands
-from giveway.replays.packing import Frame, packed
+from giveway.replays.packed_tracks import Frame, packed
 from giveway.replays.run_folder import RunFolder
 from giveway.run_data.road_marks import SignalHead, shown
 
-_DARK = "-"  # shown for a light of which nothing is known, or that is out
+_DARK = "-"  # Letter of a light that is off or unknown
 
 
 def pack_marks(run: RunFolder, frame: Frame) -> dict[str, Any]:
@@ -43,7 +43,7 @@ def _corners(shapes: list[Any], frame: Frame) -> dict[str, str]:
 
 
 def _changes(run: RunFolder, head: SignalHead) -> tuple[list[float], str]:
-    """From when on [s] a stop line shows what, one letter for each time."""
+    """Return the times [s] at which a stop line's signal changes, and the letters it changes to."""
     times: list[float] = []
     letters = ""
     rows = run.signals

@@ -25,22 +25,24 @@ from giveway.run_data.scene import Scene
 from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"
-_ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})  # in every row
-_SHOWN = 40  # characters of what is no number
+# Columns with a number in every row
+_ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})
+_SHOWN = 40  # Characters shown of a text that is not a number
 
 
 @dataclass(frozen=True)
 class RunFolder:
-    """What a results folder holds, as far as a replay needs it.
+    """The content of a results folder, as far as a replay needs it.
 
     Attributes:
-        config: of the run.
+        config: Configuration of the run.
         egos: the configuration of each ego that has rows, by its id, in the order of departure.
         ego, trajectories, pedestrians: the tables.
-        summary: of ``summary.json``: the first ego's row, all rows under ``egos`` if several.
-        manifest: of ``manifest.json``.
+        summary: Content of ``summary.json``: the first ego's row, all rows under ``egos`` if
+            several.
+        manifest: Content of ``manifest.json``.
         scene: the road and the bodies.
-        signals: what the lights showed from when on; empty where no light is on record.
+        signals: Recorded states of the lights with their times; empty if no light is recorded.
         time: (T,) [s] every instant that has a row.
     """
 
@@ -66,7 +68,7 @@ class RunFolder:
 
     @property
     def sumo_step(self) -> float:
-        """SUMO's step [s]; the control step where it is not known."""
+        """SUMO's step [s], or the control step if it is not known."""
         sumo = self.manifest.get("sumo")
         known = sumo.get("step_length") if isinstance(sumo, dict) else None
         return float(known) if isinstance(known, int | float) else self.step
@@ -135,7 +137,10 @@ def _require_run(folder: Path) -> None:
 
 
 def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
-    """A table whose ids are texts, even those of digits; missing texts are empty."""
+    """Read a table whose ids are texts, even those of digits.
+
+    Missing texts become empty ones.
+    """
     texts = {column.name: str for column in columns if column.type == "string"}
     try:
         frame = pd.read_csv(file, dtype={"ego": str} | texts, na_values=[""], keep_default_na=False)

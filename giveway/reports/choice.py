@@ -1,4 +1,4 @@
-"""Which runs a report shows: examples of pairs, and the runs that one would look at first.
+"""The choice of runs for a report: examples of pairs, and the most notable runs.
 
 The choice is not random: the same study gives the same runs, and of equal ones the first in the
 study.
@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import metric
 
 
@@ -20,12 +20,12 @@ class ExamplePair:
     """Two runs on the same crowd, side by side.
 
     Attributes:
-        reason: why it is shown: median (with a stop), best, worst or stop-and-wait.
+        reason: Reason to show it: median (with a stop), best, worst or stop-and-wait.
         context: label of the other factors' levels; empty without any.
         ego: its id; empty where a run has none.
         treatment: label of the compared level.
         baseline: label of the level that is subtracted.
-        seed: of both runs.
+        seed: Seed of both runs.
         run: id of the treatment's run.
         run_baseline: id of the baseline's run.
         metric: name of the one by which the pair was chosen.
@@ -49,14 +49,14 @@ class WorstRun:
     """A run that is worth looking at.
 
     Attributes:
-        reason: the heading of its table.
-        run: its id; of a pair, the treatment's.
-        partner: the baseline's run of a pair; else empty.
+        reason: Heading of its table.
+        run: Id of the run; of a pair, the treatment's.
+        partner: Id of the baseline's run of a pair; else empty.
         cell: label of its levels.
         ego: id of the ego; may be empty.
-        metric: name of the one that is extreme.
-        value: of the metric, or the pair's difference.
-        unit: of the value.
+        metric: Name of the metric that is extreme.
+        value: Value of the metric, or the pair's difference.
+        unit: Unit of the value.
     """
 
     reason: str
@@ -101,7 +101,7 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
 
     Args:
         study: its runs, design and definition are read.
-        count: at most so many.
+        count: Largest number of them.
     """
     pairs = paired(study)
     name = deciding_metric(pairs)
@@ -123,7 +123,7 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
         if len(chosen) == extremes:
             middle = table[name + DIFFERENCE]
             _add(chosen, reason, table, name, (middle - middle.median()).abs())
-    chosen = [*chosen[extremes:], *chosen[:extremes]]  # what is typical stands first
+    chosen = [*chosen[extremes:], *chosen[:extremes]]  # typical pairs come first
     by_wait = waiting["longest_wait" + DIFFERENCE]
     _add(chosen, "stop-and-wait", waiting, "longest_wait", (by_wait - by_wait.median()).abs())
     return chosen[: max(count, 0)]
@@ -139,7 +139,10 @@ def _add(
 
 
 def deciding_metric(pairs: pd.DataFrame) -> str:
-    """Completion time; total wait where no pair has reached its goal on both sides."""
+    """Return the metric to choose by: the completion time.
+
+    It is the total wait if no pair has reached its goal on both sides.
+    """
     reached = pairs["completion_time" + DIFFERENCE].notna()
     return "completion_time" if reached.any() else "total_wait"
 
@@ -162,7 +165,10 @@ def _example(reason: str, row: pd.Series, name: str) -> ExamplePair:
 def _extreme(
     study: StudyFolder, reason: str, name: str, count: int, *, sign: float
 ) -> list[WorstRun]:
-    """The runs with the smallest (+1) or largest (-1) numbers; the largest must be above zero."""
+    """Return the runs with the smallest (+1) or largest (-1) numbers.
+
+    The largest must be above zero.
+    """
     values = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cost = np.where((values > 0.0) | (sign > 0.0), sign * values, np.nan)
     labels = {cell.number: cell.label for cell in study.design.cells}
@@ -194,6 +200,6 @@ def _differing(study: StudyFolder, reason: str, count: int, *, sign: float) -> l
 
 
 def _smallest(cost: NDArray[np.float64], count: int) -> list[int]:
-    """Places of the ``count`` smallest finite values; of equal ones the first."""
+    """Return the indices of the ``count`` smallest finite values, the first of equal ones."""
     order = np.argsort(cost, kind="stable")
     return [int(place) for place in order if np.isfinite(cost[place])][: max(count, 0)]

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from giveway.figures.style import house_style
 
-# Black is the page's ink, so that a dark page has light lines; white is its paper.
+# Black becomes the page's text colour, white its background: a dark page has light lines.
 _COLOURS = {
     "#000000": "currentColor",
     "#505050": "var(--muted)",
@@ -24,8 +24,8 @@ def inline_svg(figure: Figure, prefix: str) -> str:
     """The figure as an ``<svg>`` element.
 
     Args:
-        figure: what to draw.
-        prefix: for the ids within; letters and digits, unique in the page.
+        figure: Figure to draw.
+        prefix: Prefix for the ids within; letters and digits, unique in the page.
     """
     stream = BytesIO()
     with house_style(), rc_context({"svg.fonttype": "none"}):
@@ -38,7 +38,10 @@ def inline_svg(figure: Figure, prefix: str) -> str:
 
 
 def _for_page(tag: str, prefix: str) -> str:
-    """A tag with ids, colours and coordinates for the page; what stands between tags is text."""
+    """Return a tag with ids, colours and coordinates for the page.
+
+    Text between tags is returned unchanged.
+    """
     tag = re.sub(r'\bid="', f'id="{prefix}-', tag)
     tag = re.sub(r"url\(#", f"url(#{prefix}-", tag)
     tag = re.sub(r'xlink:href="#', f'href="#{prefix}-', tag)

@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from giveway.errors import GivewayError
-from giveway.figures.study_pairs import PairSide, pair_figure
+from giveway.figures.studies.study_pairs import PairSide, pair_figure
 from giveway.reports.choice import ExamplePair
-from giveway.reports.pictures import Picture
+from giveway.reports.study_pictures import Picture
 from giveway.reports.wording import quantity, shown_ego
 from giveway.results.run_result import RunResult
 from giveway.run_data.tracks import EgoTrack
@@ -23,11 +23,11 @@ TITLES = {
 
 @dataclass(frozen=True)
 class Drive:
-    """How one ego of a run drove.
+    """The drive of one ego in a run.
 
     Attributes:
         ego: its id.
-        track: of the run.
+        track: Track of the run.
         safe_distance: d_safe [m].
         buffer_distance: d_buffer [m].
     """
@@ -52,7 +52,7 @@ def example_pictures(
     """A picture of each pair, and a sentence for each that could not be made again.
 
     Args:
-        pairs: which ones.
+        pairs: Pairs to draw.
         drives: gives those of a run of the study, by its id.
     """
     drawn, missing = [], []

@@ -1,4 +1,4 @@
-"""What a report keeps of the runs that it shows, so that the next one need not make them again."""
+"""Runs that a report keeps, so that the next report need not make them again."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ import numpy as np
 from giveway.errors import ResultsError
 from giveway.reports.examples import Drive
 from giveway.run_data.tracks import EgoTrack
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 
 REPLAYS = "replays"
 _LIST = "kept.json"
@@ -33,7 +33,7 @@ class KeptRuns:
     the SHA-256 of both files; whatever does not fit its line is not used.
 
     Args:
-        study: whose runs.
+        study: Study that has the runs.
     """
 
     def __init__(self, study: StudyFolder) -> None:
@@ -47,7 +47,7 @@ class KeptRuns:
         self._list = kept if isinstance(kept, dict) else {}
 
     def has(self, run: str) -> bool:
-        """Whether page and drives of a run are there, as they were made of the study's record."""
+        """True if page and drives of a run exist and were made from the study's record."""
         try:
             return bool(self._list.get(run) == self._line(run))
         except OSError:
@@ -133,7 +133,10 @@ class KeptRuns:
 
 @functools.cache
 def page_code() -> str:
-    """Changes with the code that turns results into a page; no record of a run does with that."""
+    """Return a hash of the code that turns results into a page.
+
+    A run's record does not change with that code.
+    """
     digest = hashlib.sha256()
     for path in _code(files("giveway.replays")):
         digest.update(path.name.encode() + path.read_bytes())

@@ -1,4 +1,4 @@
-"""How the levels and contexts of a study are labelled in its report."""
+"""Labels of the levels and contexts of a study in its report."""
 
 import math
 from collections.abc import Mapping
@@ -9,11 +9,11 @@ import numpy as np
 from giveway.studies.contexts import Context, baseline_level, other_factors
 from giveway.studies.contexts import contexts as contexts_of
 from giveway.studies.design import label_of
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 
 
 def contexts(study: StudyFolder) -> list[Context]:
-    """The contexts of a study in the order of its design."""
+    """Return the contexts of a study in the order of its design."""
     return contexts_of(study.design, study.definition.comparison)
 
 

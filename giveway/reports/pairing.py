@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 import pandas as pd
 
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.record import run_id
 from giveway.studies.statistics import METRICS
 from giveway.studies.statistics import pairs as statistics
@@ -40,7 +40,7 @@ def paired(study: StudyFolder) -> pd.DataFrame:
 
 
 def situation_of(pairs: pd.DataFrame, situation: str) -> pd.DataFrame:
-    """The pairs of a situation; "general" are all."""
+    """Return the pairs of a situation, or all pairs for "general"."""
     return pairs if situation == "general" else pairs[pairs["situation"] == situation]
 
 

@@ -9,11 +9,11 @@ from giveway.errors import GivewayError
 from giveway.replays import write_replay
 from giveway.reports.examples import Drive, drives_of
 from giveway.reports.kept_runs import KeptRuns
-from giveway.reports.page import shown_runs, write_report
+from giveway.reports.report_page import shown_runs, write_report
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
-from giveway.studies.folder import StudyFolder
-from giveway.studies.rerun import checked_run, rerun
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.repeated_run import checked_run, rerun
 
 
 def write_report_of(
@@ -79,7 +79,7 @@ def _make(
                 checked = checked_run(study, run, predictions=True, trusted=trusted)
                 result = _whole(rerun(study, run, folder, checked=checked, pictures=False))
             except GivewayError as error:
-                lost[run] = error  # its scenario has changed or is missing
+                lost[run] = error  # the run's scenario has changed or is missing
                 continue
             write_replay(folder, kept.page(run))
             kept.keep(run, drives_of(result))

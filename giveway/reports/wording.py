@@ -1,4 +1,4 @@
-"""How numbers, units and identities are written in a report."""
+"""Wording: how numbers, units and identities are written in a report."""
 
 import math
 
@@ -19,7 +19,7 @@ _USUAL_EGO = frozenset({"", "ego"})
 
 
 def shown_ego(ego: object) -> str:
-    """The ego's id in brackets; nothing for the usual one."""
+    """Return the ego's id in brackets, or "" for the default ego."""
     return "" if str(ego) in _USUAL_EGO else f" (ego {ego})"
 
 
@@ -35,7 +35,7 @@ def quantity(value: float, unit: str, digits: int = 2) -> str:
 
 
 def interval(low: float, high: float, unit: str = "") -> str:
-    """Both ends as in "−0.84 to −0.31 s"; a dash where there is none."""
+    """Return both ends as in "−0.84 to −0.31 s", or a dash without an interval."""
     if not (math.isfinite(low) and math.isfinite(high)):
         return "–"
     digits = digits_for(high - low)

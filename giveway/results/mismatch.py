@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from fmus.checking.fitting import fit, prepare
 from fmus.checking.manoeuvres import Trace
-from fmus.checking.prediction import position_errors
+from fmus.checking.model_fit.fitting import fit, prepare
+from fmus.checking.model_fit.prediction import position_errors
 from giveway.results.ego_result import EgoResult
 from giveway.run_data.tracks import EgoTrack
 

@@ -17,7 +17,7 @@ class Context:
     """One combination of the levels of the factors that are not compared.
 
     Attributes:
-        levels: by factor; empty where nothing but one factor is varied.
+        levels: Level of each other factor; empty if one factor alone is varied.
         cells: number of the cell, by the label of the compared level.
     """
 
@@ -42,7 +42,7 @@ class Context:
 
 
 def contexts(design: Design, comparison: Comparison) -> list[Context]:
-    """The contexts of a study, in the order of its design.
+    """Return the contexts of a study, in the order of its design.
 
     Raises:
         ConfigError: the study has no such factor.
@@ -63,7 +63,7 @@ def other_factors(design: Design, comparison: Comparison) -> list[str]:
 
 
 def baseline_level(design: Design, comparison: Comparison) -> Level:
-    """The level that is subtracted: the one named, or the factor's last.
+    """Return the level that is subtracted: the one named, or the factor's last.
 
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.

@@ -28,7 +28,7 @@ def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
 
 
 class Comparison(Section):
-    """Which factor's levels are compared, run by run on the same crowds."""
+    """The comparison: which factor's levels are compared, run by run on the same crowds."""
 
     factor: str = Field(
         "controller",
@@ -103,7 +103,9 @@ class StudyDefinition(Section):
 
 
 def read_definition(path: Path) -> StudyDefinition:
-    """The study in a TOML file; paths in it are relative to its folder.
+    """Read the study in a TOML file.
+
+    Paths in it are relative to its folder.
 
     Raises:
         ConfigError: the file is missing, not TOML, or holds what no study has.
@@ -116,9 +118,9 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
     """The study in a TOML text.
 
     Args:
-        text: of the file.
+        text: Text of the file.
         origin: name of the file, for messages.
-        folder: what relative paths in it are relative to.
+        folder: Folder to which relative paths refer.
 
     Raises:
         ConfigError: one line that names the key, its value and what was expected.
@@ -135,7 +137,7 @@ def make_definition(values: dict[str, Any], origin: str) -> StudyDefinition:
 
     Args:
         values: file names in it are relative to the working folder.
-        origin: of it, for messages.
+        origin: Origin of it, for messages.
 
     Raises:
         ConfigError: one line that names the key, its value and what was expected.
@@ -169,7 +171,7 @@ def _folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
 
 
 def _holds_file_of(folder: Path, values: Any) -> bool:
-    """Whether a text in ``values`` names a file or folder in ``folder``."""
+    """True if a text in ``values`` names a file or folder in ``folder``."""
     if isinstance(values, dict):
         return any(_holds_file_of(folder, value) for value in values.values())
     if isinstance(values, list):

@@ -1,4 +1,4 @@
-"""From factors and levels to cells: the settings of every combination that is run."""
+"""The design of a study: factors and levels become cells, the settings of each combination."""
 
 import difflib
 import itertools
@@ -13,7 +13,8 @@ from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.plug_ins.sockets import RULE
-from giveway.studies.columns import (
+from giveway.studies.definition import StudyDefinition
+from giveway.studies.table_columns import (
     COMPARISON_COLUMNS,
     FRONT_COLUMNS,
     LEVEL_COLUMNS,
@@ -21,7 +22,6 @@ from giveway.studies.columns import (
     SITUATION_COLUMNS,
     TABLE_2_COLUMNS,
 )
-from giveway.studies.definition import StudyDefinition
 
 _RESERVED = frozenset(
     {"run", "cell", "seed", "ego", "ending", "runs", "failed", "seconds", "twin"}
@@ -49,9 +49,9 @@ class Level:
     """One value of a factor.
 
     Attributes:
-        label: how tables and pictures call it.
+        label: Name of it in tables and pictures.
         value: the option's value; the label, for a level that has a name.
-        settings: what it sets.
+        settings: Options that it sets.
     """
 
     label: str
@@ -66,7 +66,7 @@ class Factor:
     Attributes:
         name: an option, as ``crowd.pedestrians``, or a name of the user's.
         levels: its values.
-        unit: of an option; None without one.
+        unit: Unit of an option; None without a unit.
     """
 
     name: str
@@ -84,8 +84,8 @@ class Cell:
     """One combination of levels.
 
     Attributes:
-        number: from 1 on, in the order of the design.
-        levels: by factor.
+        number: Number from 1 on, in the order of the design.
+        levels: Level of each factor.
     """
 
     number: int
@@ -162,7 +162,10 @@ def design(definition: StudyDefinition, origin: str) -> Design:
 
 
 def label_of(value: object) -> str:
-    """How a value is written in a label; an empty one is "none", as tables drop empty texts."""
+    """Return a value as written in a label.
+
+    An empty value is "none", since tables drop empty texts.
+    """
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list | tuple):
@@ -226,7 +229,7 @@ def _named_factor(
 
 
 def _plugged_location(table: str, key: str) -> tuple[str, ...]:
-    """Where an option of another package's code stands: of a rule below the rule's name."""
+    """Return the location of a plug-in's option; a rule's options are below the rule's name."""
     rule, _, own = key.rpartition(".")
     is_option = table == RULE.options and rule and ":" not in own
     return (table, rule, own) if is_option else (table, key)
@@ -274,7 +277,7 @@ def _factor(name: str, levels: list[Level], place: str, unit: str | None = None)
 def _only(
     factors: tuple[Factor, ...], wanted: Mapping[str, Sequence[Any]], origin: str
 ) -> tuple[Factor, ...]:
-    """The factors with the wanted levels alone, in the study's order.
+    """Return the factors with the wanted levels alone, in the study's order.
 
     Raises:
         ConfigError: there is no such factor or level.

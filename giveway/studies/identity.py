@@ -1,4 +1,4 @@
-"""What a run's numbers depend on, as hashes: its settings, its input files, the code that runs it.
+"""Hashes of everything a run's numbers depend on: its settings, its input files, the code.
 
 Two runs with one key have the same rows, byte for byte; that is what lets a study be resumed.
 """
@@ -39,7 +39,8 @@ _NAMING_FILES = (
     ("crowd", "preset"),
     ("perception", "preset"),
 )
-_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})  # make the rows
+# Files that make the rows, in packages otherwise left out
+_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})
 _IRRELEVANT_VERSIONS = frozenset({"platform", "machine", "pandas", "python"})
 
 
@@ -68,12 +69,14 @@ def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
 
 
 def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str:
-    """A hash of everything but the seed; where the files lie does not matter, what they hold does.
+    """Return a hash of everything but the seed.
+
+    The content of the files matters, their place does not.
 
     Args:
         config: the effective configuration; its seed is left out.
-        inputs: as :func:`input_hashes` gives them.
-        software: as :func:`software_identity` gives it.
+        inputs: Hashes of the input files from :func:`input_hashes`.
+        software: Identity of the code from :func:`software_identity`.
     """
     values = config.model_dump(mode="json", exclude={"seed"})
     for table in (values, *values["egos"]):
@@ -126,7 +129,10 @@ def require_same(task: Task) -> None:
 
 
 def _scenario_files(scenario: Scenario) -> tuple[tuple[str, Path], ...]:
-    """The scenario's inputs by name; read again only when what names them has changed."""
+    """Return the scenario's inputs by name.
+
+    They are read again only when the files that name them have changed.
+    """
     naming = (scenario.config_file, scenario.settings_file)
     return _scenario_files_of(scenario, tuple(_stamp(file) for file in naming if file))
 
@@ -152,7 +158,7 @@ def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:
 
 
 def _option_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """The files that ``sumo.options`` name, such as additional files."""
+    """Return the files that ``sumo.options`` name, such as additional files."""
     named = [
         (option, Path(piece.strip()))
         for option, value in parse_options(config.sumo.options).items()
@@ -179,7 +185,10 @@ def _vehicle_files(config: RunConfig) -> list[tuple[str, Path]]:
 
 
 def _hash(file: Path) -> str:
-    """The file's SHA-256; it is read again only when it has changed."""
+    """Return the file's SHA-256.
+
+    The file is read again only when it has changed.
+    """
     return _hash_of(str(file.absolute()), _stamp(file))
 
 

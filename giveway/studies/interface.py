@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from giveway.studies.folder import StudyFolder
-from giveway.studies.options import StudyOptions
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.study import StudyProgress, run_study
+from giveway.studies.study_options import StudyOptions
 from giveway.studies.varying import study_of
 
 
@@ -28,8 +28,8 @@ def study(
             seeds unless ``replications`` says more), a bundled study's name, or a .toml file.
         out: its folder; None: ``results/study_NAME``.
         jobs: worker processes; None: one per processor.
-        resume: go on with what is in the folder.
-        force: replace what is in the folder.
+        resume: True to continue the study in the folder.
+        force: True to replace the content of the folder.
         watcher: called after every run.
 
     Returns:

@@ -25,7 +25,7 @@ class PlannedCell:
         cell: levels and number.
         config: the effective configuration of its first run.
         inputs: SHA-256 of each file that its runs read.
-        digest: of everything that its runs have in common.
+        digest: Hash of everything that its runs have in common.
     """
 
     cell: Cell
@@ -48,7 +48,7 @@ class PlannedRun:
 
     @property
     def key(self) -> str:
-        """The name of its record."""
+        """The key of its record."""
         return run_key(self.planned.digest, self.seed)
 
     @property
@@ -57,7 +57,7 @@ class PlannedRun:
         return self.planned.config.model_copy(update={"seed": self.seed})
 
     def task(self) -> Task:
-        """What a worker needs to make it."""
+        """The task that a worker needs to make it."""
         text = self.config.model_dump_json()
         return Task(self.id, self.key, text, self.planned.inputs, software_identity())
 
@@ -72,7 +72,10 @@ class Plan:
 
     @property
     def seeds(self) -> range:
-        """The seeds of every cell; with [precision], the most there may be."""
+        """Return the seeds of every cell.
+
+        With [precision] these are the most there may be.
+        """
         first = self.definition.first_seed
         return range(first, first + self.definition.replications)
 
@@ -114,7 +117,7 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
         raise ConfigError(f"{origin}: [comparison] {error}") from None
     baseline = None if wanted.baseline is None else factor.level(wanted.baseline)
     if baseline is None and (wanted.baseline is None or factor.name in definition.only):
-        baseline = factor.levels[-1]  # that of the study may be left out
+        baseline = factor.levels[-1]  # the study's baseline may be left out
     if baseline is None:
         known = ", ".join(level.label for level in factor.levels)
         raise ConfigError(
@@ -125,7 +128,7 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
 
 
 def _require_metric(definition: StudyDefinition, origin: str) -> None:
-    """Make sure that what is to be known precisely is something that is compared."""
+    """Make sure that the metric of [precision] is one that is compared."""
     if definition.precision is None:
         return
     try:
@@ -149,7 +152,7 @@ def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCel
 
 
 def _require_people(cell: Cell, config: RunConfig, scenario: Scenario) -> None:
-    """Make sure that a study that varies the crowd has somebody in each of its cells.
+    """Make sure that a study that varies the crowd has pedestrians in each of its cells.
 
     Raises:
         ConfigError: neither giveway nor the scenario has anybody walk in this one.

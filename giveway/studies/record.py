@@ -1,4 +1,4 @@
-"""What a study keeps of one run: its summary rows, or why it has none."""
+"""The record of one run in a study: its summary rows, or why it has none."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FAILED = "failed"
 
 
 def run_id(cell: int, seed: int) -> str:
-    """What a run is called within its study: ``c2-s17`` is seed 17 in cell 2."""
+    """Return the name of a run within its study: ``c2-s17`` is seed 17 in cell 2."""
     return f"c{cell}-s{seed}"
 
 
@@ -47,16 +47,16 @@ class Task:
 
 @dataclass(frozen=True)
 class Computing:
-    """How a run was computed, which may differ between two equal studies.
+    """The execution of a run, which may differ between two equal studies.
 
     Attributes:
         seconds: wall clock of the run, set-up and metrics included.
-        attempts: how often it was tried.
+        attempts: Number of attempts.
         worker: host and process id.
         memory: resident set of the worker after the run [MB].
-        control_median: of the time of one control step, prediction and controller [ms].
+        control_median: Median time of one control step, prediction and controller [ms].
         control_max: the longest one [ms]; the run's first step is left out of both.
-        twin: of the seconds, those that following the run and its twin took; nan: no twin.
+        twin: Part of the seconds spent on following the run and on its twin; nan without a twin.
     """
 
     seconds: float = math.nan
@@ -75,11 +75,11 @@ class RunRecord:
     Attributes:
         run: id in its study.
         key: content hash of everything that can change a number of it.
-        ending: as in the summary: completed, time limit, ..., failed, crashed.
+        ending: Ending as in the summary: completed, time limit, ..., failed, crashed.
         rows: one per ego: the columns of ``summary.csv``; one row of the run's head without egos.
         remarks: notes on what is unusual about the run.
         failure: one line: why it failed or crashed, and where; empty if it did not.
-        computing: how it was computed.
+        computing: Execution of the run.
     """
 
     run: str
@@ -92,7 +92,7 @@ class RunRecord:
 
     @property
     def failed(self) -> bool:
-        """Whether it has no result."""
+        """True if it has no result."""
         return bool(self.failure)
 
     def called(self, run: str) -> RunRecord:
@@ -103,7 +103,7 @@ class RunRecord:
         return self if self.run == run else replace(self, run=run)
 
     def to_json(self) -> str:
-        """The record as one line of JSON; nan, which JSON does not know, becomes null."""
+        """Return the record as one line of JSON, in which nan becomes null."""
         return json.dumps(_plain(asdict(self)), ensure_ascii=False, allow_nan=False)
 
     @classmethod
@@ -117,7 +117,7 @@ class RunRecord:
 
     @classmethod
     def from_values(cls, values: dict[str, Any]) -> RunRecord:
-        """The record whose JSON has been read already; ``values`` are used up.
+        """Make the record from JSON that has been read already, and empty ``values``.
 
         Raises:
             ValueError: they are not those of a record.

@@ -14,21 +14,21 @@ import numpy as np
 from giveway.errors import GivewayError
 from giveway.processes.interrupts import exit_code_of, who_ended
 from giveway.results.provenance import software_versions
-from giveway.studies.atomic_files import write_atomically
-from giveway.studies.contents import DEFINITION, MANIFEST, broken_files, read_manifest
 from giveway.studies.definition import StudyDefinition, dump_definition
 from giveway.studies.execution import Executor
-from giveway.studies.folder import StudyFolder
-from giveway.studies.frames import runs_frame
+from giveway.studies.folder.atomic_files import write_atomically
+from giveway.studies.folder.folder_contents import DEFINITION, MANIFEST, broken_files, read_manifest
+from giveway.studies.folder.frames import runs_frame
+from giveway.studies.folder.lock import remove_derived_files, remove_study, reserved
+from giveway.studies.folder.sealing import BrokenFileError, fingerprint, put_aside, sealed
+from giveway.studies.folder.store import RecordStore
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.folder.table_files import write_tables
 from giveway.studies.identity import software_identity
-from giveway.studies.lock import remove_derived_files, remove_study, reserved
-from giveway.studies.options import StudyOptions
-from giveway.studies.output import write_tables
 from giveway.studies.plan import Plan, PlannedRun, plan
 from giveway.studies.record import RunRecord
-from giveway.studies.sealing import BrokenFileError, fingerprint, put_aside, sealed
 from giveway.studies.statistics import looks, precise_enough
-from giveway.studies.store import RecordStore
+from giveway.studies.study_options import StudyOptions
 
 __all__ = [
     "StudyInterruptedError",
@@ -47,12 +47,12 @@ class StudyInterruptedError(GivewayError):
 
 @dataclass(frozen=True)
 class StudyProgress:
-    """Where a study stands."""
+    """The progress of a study."""
 
-    total: int  # runs, as far as is known
-    kept: int  # runs of former sessions
-    made: int  # runs of this session
-    failed: int  # of both
+    total: int  # Number of runs, as far as known
+    kept: int  # Number of runs kept from former sessions
+    made: int  # Number of runs made in this session
+    failed: int  # Number of failed runs among kept and made ones
     latest: RunRecord | None
 
     @property
@@ -72,10 +72,10 @@ def run_study(
     """Compute the missing runs of a study, and write its tables.
 
     Args:
-        definition: of the study.
+        definition: Definition of the study.
         origin: its file, for messages.
         out: its folder.
-        options: how it is computed.
+        options: Options of computing it.
         watcher: told of every finished run.
         tell: takes one line for each kept file that is broken, and when the runs of another
             giveway are made again; None: to standard error.
@@ -126,7 +126,7 @@ class _Session:
         self._begun = False
 
     def begin(self) -> None:
-        """Write definition and manifest; remove tables and report of a former session."""
+        """Write definition and manifest, and remove tables and report of a former session."""
         if self._options.force:
             remove_study(self._out)
         for file in broken_files(self._out):
@@ -160,7 +160,8 @@ class _Session:
 
     def end(self) -> None:
         """Write the tables, then mark the study as complete."""
-        self._write_manifest(complete=False)  # precision has decided how many seeds there are
+        # the precision reached has fixed the number of seeds
+        self._write_manifest(complete=False)
         write_tables(StudyFolder(self._out), whole=True)
         self._write_manifest(complete=True)
 
@@ -172,12 +173,15 @@ class _Session:
             write_tables(StudyFolder(self._out), whole=False)
 
     def kept(self) -> str:
-        """What to tell a user who has ended the study."""
+        """Return the message to a user who has ended the study."""
         done = f"{self._kept + self._made:,} of {len(self._plan):,} runs"
         return f"{done} are kept in {self._out}: go on with --resume"
 
     def _make(self, executor: Executor, seeds: range) -> None:
-        """Make the missing runs of ``seeds``; cells with equal settings share them."""
+        """Make the missing runs of ``seeds``.
+
+        Cells with equal settings share runs.
+        """
         missing: defaultdict[str, list[PlannedRun]] = defaultdict(list)
         for run in self._plan.runs(seeds):
             record = self._kept_record(run.key)
@@ -197,7 +201,10 @@ class _Session:
             self._report(record)
 
     def _kept_record(self, key: str) -> RunRecord | None:
-        """The record of a run that has been made; a broken one is named and put aside."""
+        """Return the record of a run that has been made.
+
+        A broken record is reported and put aside.
+        """
         try:
             return self._store.get(key)
         except BrokenFileError as error:
@@ -213,7 +220,7 @@ class _Session:
         self._watcher(StudyProgress(total, self._kept, self._made, self._failed, record))
 
     def _precise(self) -> bool:
-        """Whether the seeds so far tell the difference well enough."""
+        """True if the seeds so far determine the difference precisely enough."""
         definition, design = self._plan.definition, self._plan.design
         assert definition.precision is not None
         made = [
@@ -253,7 +260,9 @@ class _Session:
 
 
 def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, float]]:
-    """How long a study will take [s], from two runs of each cell; nothing is kept.
+    """Estimate the time [s] that a study will take, from two runs of each cell.
+
+    Nothing of these runs is kept.
 
     Returns:
         The whole time on the workers that ``options`` ask for, and the seconds of one run by the
@@ -267,7 +276,8 @@ def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, flo
         for record in executor.run(iter(tasks)):
             cell = record.run.partition("-")[0].removeprefix("c")
             taken = math.nan if record.failed else record.computing.seconds
-            seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))  # the first warms up
+            # the first run is slower: it warms up
+            seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))
     return float(np.nansum([*seconds.values()])) * len(seeds) / workers, seconds
 
 

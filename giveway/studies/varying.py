@@ -15,7 +15,7 @@ _SEEDS = 20
 
 
 def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefinition:
-    """The study of some options' values: all combinations of them.
+    """Return the study of all combinations of some options' values.
 
     Args:
         variations: like ``controller_options.conflict_weight=0.3,0.6``.
@@ -71,13 +71,13 @@ def _parsed(variation: str) -> tuple[str, list[Any]]:
 
 
 def study_of(study: Mapping[str, Any] | str | Path) -> tuple[StudyDefinition, str]:
-    """The study that a caller of the Python API means, and where it is from, for messages.
+    """Return the study that a caller of the Python API means, and its origin for messages.
 
     Raises:
         ConfigError: it is none.
     """
     from giveway.studies.definition import read_definition
-    from giveway.studies.finding import find_study
+    from giveway.studies.study_files import find_study
 
     if isinstance(study, Mapping):
         values = {"name": "study", "replications": _SEEDS, **study}

@@ -13,8 +13,8 @@ from typing import Any
 from giveway.errors import GivewayError
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
 from giveway.sumo.encounters import Encounters
-from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import import_libsumo
+from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.types import ROAD_CLASSES
 
 _LOOK = 3.0  # [s] wall-clock time: enough to see vehicles depart, and short to wait for

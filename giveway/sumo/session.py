@@ -26,12 +26,12 @@ from giveway.geometry.path import Pose, heading_to_angle
 from giveway.scenario_files import ScenarioFiles, StartOptions, prepare_start
 from giveway.scenario_files.outputs import is_file
 from giveway.sumo.first_reading import read_first
-from giveway.sumo.footpaths import FootPaths
-from giveway.sumo.handover import NOWHERE
-from giveway.sumo.junctions import Junctions
-from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct, import_libsumo
-from giveway.sumo.persons import ScenarioPersons
+from giveway.sumo.network.footpaths import FootPaths
+from giveway.sumo.network.junction_links import Junctions
+from giveway.sumo.network.lanes import Lanes
+from giveway.sumo.persons.handover import NOWHERE
+from giveway.sumo.persons.scenario_persons import ScenarioPersons
 from giveway.sumo.scratch import scratch
 from giveway.sumo.signal_plans import SignalPlans
 from giveway.sumo.stderr import NativeStderr, of_others

@@ -11,8 +11,8 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
-from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct
+from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.types import ego_type, inserted_type
 
 _PARKING_AREA = 64  # SUMO's flag of a stop

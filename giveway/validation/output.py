@@ -8,7 +8,13 @@ from numpy.typing import NDArray
 
 from giveway.errors import ResultsError
 from giveway.figures.style import save_figure
-from giveway.figures.validation import Body, Curve, growth_figure, places_figure, tracks_figure
+from giveway.figures.validation_figures import (
+    Body,
+    Curve,
+    growth_figure,
+    places_figure,
+    tracks_figure,
+)
 from giveway.validation.evaluation import EVERYWHERE, NEAR
 from giveway.validation.predictors import CV, NO_VEHICLE, OWN_PACE, VCI, predictors
 from giveway.validation.protocol import Window

@@ -19,8 +19,8 @@ from fmus import ControllerParameters, export_controller
 from giveway.config.files.layers import read_toml
 from giveway.config.files.loading import load
 from giveway.errors import ConfigError, ControlError
-from giveway.studies.folder import StudyFolder
-from giveway.studies.rerun import checked_run
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.repeated_run import checked_run
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,7 +21,7 @@ from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.traffic_lights import TrafficLights
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lane_path import Light
+from giveway.sumo.network.lane_path import Light
 from pedestrian_model import OPEN_GROUND, Crowd
 
 STEP = 0.05  # [s]

@@ -13,7 +13,7 @@ import pytest
 from support.plug_ins import printed
 
 import giveway
-from giveway.cli.check_command import check_command
+from giveway.cli.commands.check_command import check_command
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
@@ -21,8 +21,8 @@ from giveway.cosimulation.preflight import preflight
 from giveway.ego.controllers import make_controller
 from giveway.errors import ConfigError, ControlError
 from giveway.plug_ins.sockets import CONTROLLER
-from giveway.studies.folder import StudyFolder
-from giveway.studies.rerun import checked_run, rerun
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.repeated_run import checked_run, rerun
 
 SHORT = {"time_limit": 2.0, "crowd": {"pedestrians": 3}}
 
@@ -191,7 +191,7 @@ def test_what_a_plug_in_declares_holds_where_the_user_says_nothing(installed):
 def test_the_schema_knows_what_is_declared_and_what_is_a_reference(careful):
     import jsonschema
 
-    from giveway.cli.schema import schemas
+    from giveway.cli.commands.schema_command import schemas
 
     schema = schemas()["giveway-run.schema.json"]
     for name in ("mpc", "careful", "some.package:Class"):

@@ -18,8 +18,8 @@ from giveway.config.files.loading import load
 from giveway.cosimulation.counterfactual import counterfactual
 from giveway.cosimulation.counterfactual.follow_up import Beginning
 from giveway.errors import ConfigError, ControlError, CrowdError
-from giveway.studies.folder import StudyFolder
-from giveway.studies.rerun import checked_run
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.repeated_run import checked_run
 from pedestrian_model import Crowd, ModelSetup, check_model
 
 GROUP = "giveway.pedestrian_models"

@@ -11,7 +11,7 @@ import pytest
 from support.plug_ins import installed, printed  # noqa: F401 - a fixture
 
 import giveway
-from giveway.cli.check_command import check_command
+from giveway.cli.commands.check_command import check_command
 from giveway.errors import ConfigError, ControlError, RuleError
 from giveway.plug_ins.sockets import RULE
 

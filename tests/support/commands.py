@@ -37,7 +37,7 @@ def type_here(
         with monkeypatch.context() as there:
             there.chdir(cwd)
             command = [sys.executable, "-m", "giveway", *typed]
-            there.setattr("giveway.cli.isolated.own_command", lambda: command)
+            there.setattr("giveway.cli.guards.isolated.own_command", lambda: command)
             with pytest.raises(SystemExit) as ended:
                 main(typed)
         out, err = capfd.readouterr()

@@ -21,7 +21,7 @@ from giveway.geometry.bodies import BODY
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.geometry.path import EgoPath
 from giveway.scenario_files import declares, flows_due, undeclared
-from giveway.sumo.lane_path import LanePath
+from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.walkways import WalkNetwork
 

@@ -19,7 +19,7 @@ from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.geometry.slope import Slope
 from giveway.run_data.way import EgoWay, JunctionOnWay
-from giveway.sumo.lane_path import LanePath
+from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
 from giveway.walkways import WalkNetwork

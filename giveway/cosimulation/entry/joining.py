@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lane_path import LanePath
+from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.vehicles import VehicleState
 
 _ON_THE_LINE = 0.01  # [m]

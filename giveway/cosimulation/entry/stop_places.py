@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lane_path import LanePath
-from giveway.sumo.lanes import Lanes
+from giveway.sumo.network.lane_path import LanePath
+from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.vehicles import PlannedStop, VehicleState
 
 SERVING: tuple[str, ...] = ("bus", "coach", "tram")

@@ -8,7 +8,7 @@ from giveway.cosimulation.traffic.lane_paths import LanePaths
 from giveway.ego.ego import Ego
 from giveway.ego.rules.merge_places import Place, Rival
 from giveway.sumo.background import BackgroundVehicles
-from giveway.sumo.lanes import Lanes
+from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
 
 _NEAR = 150.0  # [m] from an ego, where others are looked at

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from giveway.crowd.crossings import is_open
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
-from giveway.sumo.crossings import Crossing
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.signal_plans import ChangeOf, SignalChange, untold
 from pedestrian_model import Crowd
 

@@ -9,7 +9,7 @@ lines on two-lane roads (base values), chapter 18 for left turns against oncomin
 import math
 from typing import NamedTuple
 
-from giveway.sumo.junctions import Movement
+from giveway.sumo.network.junction_links import Movement
 
 _LEFT, _RIGHT = "lLt", "rR"  # SUMO's letters; a turn back crosses what a left turn does
 

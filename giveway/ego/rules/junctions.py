@@ -10,9 +10,9 @@ from giveway.geometry.bodies import BODY
 from giveway.geometry.conflict import Conflict, conflict
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, points_at, stations_of
-from giveway.sumo.junctions import Junctions, Movement
-from giveway.sumo.lane_path import Passage
-from giveway.sumo.lanes import Lanes
+from giveway.sumo.network.junction_links import Junctions, Movement
+from giveway.sumo.network.lane_path import Passage
+from giveway.sumo.network.lanes import Lanes
 
 RED = frozenset("rRu")  # letters of a signal state: red, red with yellow
 YELLOW = frozenset("yY")

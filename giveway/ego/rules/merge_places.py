@@ -8,7 +8,7 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
-from giveway.sumo.merging import Merging
+from giveway.sumo.network.shared_lanes import Merging
 
 SIGHT = 80.0  # distance [m] before the place, from which on the ego looks for others
 _SAMPLE = 0.5  # [m] between the points of the path that are looked at

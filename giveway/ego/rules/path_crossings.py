@@ -13,7 +13,7 @@ from giveway.crowd.crossings import ASIDE, place_on
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, fine_near
-from giveway.sumo.crossings import Crossing
+from giveway.sumo.network.pedestrian_crossings import Crossing
 
 _SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
 _GRAIN = 0.5  # [m] between the points of its outline, at most

@@ -40,7 +40,7 @@ from giveway.ego.rules.yielding import (
     needed_braking,
 )
 from giveway.geometry.conflict import Conflict
-from giveway.sumo.junctions import Movement
+from giveway.sumo.network.junction_links import Movement
 
 _PULL_AWAY, _BRISK = 1.5, 3.0  # [m/s^2] of the ego: no less, no more
 _COMING = 1.0  # [m/s^2] of others, who may speed up

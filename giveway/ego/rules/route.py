@@ -19,7 +19,7 @@ from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lane_path import LanePath
+from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.signal_plans import ChangeOf, untold
 

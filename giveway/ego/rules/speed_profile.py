@@ -19,7 +19,7 @@ from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lane_path import SpeedLimit
+from giveway.sumo.network.lane_path import SpeedLimit
 
 LATERAL_ACCELERATION = 2.0
 """[m/s^2] in a bend. Roads are laid out for the side friction that drivers still find comfortable:

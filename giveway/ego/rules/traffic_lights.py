@@ -13,7 +13,7 @@ from giveway.ego.rules.junctions import RED, YELLOW
 from giveway.ego.rules.protocol import LIGHT, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.yielding import STOP_BEFORE, at_rest, needed_braking
-from giveway.sumo.lane_path import Light
+from giveway.sumo.network.lane_path import Light
 from giveway.sumo.signal_plans import Greens, GreensOf
 
 _ARROW = frozenset("s")  # red with a green arrow: after a stop one may go

@@ -1,4 +1,4 @@
-"""Where the runs of a study are made: in processes of this machine, or on a Dask cluster.
+"""Execution of a study's runs: in processes of this machine, or on a Dask cluster.
 
 Whatever happens to a run (a native crash, a hang, the system out of memory), it becomes a
 :class:`giveway.studies.record.RunRecord` like any other; the study goes on.
@@ -23,7 +23,7 @@ def local_executor(
     """Runs in ``jobs`` processes of this machine, one run at a time in each.
 
     Args:
-        jobs: how many.
+        jobs: Number of processes.
         hang_limit: wall clock [s] without progress after which a run is ended; five times that
             while it is being set up; infinity waits for ever.
         run_limit: wall clock [s] of one run; None: any.
@@ -43,13 +43,14 @@ def cluster_executor(
     run_limit: float | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> Executor:
-    """Runs on a Dask cluster, in one process of our own for each thread of its workers.
+    """Make an executor on a Dask cluster: one process of ours for each thread of its workers.
 
     Args:
-        address: of its scheduler, as ``tcp://host:8786``; ``local`` or ``local:N`` makes a cluster
+        address: Address of its scheduler, as ``tcp://host:8786``; ``local`` or ``local:N`` makes a
+            cluster
             of N processes on this machine, to try it.
-        hang_limit: as for :func:`local_executor`.
-        run_limit: as for :func:`local_executor`.
+        hang_limit: Same as for :func:`local_executor`.
+        run_limit: Same as for :func:`local_executor`.
         tell: takes one line when the cluster has to be waited for; None: to standard error.
 
     Raises:

@@ -30,23 +30,24 @@ if TYPE_CHECKING:
 Client = Any  # Dask's classes, whose methods mostly have no types
 Cluster = Any
 
-PATIENCE: Final = 300.0  # [s] to wait for a worker to come back
-_SCHEDULER_PATIENCE: Final = 5.0  # [s] to wait for the scheduler to do so, which knows nothing then
+PATIENCE: Final = 300.0  # Time [s] to wait for a worker to come back
+# Time [s] to wait for the scheduler to come back; it then has lost all tasks
+_SCHEDULER_PATIENCE: Final = 5.0
 _LOCAL: Final = re.compile(r"local(?::([1-9]\d*))?")
 _REMOTE: Final = re.compile(r"(?!local:)([\w.+-]+://\S+|[\w.-]+:\d+)")
 _LOCAL_WORKERS: Final = 2
-_LOOK: Final = 1.0  # [s] between two looks at the cluster
-_CONNECT: Final = 5.0  # [s] for one attempt
-_CLOSING: Final = 5.0  # [s] for the workers to end the study's processes
-_LEAVING: Final = 1.0  # [s] for a cluster that does not answer any more
+_LOOK: Final = 1.0  # Time [s] between two checks of the cluster
+_CONNECT: Final = 5.0  # Time limit [s] of one attempt to connect
+_CLOSING: Final = 5.0  # Time [s] for the workers to end the study's processes
+_LEAVING: Final = 1.0  # Time [s] to leave a cluster that does not answer any more
 
 
 class ClusterExecutor:
     """The :class:`giveway.studies.execution.executor.Executor` of a Dask cluster.
 
     Args:
-        address: of the scheduler; ``local`` or ``local:N``.
-        limits: of each run.
+        address: Address of the scheduler; ``local`` or ``local:N``.
+        limits: Time limits of each run.
         tell: takes one line when the cluster has to be waited for; None: to standard error.
         patience: [s] to wait for its workers; for its scheduler, 5 s at most.
 
@@ -73,20 +74,20 @@ class ClusterExecutor:
         self._limits = limits
         self._tell = tell or _to_stderr
         self._patience = patience
-        self._study = uuid.uuid4().hex  # names our pools to the workers
+        self._study = uuid.uuid4().hex  # identifies our pools for the workers
         self._cluster: Cluster | None = None
         self._client: Client | None = None
         self._threads = 0
-        self._missed = 0.0  # [s] since when there has been no worker; 0: there is one
+        self._missed = 0.0  # Time [s] at which the last worker was lost; 0 while there is one
         self._looked = 0.0
 
     @property
     def workers(self) -> int:
-        """How many runs are made at a time."""
+        """The number of runs that are made at a time."""
         return max(self._threads, self._local, 1)
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        """As the protocol says."""
+        """Compute the tasks as :class:`~giveway.studies.execution.executor.Executor` demands."""
         return ClusterRuns(self, tasks).run()
 
     def __enter__(self) -> Self:
@@ -130,7 +131,7 @@ class ClusterExecutor:
         )
 
     def is_there(self) -> bool:
-        """Whether the cluster has workers, as far as is known from the latest look at it.
+        """True if the cluster had workers at the latest look at it.
 
         Raises:
             WorkerError: there has been no worker for too long.
@@ -163,7 +164,10 @@ class ClusterExecutor:
             self._study = uuid.uuid4().hex
 
     def _missing(self) -> tuple[str, float]:
-        """What the cluster lacks, empty if it can work; and how long [s] that is waited for."""
+        """Return what the cluster lacks, and how long [s] to wait for it.
+
+        The text is empty if the cluster can work.
+        """
         client = self._client
         try:
             if client is None or client.status == "closed":
@@ -187,7 +191,7 @@ class ClusterExecutor:
         from giveway.studies.execution.cluster_task import ignore_interrupts
 
         dask: Any = distributed
-        # What it would print of a lost connection, we say ourselves.
+        # Our own messages report a lost connection.
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         reason = "" if self._local else reason_against(self._address, _CONNECT)
         if reason:

@@ -14,21 +14,24 @@ import sys
 import threading
 from typing import Any, Final, NoReturn
 
-_START: Final = 60.0  # [s] for Python and Dask to start, on a busy machine
+_START: Final = 60.0  # Time [s] for Python and Dask to start, on a busy machine
 _BOOT: Final = (
     "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
     "from giveway.studies.execution.cluster_probe import main; main(*arguments)"
 )
-_OF_IT: Final = 0.8  # of the limit, for Dask itself to say what is wrong
+# Share of the time limit given to Dask's own timeout, so that its message comes before ours
+_OF_IT: Final = 0.8
 _ANSWER: Final = "answer: "
-_LONGEST: Final = 200  # characters of a reason
+_LONGEST: Final = 200  # Largest number of characters of a reason
 
 
 def reason_against(address: str, limit: float) -> str:
-    """Why there is no Dask scheduler to work with at an address; empty if there is one.
+    """Return the reason why no usable Dask scheduler is at an address.
+
+    The text is empty if there is one.
 
     Args:
-        address: as Dask writes it.
+        address: Address as Dask writes it.
         limit: [s] for it to answer.
     """
     given = json.dumps([sys.path, [address, limit]])
@@ -50,7 +53,7 @@ def reason_against(address: str, limit: float) -> str:
 
 
 def main(address: str, limit: float) -> None:
-    """In the process: look, print the reason, and end at once."""
+    """Look, print the reason and end at once, in the process of its own."""
     import distributed
 
     dask: Any = distributed

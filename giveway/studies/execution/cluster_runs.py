@@ -17,23 +17,23 @@ if TYPE_CHECKING:
 
 Future = Any  # Dask's, most of whose methods have no types
 
-_AHEAD: Final = 3  # runs per worker that are submitted, so that no worker waits for the network
-_LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
-_FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
+_AHEAD: Final = 3  # Runs submitted per worker, so that no worker waits for the network
+_LOOK: Final = 1.0  # Time [s] between two checks of the cluster and of Ctrl-C
+_FETCH: Final = 30.0  # Time [s] for a result to arrive; after it the worker counts as dead
 
 
 class Cluster(Protocol):
-    """What submits runs to workers, and knows whether there are any."""
+    """A client that submits runs to workers, and knows whether there are any."""
 
     @property
     def workers(self) -> int:
-        """How many runs are made at a time."""
+        """The number of runs that are made at a time."""
 
     def submit(self, task: Task, name: str) -> Future:
         """Submit a run, and return the future of its record."""
 
     def is_there(self) -> bool:
-        """Whether the cluster has workers."""
+        """True if the cluster has workers."""
 
     def abandon(self, futures: Iterable[Future]) -> None:
         """Cancel runs, also those that are being made."""
@@ -44,20 +44,21 @@ class ClusterRuns:
 
     Args:
         cluster: makes them.
-        tasks: to be made.
+        tasks: Runs to be made.
     """
 
     def __init__(self, cluster: Cluster, tasks: Iterable[Task]) -> None:
         self._cluster = cluster
         self._source = iter(tasks)
         self._again: deque[Task] = deque()
-        self._killed: dict[str, int] = {}  # by run: how many times Dask gave it up as deadly
+        # number of times that Dask gave a run up because it killed workers, by run
+        self._killed: dict[str, int] = {}
         self._under_way: dict[str, tuple[Task, Future]] = {}
         self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._number = 0
 
     def run(self) -> Iterator[RunRecord]:
-        """As :meth:`giveway.studies.execution.executor.Executor.run`."""
+        """Do the same as :meth:`giveway.studies.execution.executor.Executor.run`."""
         try:
             while True:
                 there = self._cluster.is_there()
@@ -78,7 +79,7 @@ class ClusterRuns:
                 self._cluster.abandon(future for _, future in self._under_way.values())
 
     def _submit_runs(self) -> bool:
-        """Submit as many runs as may wait; False if there is nothing more to do."""
+        """Submit as many runs as may wait, and return False if there is nothing more to do."""
         while len(self._under_way) < _AHEAD * self._cluster.workers:
             task = self._again.popleft() if self._again else next(self._source, None)
             if task is None:
@@ -87,7 +88,7 @@ class ClusterRuns:
             name = f"{task.run}-{self._number}"
             try:
                 future = self._cluster.submit(task, name)
-            except Exception:  # of many kinds; the next look at the cluster tells which
+            except Exception:  # many kinds of errors; the next check of the cluster says which
                 self._again.append(task)
                 return True
             self._under_way[name] = (task, future)
@@ -95,7 +96,7 @@ class ClusterRuns:
         return bool(self._under_way)
 
     def _record(self, task: Task, future: Future) -> RunRecord | None:
-        """The record of a run; None if it is to be submitted again.
+        """Return the record of a run, or None if the run is to be submitted again.
 
         Raises:
             WorkerError: a worker refuses this study.
@@ -111,7 +112,7 @@ class ClusterRuns:
         except KilledWorker as error:
             return self._died(task, error)
         except Exception as error:
-            if future.status != "error":  # its worker died before it could be fetched
+            if future.status != "error":  # the worker died before the result could be fetched
                 return None
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise WorkerError(

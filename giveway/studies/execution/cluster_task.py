@@ -1,4 +1,4 @@
-"""What a Dask worker does for a study: it has runs made in separate processes.
+"""The task of a Dask worker in a study: it has runs made in separate processes.
 
 The processes form a pool like that of a single machine, so that a crash never ends the Dask
 worker. Arguments and results are plain values, as the other side may run another giveway.
@@ -19,7 +19,7 @@ from giveway.studies.record import Task
 RECORD: Final = "record"
 REFUSED: Final = "refused"
 
-_POOLS: Final[dict[str, Pool]] = {}  # of this Dask worker, by study
+_POOLS: Final[dict[str, Pool]] = {}  # Pools of this Dask worker, by study
 _LOCK: Final = threading.Lock()
 
 

@@ -21,7 +21,7 @@ class Executor(Protocol):
 
     @property
     def workers(self) -> int:
-        """How many runs are made at a time."""
+        """The number of runs that are made at a time."""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
         """Make every run once, and yield its record when it is finished.
@@ -38,7 +38,7 @@ class Executor(Protocol):
         """
 
     def __enter__(self) -> Self:
-        """Begin; processes are started when there is something to do."""
+        """Begin. Processes are started when there is something to do."""
 
     def __exit__(self, *_: object) -> None:
         """End every process at once."""

@@ -1,4 +1,4 @@
-"""How long a run may take, and how often it is tried."""
+"""Limits of a run: how long it may take, and how often it is tried."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ from typing import Final
 from giveway.processes.heartbeat import LOOP, Phase
 from giveway.studies.execution.executor import WorkerError
 
-HANG_LIMIT: Final = 120.0  # [s] of wall clock without progress of the loop
-_SETTING_UP: Final = 5.0  # times that, as a large network takes minutes to load
-ATTEMPTS: Final = 2  # a run that fails twice is not tried again
+# Wall-clock time [s] without progress of the loop that counts as a hang
+HANG_LIMIT: Final = 120.0
+# Factor on the hang limit before the loop: a large network takes minutes to load
+_SETTING_UP: Final = 5.0
+ATTEMPTS: Final = 2  # Number of attempts at a run
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How long a run may take.
+    """The time limits of a run.
 
     Attributes:
         hang: [s] without progress of the loop.
@@ -41,5 +43,5 @@ class Limits:
         return cls(hang_limit, math.inf if run_limit is None else run_limit)
 
     def quiet(self, phase: Phase) -> float:
-        """For how long [s] nothing may change in that phase of a run."""
+        """Return the time [s] for which nothing may change in that phase of a run."""
         return self.hang if phase in LOOP else _SETTING_UP * self.hang

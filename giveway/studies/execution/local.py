@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import RunRecord, Task
 
-_AHEAD: Final = 2  # runs per worker that are taken from the plan, so that none waits
-_LOOK: Final = 1.0  # [s] of one wait; some systems notice Ctrl-C only after it
+_AHEAD: Final = 2  # Runs taken from the plan per worker, so that no worker waits
+_LOOK: Final = 1.0  # Length [s] of one wait; some systems notice Ctrl-C only after it
 
 
 class LocalExecutor:
@@ -23,7 +23,7 @@ class LocalExecutor:
 
     Args:
         jobs: runs at a time.
-        limits: of each.
+        limits: Time limits of each.
 
     Raises:
         WorkerError: ``jobs`` is not above 0.
@@ -40,11 +40,11 @@ class LocalExecutor:
 
     @property
     def workers(self) -> int:
-        """How many runs are made at a time."""
+        """The number of runs that are made at a time."""
         return self._jobs
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        """As the protocol says."""
+        """Compute the tasks as :class:`~giveway.studies.execution.executor.Executor` demands."""
         pool = self._open()
         source = iter(tasks)
         finished: queue.SimpleQueue[RunRecord | Exception] = queue.SimpleQueue()

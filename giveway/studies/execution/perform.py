@@ -27,18 +27,20 @@ if TYPE_CHECKING:
     from giveway.run_data.tracks import Timings
 
 
-_LONGEST_FAILURE = 2000  # characters
+_LONGEST_FAILURE = 2000  # Largest number of characters of a failure's message
 _STATM = Path("/proc/self/statm")
 
 
 def perform(
     task: Task, journal: Journal | None = None, native_log: Path | None = None
 ) -> RunRecord:
-    """Make the run and keep its summary; an error on the way is part of the record.
+    """Make the run and keep its summary.
+
+    An error on the way is part of the record.
 
     Args:
-        task: what to run.
-        journal: whose heartbeat tells another process where the run stands.
+        task: Run to make.
+        journal: Journal whose heartbeat tells another process how far the run is.
         native_log: file for what SUMO prints, which is read if this process dies.
     """
     began = perf_counter()
@@ -80,7 +82,7 @@ def control_times(timings: Timings) -> tuple[float, float]:
 
 
 def twin_time(result: RunResult) -> float:
-    """The seconds that a run's twin took; nan where there is none."""
+    """Return the time [s] that a run's twin took, or nan without a twin."""
     return math.nan if result.effect is None else round(result.effect.seconds, 6)
 
 
@@ -98,7 +100,7 @@ def _since(began: float) -> Computing:
 
 
 def resident_memory() -> float:
-    """The memory [MB] that this process holds; nan where the system does not tell."""
+    """Return the memory [MB] that this process holds, or nan if the system does not tell it."""
     try:
         pages = int(_STATM.read_text(encoding="ascii").split()[1])
     except (OSError, ValueError, IndexError):

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
-from giveway.studies.execution.scratch import Scratch
+from giveway.studies.execution.temporary_folder import Scratch
 from giveway.studies.execution.worker_process import (
     NotBegunError,
     RunDiedError,
@@ -34,11 +34,14 @@ if TYPE_CHECKING:
 
 Delivery = Callable[[RunRecord | Exception], None]
 
-_IDLE_LIMIT: Final = 300.0  # [s] after which a worker without work is ended
-_MOST_FAILED_STARTS: Final = 5  # in turn, without a finished run in between
-_PAUSE: Final = 0.1  # [s] after the first of them; it doubles, as memory may become free
-_LOOK: Final = 1.0  # [s] after which a waiting caller looks whether the pool has been closed
-_JOIN: Final = 10.0  # [s] for a slot to notice that its worker has been killed
+_IDLE_LIMIT: Final = 300.0  # Time [s] after which a worker without work is ended
+# Failed starts in a row, without a finished run in between, after which the pool gives up
+_MOST_FAILED_STARTS: Final = 5
+# Pause [s] after the first failed start; it doubles, since memory may become free
+_PAUSE: Final = 0.1
+# Interval [s] at which a waiting caller checks whether the pool has been closed
+_LOOK: Final = 1.0
+_JOIN: Final = 10.0  # Time [s] for a slot to notice that its worker has been killed
 
 
 class ClosedError(Exception):
@@ -49,9 +52,9 @@ class Pool:
     """Makes runs in processes of this machine; may be used by several threads.
 
     Args:
-        slots: how many at a time.
-        limits: of each run.
-        place: for temporary files; None: where they usually are.
+        slots: Number of runs at a time.
+        limits: Time limits of each run.
+        place: Folder for temporary files. None: the system's folder for them.
     """
 
     def __init__(self, slots: int, limits: Limits, place: Path | None = None) -> None:
@@ -225,7 +228,7 @@ class Pool:
 
 
 def _named(task: Task, failure: str) -> str:
-    """The failure, with the name of the controller that it happened in, if it is nobody of ours."""
+    """Return the failure, with the controller's name if the controller is not one of giveway's."""
     from giveway.config.files.foreign_code import named_in
 
     return named_in(failure, task.run_config)

@@ -19,8 +19,7 @@ from giveway.processes.causes import cause_of_end, let_speak, stood_still, text_
 from giveway.processes.child import STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Stillness
 from giveway.studies.execution.executor import WorkerError
-from giveway.studies.execution.starting import START_LIMIT, start
-from giveway.studies.execution.wire import (
+from giveway.studies.execution.worker_messages import (
     ERROR,
     READY,
     RECORD,
@@ -29,18 +28,20 @@ from giveway.studies.execution.wire import (
     GarbledError,
     Line,
 )
-from giveway.studies.execution.worker import SUMO_FILE
+from giveway.studies.execution.worker_program import SUMO_FILE
+from giveway.studies.execution.worker_start import START_LIMIT, start
 from giveway.studies.record import RunRecord
 
 if TYPE_CHECKING:
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import Task
 
-_POLL: Final = 0.25  # [s] between two looks at a worker that sends nothing
-_ENDING: Final = 2.0  # [s] from a connection's end to that of its process
-_MOST_PRINTED: Final = 1 << 26  # [bytes] after which what it has printed is dropped
-_TAIL: Final = 4096  # [bytes] in which the last line is searched for
-_GROWTH: Final = 256.0  # [MB] that a worker may hold more than after its first run
+_POLL: Final = 0.25  # Time [s] between two checks of a worker that sends nothing
+_ENDING: Final = 2.0  # Time [s] between the end of a connection and the end of its process
+_MOST_PRINTED: Final = 1 << 26  # Size [bytes] of the output at which it is dropped
+_TAIL: Final = 4096  # Bytes at the end in which the last line is searched
+# Growth [MB] of a worker's memory after its first run at which it is replaced
+_GROWTH: Final = 256.0
 _FRAME: Final = re.compile(r'File "([^"]+)", line (\d+) in (\w+)')
 
 
@@ -60,11 +61,11 @@ class WorkerProcess:
     """A process that makes one run at a time; used by one thread, which outlives it.
 
     Args:
-        folder: for this worker; made here, and removed with it.
-        limits: of its runs.
+        folder: Folder for this worker; it is made here, and removed with the worker.
+        limits: Time limits of its runs.
 
     Attributes:
-        overgrown: whether it holds so much more memory than at first that it should be replaced.
+        overgrown: True if its memory has grown so much that it should be replaced.
 
     Raises:
         OSError: it cannot be started.
@@ -82,7 +83,7 @@ class WorkerProcess:
         self._heartbeat = Heartbeat.supervised_by(os.getpid(), folder)
         self._printed = folder / STDERR_FILE
         self._printed_by_sumo = folder / SUMO_FILE
-        # Appended to, so that it may be emptied while it is open.
+        # Opened for appending, so that it may be emptied while it is open.
         with self._printed.open("ab") as printed:
             self._process, connection = start(folder, temporary, printed)
         self._line = Line(connection)
@@ -143,9 +144,12 @@ class WorkerProcess:
         raise RunDiedError(self._failure(cause))
 
     def end(self) -> None:
-        """Kill it, with its process group where there are groups; may be called repeatedly."""
+        """Kill it, with its process group where there are groups.
+
+        It may be called repeatedly.
+        """
         if self._removed:
-            return  # another process may have its number by now
+            return  # another process may have this process id by now
         with suppress(OSError):
             if sys.platform == "win32":
                 self._process.kill()
@@ -153,7 +157,10 @@ class WorkerProcess:
                 os.killpg(self._process.pid, signal.SIGKILL)
 
     def remove(self) -> None:
-        """End it, and remove its folder; to be called in its own thread."""
+        """End it, and remove its folder.
+
+        It has to be called in its own thread.
+        """
         self.end()
         self._process.wait()
         self._removed = True
@@ -161,7 +168,7 @@ class WorkerProcess:
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _answer(self) -> tuple[bytes, bytes]:
-        """Wait for the answer; kill a worker whose run stands still or takes too long."""
+        """Wait for the answer, and kill a worker whose run stands still or takes too long."""
         stillness = Stillness(self._heartbeat)
         taken = 0.0
         while (message := self._line.receive(self._poll)) is None:
@@ -171,7 +178,8 @@ class WorkerProcess:
                 self._kill(stood_still(quiet))
             elif taken >= self._limits.run:
                 self._kill(f"not finished within {taken:g} s, the limit of a run,")
-            if self._process.poll() is not None:  # its child may hold the connection
+            # a child of the worker may hold the connection open
+            if self._process.poll() is not None:
                 raise EOFError
             with suppress(OSError):
                 if self._printed.stat().st_size > _MOST_PRINTED:
@@ -179,7 +187,7 @@ class WorkerProcess:
         return message
 
     def _kill(self, cause: str) -> None:
-        """Have it write where it hangs, then kill it.
+        """Have the worker write where it hangs, then kill it.
 
         Raises:
             RunDiedError: always.
@@ -190,13 +198,13 @@ class WorkerProcess:
         raise RunDiedError(failure)
 
     def _cause_of_end(self) -> str:
-        """Why it has ended, or why it counts as ended."""
+        """Return the reason why it has ended, or counts as ended."""
         try:
             code = self._process.wait(_ENDING)
         except subprocess.TimeoutExpired:
             self.end()
             return "native code closed files that are not its own"
-        self.end()  # with the processes that it has started
+        self.end()  # and the processes that it has started
         return cause_of_end(code)
 
     def _failure(self, cause: str) -> str:
@@ -210,7 +218,7 @@ class WorkerProcess:
         return f"{cause} {pulse.place}{place}{said}"
 
     def _python_place(self) -> str:
-        """Where Python stood, if it could tell."""
+        """Return the last Python frames before the end, if Python could write them."""
         found = _FRAME.search(text_in(self._folder / TRACEBACK_FILE))
         if found is None:
             return ""

@@ -1,9 +1,16 @@
-"""What a study shows: paired differences, their intervals and tests, how much of it is luck.
+"""Statistics of a study: paired differences, their intervals and tests.
 
 docs/statistics.md says in words what is computed here.
 """
 
-from giveway.studies.columns import (
+from giveway.studies.statistics.comparing import compare
+from giveway.studies.statistics.fronts import fronts
+from giveway.studies.statistics.level_means import levels
+from giveway.studies.statistics.metrics import METRICS, Metric, metric
+from giveway.studies.statistics.sequential import looks, precise_enough
+from giveway.studies.statistics.situations import SITUATIONS, situations
+from giveway.studies.statistics.yang2019 import PUBLISHED, table2
+from giveway.studies.table_columns import (
     COMPARISON_COLUMNS,
     FRONT_COLUMNS,
     LEVEL_COLUMNS,
@@ -11,13 +18,6 @@ from giveway.studies.columns import (
     SITUATION_COLUMNS,
     TABLE_2_COLUMNS,
 )
-from giveway.studies.statistics.comparing import compare
-from giveway.studies.statistics.fronts import fronts
-from giveway.studies.statistics.levels import levels
-from giveway.studies.statistics.metrics import METRICS, Metric, metric
-from giveway.studies.statistics.sequential import looks, precise_enough
-from giveway.studies.statistics.situations import SITUATIONS, situations
-from giveway.studies.statistics.yang2019 import PUBLISHED, table2
 
 __all__ = [
     "COMPARISON_COLUMNS",

@@ -24,8 +24,8 @@ BCA = "BCa"
 PERCENTILE = "percentile"
 CONSTANT = "constant"
 
-MOST_FOR_BCA = 10_000  # numbers; leaving each of n out once takes n^2 additions
-_NUMBERS_AT_ONCE = 300_000  # drawn: a few megabytes, which a processor's cache holds
+MOST_FOR_BCA = 10_000  # Largest sample for BCa: its jackknife takes n^2 additions
+_NUMBERS_AT_ONCE = 300_000  # Numbers drawn at a time: a few megabytes fit the processor's cache
 
 Item = TypeVar("Item")
 Row = TypeVar("Row")
@@ -33,11 +33,11 @@ Row = TypeVar("Row")
 
 @dataclass(frozen=True)
 class Interval:
-    """Where a mean lies.
+    """The confidence interval of a mean.
 
     Attributes:
         low: lower end.
-        high: upper end.
+        high: Upper end of its interval.
         method: BCa; percentile, where BCa is not defined or not needed; constant, where nothing
             varies.
     """
@@ -48,11 +48,11 @@ class Interval:
 
     @property
     def width(self) -> float:
-        """From end to end."""
+        """The width between both ends."""
         return self.high - self.low
 
     def excludes_zero(self) -> bool:
-        """Whether both ends are on one side of zero."""
+        """True if both ends are on one side of zero."""
         return self.low > 0.0 or self.high < 0.0
 
 
@@ -63,7 +63,7 @@ def seed_of(names: Iterable[str]) -> int:
 
 
 def side_by_side(function: Callable[[Item], Row], items: Sequence[Item]) -> list[Row]:
-    """What a function that takes intervals gives for each item, in their order.
+    """Return the results of a function that computes intervals, one for each item, in their order.
 
     On all processors: drawing and adding up, most of the work, leave Python to other threads.
     """
@@ -73,7 +73,7 @@ def side_by_side(function: Callable[[Item], Row], items: Sequence[Item]) -> list
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Without scipy's remark on what varies too little: :class:`Interval` tells."""
+    """Suppress scipy's warning about data that vary too little: :class:`Interval` says so."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", scipy.stats.DegenerateDataWarning)
         yield
@@ -85,9 +85,9 @@ def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int
     Args:
         sample: independent numbers (n,), at least one, all finite; taken to six decimals, so that
             whether a resample's mean equals the sample's is not up to rounding.
-        confidence: that the interval covers the mean, between 0 and 1.
-        resamples: of the bootstrap.
-        seed: of its draws, 64 bits.
+        confidence: Probability that the interval covers the mean, between 0 and 1.
+        resamples: Number of resamples of the bootstrap.
+        seed: Seed of its draws, 64 bits.
 
     Returns:
         The value itself where all are equal. The percentile interval where BCa is not defined (all
@@ -111,20 +111,20 @@ def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int
     method = BCA if whole.size <= MOST_FOR_BCA else PERCENTILE
     with _quiet(), np.errstate(all="ignore"):
         low, high = interval(method=method).confidence_interval
-    if not low < high:  # nan: BCa is not defined; the other way round: beyond the pole
+    if not low < high:  # nan: BCa is not defined; low > high: beyond the pole of its formula
         method = PERCENTILE
         low, high = interval(method=method).confidence_interval
     return Interval(float(low) / per_one, float(high) / per_one, method)
 
 
 class _Resampled(NamedTuple):
-    """What scipy's bootstrap takes for the resamples that it has drawn."""
+    """A random generator that gives scipy's bootstrap resamples which are already drawn."""
 
     bootstrap_distribution: Array
 
 
 def _resampled_means(whole: Array, resamples: int, seed: int) -> Array:
-    """(resamples,) the means that scipy's bootstrap would draw with that seed, bit by bit.
+    """Return the means (resamples,) that scipy's bootstrap would draw with that seed, bit by bit.
 
     Numbers that are whole add up exactly in any order; and half as many bits are drawn here as
     scipy draws, of the same numbers, which takes half the time.

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 
 from giveway.geometry.kernel import Array
-from giveway.studies.columns import COMPARISON_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Comparison, Situation
 from giveway.studies.design import Design
@@ -18,6 +17,7 @@ from giveway.studies.statistics.pairs import Pairs, paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
 from giveway.studies.statistics.signed_rank import SignedRank, q_values, signed_rank
 from giveway.studies.statistics.situations import SITUATIONS, share, within
+from giveway.studies.table_columns import COMPARISON_COLUMNS, numbers_of
 
 BETTER = "better"
 WORSE = "worse"
@@ -30,8 +30,8 @@ class Differences:
     """The pairs that count for one metric in one situation: a number on both sides.
 
     Attributes:
-        treated: of the treatment's runs (n,).
-        based: of the baseline's runs (n,).
+        treated: Numbers of the treatment's runs (n,).
+        based: Numbers of the baseline's runs (n,).
         values: treatment minus baseline (n,), to six decimals as both are, so that equal
             differences are equal numbers and share their rank.
     """
@@ -57,7 +57,10 @@ def differences(pairs: Pairs, name: str, situation: Situation) -> Differences:
 def interval(
     found: Differences, pairs: Pairs, name: str, situation: Situation, comparison: Comparison
 ) -> Interval:
-    """The interval of the mean difference; its draws depend on the names alone."""
+    """Return the interval of the mean difference.
+
+    Its random draws depend on the names alone.
+    """
     return mean_interval(
         found.values,
         confidence=comparison.confidence,
@@ -71,8 +74,8 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
 
     Args:
         runs: a row per run and ego, as ``runs.csv``.
-        design: of the study.
-        comparison: which factor is compared, with which baseline, and how surely.
+        design: Design of the study.
+        comparison: Compared factor, its baseline, and the confidence.
 
     Returns:
         A row per context, ego, treatment, situation and metric, in this order: the context's
@@ -93,7 +96,7 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
     numbers = numbers_of(COMPARISON_COLUMNS)
     frame[numbers] = frame[numbers].astype(np.float64)
-    # The slowed pairs are some of the general ones: a look at them corrects nobody else's tests.
+    # Slowed pairs are a subset of the general ones; their tests do not enter the correction.
     for family in (frame["situation"] != "slowed", frame["situation"] == "slowed"):
         frame.loc[family, "q_value"] = q_values(frame.loc[family, "p_value"].to_numpy())
     frame["verdict"] = [_verdict(row, comparison) for row in frame.to_dict("records")]

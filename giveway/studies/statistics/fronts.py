@@ -3,18 +3,18 @@
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import FRONT_COLUMNS, numbers_of
 from giveway.studies.contexts import contexts
 from giveway.studies.definition import Comparison
 from giveway.studies.design import Design
 from giveway.studies.statistics.rounding import tabulated
+from giveway.studies.table_columns import FRONT_COLUMNS, numbers_of
 
 EGO, PEOPLE = "completion_time", "mean_people_delay"
 """The metrics of the two sides; what a free drive takes is the same for all levels of a context."""
 
 
 def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
-    """Each cell's mean time to the goal and mean delay of people, and whether any cell is better.
+    """Return each cell's mean time to the goal and people's mean delay, and the Pareto front.
 
     A cell is on the Pareto front of its context where no other level of the compared factor has
     both means as small and one of them smaller. A cell of which a run did not arrive has no fair
@@ -22,8 +22,8 @@ def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.D
 
     Args:
         levels: the table of :func:`levels`.
-        design: of the study.
-        comparison: which factor's levels are compared.
+        design: Design of the study.
+        comparison: Factor whose levels are compared.
 
     Returns:
         A row per cell and ego with numbers on both sides, in the order of the design: the
@@ -61,7 +61,7 @@ def on_front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def _row(metrics: pd.DataFrame) -> dict[str, float] | None:
-    """The numbers of one cell and ego; None where a side is missing."""
+    """Return the numbers of one cell and ego, or None if a side is missing."""
     by_name = metrics.set_index("metric")
     if not {EGO, PEOPLE} <= set(by_name.index):
         return None

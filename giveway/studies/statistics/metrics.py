@@ -16,8 +16,8 @@ class Metric:
     Attributes:
         name: the column's.
         unit: the column's; empty for shares and counts.
-        better: which way is.
-        label: how tables and pictures call it.
+        better: Direction that is better.
+        label: Name of it in tables and pictures.
     """
 
     name: str

@@ -28,7 +28,7 @@ class Pairs:
         ego: SUMO id; empty without one.
         treatment: label of the level that is compared.
         baseline: label of the level that is subtracted.
-        seeds: of the pairs (n,).
+        seeds: Seeds of the pairs (n,).
         treated: metrics of the treatment's runs (n, metrics), nan where there is no number.
         based: the same of the baseline's runs; row i of both has seed i.
     """
@@ -52,7 +52,10 @@ class Pairs:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names that no other pairs have; the same with treatment and baseline swapped."""
+        """Names that identify these pairs.
+
+        They are the same if treatment and baseline are swapped.
+        """
         context = (f"{name}={level.value}" for name, level in self.context.levels.items())
         return (*context, self.ego, *sorted((self.treatment, self.baseline)))
 
@@ -72,15 +75,15 @@ class _Side:
 
 
 def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterator[Pairs]:
-    """All pairs, context by context in the design's order, then ego, then treatment.
+    """Return all pairs, by context in the design's order, then by ego, then by treatment.
 
     A run that failed or crashed belongs to each ego of its context, as it would have had them
     all. Levels that share no seed have no pairs.
 
     Args:
         runs: a row per run and ego, as ``runs.csv``.
-        design: of the study.
-        comparison: which factor is compared, with which baseline.
+        design: Design of the study.
+        comparison: Compared factor and its baseline.
 
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.
@@ -117,12 +120,15 @@ def cleaned(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def without_result(frame: pd.DataFrame) -> pd.Series[bool]:
-    """Which rows (n,) are those of runs that failed or crashed."""
+    """Return a mask (n,) of the rows of runs that failed or crashed."""
     return frame["ending"].isin([FAILED, CRASHED])
 
 
 def _egos(tables: dict[str, pd.DataFrame]) -> list[str]:
-    """The egos of a context; one without a name if no run has a result."""
+    """Return the egos of a context.
+
+    It is one ego without a name if no run has a result.
+    """
     names = {str(ego) for table in tables.values() for ego in table["ego"][~without_result(table)]}
     return sorted(names) or [""]
 

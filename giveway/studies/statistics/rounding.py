@@ -12,7 +12,7 @@ DECIMALS = 6
 _PER_ONE = 10.0**DECIMALS
 _DIGITS = 6
 _PROBABILITIES = frozenset({"p_value", "q_value"})
-_COARSE = 1e9  # beyond it a double's last digit is larger than the sixth decimal
+_COARSE = 1e9  # Magnitude from which a double does not resolve the sixth decimal
 
 
 def to_decimals(values: Array) -> Array:
@@ -22,13 +22,13 @@ def to_decimals(values: Array) -> Array:
 
 
 def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
-    """``frame`` as it is written: six decimals, probabilities with six significant digits.
+    """Round ``frame`` as in files: to six decimals, probabilities to six significant digits.
 
     What a table holds in memory is thus what is read back from its file.
 
     Args:
-        frame: of numbers and words; it is changed.
-        names: of the columns that hold numbers; these become floats.
+        frame: Table of numbers and words; it is changed.
+        names: Names of the columns that hold numbers; these become floats.
     """
     for name in names:
         values = frame[name].to_numpy(np.float64)
@@ -40,7 +40,7 @@ def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
 
 
 def in_units(values: Array) -> tuple[Array, float]:
-    """Finite numbers as whole ones, whose sums are exact and equal in any order.
+    """Return finite numbers as whole ones, whose sums are exact and equal in any order.
 
     Returns:
         ``values`` in units of the sixth decimal, and the units per one. Numbers beyond 1e9 are

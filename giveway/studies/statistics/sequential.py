@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import PRECISION_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Comparison, Precision
 from giveway.studies.design import Design
@@ -19,10 +18,11 @@ from giveway.studies.statistics.comparing import differences, interval
 from giveway.studies.statistics.metrics import metric
 from giveway.studies.statistics.pairs import Pairs, paired
 from giveway.studies.statistics.rounding import mean, tabulated
+from giveway.studies.table_columns import PRECISION_COLUMNS, numbers_of
 
 
 def looks(precision: Precision, replications: int) -> Iterator[int]:
-    """After how many seeds to look: at minimum, minimum + batch, ..., and when all are run."""
+    """Return the numbers of seeds after which to look: minimum, minimum + batch, ..., and all."""
     seeds = min(precision.minimum, replications)
     while seeds < replications:
         yield seeds
@@ -38,15 +38,15 @@ def precise_enough(
     *,
     seeds: int | None = None,
 ) -> tuple[bool, pd.DataFrame]:
-    """Whether the interval is narrow enough in every context, for every ego and treatment.
+    """True if the interval is narrow enough in every context, for every ego and treatment.
 
     Args:
         runs: a row per run and ego, as ``runs.csv``, from the study's first seed on; runs beyond
             the look do not matter.
-        design: of the study.
-        comparison: which factor is compared, with which baseline, and how surely.
-        precision: of which metric, in which situation, how narrow, when to look.
-        seeds: how many of the first seeds to look at, from :func:`looks`; None: as many as the
+        design: Design of the study.
+        comparison: Compared factor, its baseline, and the confidence.
+        precision: Metric, situation, width to reach, and when to look.
+        seeds: Number of first seeds to look at, from :func:`looks`. None: as many as the
             last look at which every cell has a run of each.
 
     Returns:

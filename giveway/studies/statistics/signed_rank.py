@@ -1,4 +1,4 @@
-"""Whether differences lie to one side of zero: Wilcoxon's signed-rank test, of scipy."""
+"""Test whether differences lie to one side of zero: Wilcoxon's signed-rank test, of scipy."""
 
 from dataclasses import dataclass
 
@@ -7,17 +7,17 @@ import scipy  # scipy.stats is loaded where it is first used: that takes a secon
 
 from giveway.geometry.kernel import Array
 
-_EXACT = 50  # differences up to which every assignment of signs is counted
+_EXACT = 50  # Largest number of differences for the exact distribution
 
 
 @dataclass(frozen=True)
 class SignedRank:
-    """What the test says.
+    """The result of the test.
 
     Attributes:
         statistic: smaller one of the two signed-rank sums.
         p_value: two-sided.
-        direction: to which side of zero the ranks lean, 1 or -1; 0: to none.
+        direction: Side of zero to which the ranks lean, 1 or -1; 0 for neither.
     """
 
     statistic: float

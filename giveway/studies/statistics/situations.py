@@ -1,4 +1,4 @@
-"""Whether the vehicle had to stop: the three situations of Yang & Özgüner 2019, section 4."""
+"""Situations by whether the vehicle had to stop: the three of Yang & Özgüner 2019, section 4."""
 
 from typing import get_args
 
@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from giveway.studies.columns import SITUATION_COLUMNS
 from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Comparison, Situation
 from giveway.studies.design import Design
 from giveway.studies.statistics.pairs import Pairs, paired
+from giveway.studies.table_columns import SITUATION_COLUMNS
 
 Mask = NDArray[np.bool_]
 
@@ -18,12 +18,12 @@ SITUATIONS: tuple[Situation, ...] = get_args(Situation)
 
 
 def situations(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
-    """How often both sides of a pair stopped, one of them or none: ``situations.csv``.
+    """Count the pairs of which both sides stopped, one of them or none: ``situations.csv``.
 
     Args:
         runs: a row per run and ego, as ``runs.csv``.
-        design: of the study.
-        comparison: which factor is compared, with which baseline.
+        design: Design of the study.
+        comparison: Compared factor and its baseline.
 
     Returns:
         A row per context, ego and treatment: the context's factors, then ``SITUATION_COLUMNS``.
@@ -54,12 +54,15 @@ def _row(pairs: Pairs) -> dict[str, object]:
 
 
 def kept(pairs: Pairs) -> Mask:
-    """Which pairs (n,) are not lost: both runs have a result, with this ego."""
+    """Return a mask (n,) of the pairs whose runs both have a result with this ego."""
     return np.asarray(np.isfinite(pairs.of("stops")).all(axis=0), dtype=np.bool_)
 
 
 def within(pairs: Pairs, situation: Situation) -> Mask:
-    """Which pairs (n,) are in the situation; those that are lost are in none."""
+    """Return a mask (n,) of the pairs in the situation.
+
+    Pairs without both results are in none.
+    """
     treated, based = _stopped(pairs)
     seen = kept(pairs)
     if situation == "stop-and-wait":
@@ -73,7 +76,7 @@ def within(pairs: Pairs, situation: Situation) -> Mask:
 
 
 def share(pairs: Pairs, situation: Situation) -> float:
-    """The share of the situation among the pairs that are not lost; nan if all are lost."""
+    """Return the share of the situation among the pairs with results, or nan without any."""
     return _mean(within(pairs, situation), kept(pairs))
 
 
@@ -82,6 +85,9 @@ def _mean(which: Mask, among: Mask) -> float:
 
 
 def _stopped(pairs: Pairs) -> tuple[Mask, Mask]:
-    """Whether the vehicle stopped at least once, on each side; nan did not."""
+    """Return whether the vehicle stopped at least once, on each side.
+
+    A missing number (nan) counts as no stop.
+    """
     treated, based = pairs.of("stops")
     return treated >= 1.0, based >= 1.0

@@ -4,8 +4,8 @@ import math
 
 import pandas as pd
 
-from giveway.studies.columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
 from giveway.studies.definition import Situation
+from giveway.studies.table_columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
 
 PEDESTRIANS = (30, 20, 10)
 METRIC_OF: dict[Situation, str] = {
@@ -40,7 +40,7 @@ def table2(
 
     Args:
         comparison: the table of ``compare``.
-        factor_column: where it has the number of pedestrians.
+        factor_column: Column that has the number of pedestrians.
         treatment: the level that stands for the paper's MPC.
         baseline: the level that stands for the paper's PID.
 
@@ -93,7 +93,7 @@ def _nine(ours: pd.DataFrame, factor_column: str) -> list[dict[str, object]]:
 
 
 def _agreement(published: float, low: float, high: float) -> str:
-    """Where the published number lies, seen from our interval."""
+    """Say on which side of our interval the published number lies."""
     if math.isnan(published) or math.isnan(low):
         return ""
     if published < low:

@@ -168,7 +168,7 @@ MPC = {"controller": "mpc-paper"}
 
 
 def export(settings: dict[str, Any], out: Path, **options: Any) -> int:
-    from giveway.cli.export import export_command
+    from giveway.cli.commands.export_command import export_command
 
     return export_command(None, None, settings, out, **options)
 

@@ -52,7 +52,7 @@ def test_the_same_kernels_at_another_place_are_the_same(elsewhere):
         ("giveway/geometry/kernel.py", True),  # how all are compiled
         ("controller/parameters.py", True),
         ("pedestrian_model/_constants.py", True),
-        ("giveway/cli/run.py", False),
+        ("giveway/cli/commands/run_command.py", False),
     ],
 )
 def test_only_what_is_compiled_makes_another_folder(elsewhere, file, matters):

@@ -12,7 +12,7 @@ import pytest
 
 from giveway.processes.interrupts import TerminatedError
 
-COMMAND = "giveway.cli.doctor.doctor_command"
+COMMAND = "giveway.cli.commands.doctor_command.doctor_command"
 INTERRUPTED_WHILE_IMPORTING = """
 import os, signal, sys
 

@@ -9,8 +9,8 @@ from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
 from giveway.journal.recorder import Recorder
 from giveway.run_data.way import EgoWay, Halt, JunctionOnWay, StopLine
-from giveway.sumo.crossings import Crossing
-from giveway.sumo.lane_path import Light
+from giveway.sumo.network.lane_path import Light
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from pedestrian_model import Crowd
 
 PATH = EgoPath.through([(0.0, 0.0), (60.0, 0.0)])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from giveway.crowd.priority import PriorityOnFoot
-from giveway.sumo.crossings import Crossing
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from pedestrian_model import Crowd
 
 KERB = 3.5

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from giveway.cli.doctor import doctor_command
+from giveway.cli.commands.doctor_command import doctor_command
 from giveway.doctor import Finding, examine_environment, examine_scenario
 from giveway.doctor.trial import judged, try_in_sumo
 

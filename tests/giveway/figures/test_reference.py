@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from controller import Pid, TunedPid
-from giveway.cli.plot import reference_command
+from giveway.cli.commands.plot_command import reference_command
 from giveway.errors import ConfigError
 from giveway.figures import reference_figure
 

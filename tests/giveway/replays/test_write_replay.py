@@ -12,11 +12,11 @@ import pandas as pd
 import pytest
 
 from giveway import run
-from giveway.cli.replay import replay_command
+from giveway.cli.commands.replay_command import replay_command
 from giveway.errors import ResultsError
 from giveway.replays import write_replay
 from giveway.replays.events import events, why
-from giveway.replays.packing import Frame, pack_tracks, thinning
+from giveway.replays.packed_tracks import Frame, pack_tracks, thinning
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,13 +14,13 @@ import pytest
 from giveway.reports.examples import drives_of
 from giveway.studies.definition import parse_definition
 from giveway.studies.design import design
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.sealing import SEAL, fingerprint, sealed
+from giveway.studies.folder.store import RecordStore
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.folder.table_files import write_tables
 from giveway.studies.identity import software_identity
-from giveway.studies.output import write_tables
 from giveway.studies.record import CRASHED
-from giveway.studies.rerun import rerun
-from giveway.studies.sealing import SEAL, fingerprint, sealed
-from giveway.studies.store import RecordStore
+from giveway.studies.repeated_run import rerun
 
 if TYPE_CHECKING:
     from collections.abc import Callable

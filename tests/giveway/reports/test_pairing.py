@@ -10,7 +10,7 @@ from giveway.reports.pairing import BASELINE, NUMBERS, paired, situation_of
 from giveway.studies.statistics.pairs import paired as pairs_of
 
 if TYPE_CHECKING:
-    from giveway.studies.folder import StudyFolder
+    from giveway.studies.folder.study_folder import StudyFolder
 
 
 def test_both_look_at_the_same_pairs(study: StudyFolder) -> None:

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from giveway.errors import GivewayError, ResultsError
 from giveway.reports.choice import example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
-from giveway.reports.findings import cautions
-from giveway.reports.page import shown_runs, write_report
+from giveway.reports.findings_in_words import cautions
+from giveway.reports.report_page import shown_runs, write_report
 from giveway.reports.wording import digits_for, number
 from giveway.studies.statistics import METRICS, PUBLISHED
 

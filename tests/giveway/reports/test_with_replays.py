@@ -11,9 +11,9 @@ import sys
 import pytest
 
 from giveway.reports import with_replays
-from giveway.reports.page import shown_runs
+from giveway.reports.report_page import shown_runs
 from giveway.reports.with_replays import write_report_of
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")

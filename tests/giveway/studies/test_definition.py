@@ -9,7 +9,7 @@ from giveway.studies.definition import (
     read_definition,
 )
 from giveway.studies.design import design
-from giveway.studies.finding import bundled_studies, find_study
+from giveway.studies.study_files import bundled_studies, find_study
 
 MINIMAL = 'name = "mine"\n[factors]\ncontroller = ["mpc", "pid"]\n'
 

@@ -11,11 +11,11 @@ from giveway.errors import ResultsError
 from giveway.journal.journal import Journal
 from giveway.processes.heartbeat import Phase
 from giveway.studies.execution.perform import perform
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.store import RecordStore
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.identity import software_identity
 from giveway.studies.plan import plan
-from giveway.studies.rerun import OtherNumbersError, rerun
-from giveway.studies.store import RecordStore
+from giveway.studies.repeated_run import OtherNumbersError, rerun
 
 
 def test_other_settings_make_other_keys(small_study, small_study_text):

@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 from giveway.errors import ConfigError, GivewayError, ResultsError
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.study import StudyInterruptedError, StudyOptions
 
 
@@ -195,7 +195,7 @@ def test_a_comparison_of_half_a_study_is_not_taken_for_the_whole(
     small_study, study_of, small_study_text, tables_of, tmp_path
 ):
     """Somebody has the report written while the study is at work."""
-    from giveway.studies.output import write_tables
+    from giveway.studies.folder.table_files import write_tables
 
     def look(progress):
         if progress.made == 17:

@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from giveway.errors import GivewayError, ResultsError
-from giveway.studies.folder import StudyFolder
+from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.plan import plan
-from giveway.studies.rerun import rerun
+from giveway.studies.repeated_run import rerun
 from giveway.studies.study import StudyOptions, run_study
 
 

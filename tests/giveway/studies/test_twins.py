@@ -12,7 +12,7 @@ import pytest
 
 from giveway.cosimulation.counterfactual import counterfactual
 from giveway.studies.design import design
-from giveway.studies.rerun import rerun
+from giveway.studies.repeated_run import rerun
 from giveway.studies.statistics.fronts import fronts, on_front
 from giveway.studies.study import StudyInterruptedError
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from giveway.cli.validation import _PARAMETERS
+from giveway.cli.validation_commands import _PARAMETERS
 from giveway.errors import ConfigError, DatasetError
 from giveway.validation import CITR, Clip, calibrate, read_clips
 from giveway.validation.calibrating import DEFAULT, split

@@ -17,7 +17,12 @@ import sys
 import traceback
 from typing import Any
 
-PRELOADED = ("numpy", "libsumo", "giveway.scenario_files", "giveway.sumo.persons")
+PRELOADED = (
+    "numpy",
+    "libsumo",
+    "giveway.scenario_files",
+    "giveway.sumo.persons.scenario_persons",
+)
 
 
 def main() -> None:

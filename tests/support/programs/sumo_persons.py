@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import libsumo
 
-from giveway.sumo.persons import Arrival, Person, ScenarioPersons
+from giveway.sumo.persons.scenario_persons import Arrival, Person, ScenarioPersons
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

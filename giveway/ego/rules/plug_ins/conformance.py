@@ -25,7 +25,7 @@ from giveway.ego.rules.route import RouteContext
 from giveway.errors import RuleError
 from giveway.geometry.bodies import BODY
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lane_path import LanePath, Light, SpeedLimit
+from giveway.sumo.network.lane_path import LanePath, Light, SpeedLimit
 from pedestrian_model import Crowd
 
 _STEPS = 250

@@ -11,7 +11,7 @@ import pytest
 
 from giveway.cosimulation.traffic.bends import Bends, sideways
 from giveway.cosimulation.traffic.lane_paths import LanePathPool
-from giveway.sumo.lanes import Lanes
+from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
 from sumo_scenarios import find
 

@@ -15,7 +15,7 @@ from giveway.cosimulation.traffic.lane_paths import LanePathPool, gaps_ahead, so
 from giveway.ego.perception.corridor import closest_in_front
 from giveway.geometry.kernel import kernel
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lanes import Lanes
+from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
 from sumo_scenarios import find
 

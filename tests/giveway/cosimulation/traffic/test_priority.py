@@ -10,7 +10,7 @@ from giveway.ego.rules.gap_acceptance import MINOR_STRAIGHT, PERMITTED
 from giveway.ego.rules.junctions import Approach, PathJunction
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.conflict import Conflict
-from giveway.sumo.junctions import Movement
+from giveway.sumo.network.junction_links import Movement
 
 OWN, OTHER = 0, 1
 

@@ -7,7 +7,7 @@ import shapely
 from giveway.ego.perception.kerbs import NO_KERBS, Kerbs, kerb_lines
 from giveway.ego.perception.sudden_starts import SettingOut
 from giveway.geometry.path import EgoPath
-from giveway.sumo.crossings import Crossing
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.signal_plans import SignalChange, untold
 from pedestrian_model import Crowd
 

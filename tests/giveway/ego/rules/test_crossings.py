@@ -21,7 +21,7 @@ from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.yielding import STOP_BEFORE
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.sumo.crossings import Crossing
+from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.signal_plans import SignalChange
 from pedestrian_model import Crowd
 

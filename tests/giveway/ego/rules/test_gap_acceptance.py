@@ -13,7 +13,7 @@ from giveway.ego.rules.gap_acceptance import (
     gap_of,
     travel_time,
 )
-from giveway.sumo.junctions import Movement
+from giveway.sumo.network.junction_links import Movement
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from giveway.ego.rules.merging import Merging
 from giveway.ego.rules.protocol import Situation
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.geometry.path import EgoPath
-from giveway.sumo.merging import Merging as Lane
+from giveway.sumo.network.shared_lanes import Merging as Lane
 
 LENGTH = 5.0  # [m] of the ego
 PLACE = Place("main_1", frozenset(), 0.0, 100.0, 130.0)

@@ -13,7 +13,7 @@ from giveway.ego.rules.right_of_way import RightOfWay
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.yielding import STOP_BEFORE
 from giveway.geometry.conflict import Conflict
-from giveway.sumo.junctions import Movement
+from giveway.sumo.network.junction_links import Movement
 
 ENTRY = 50.0
 LINE = ENTRY - STOP_BEFORE

@@ -14,7 +14,7 @@ from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.rules.speed_profile import LATERAL_ACCELERATION, SpeedProfile, profile_of
 from giveway.errors import ScenarioError
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lane_path import SpeedLimit
+from giveway.sumo.network.lane_path import SpeedLimit
 
 STRAIGHT = EgoPath.through([(0.0, 0.0), (400.0, 0.0)])
 RADIUS = 20.0  # [m] of a left bend of 180 degrees behind 100 m of straight road

@@ -9,7 +9,7 @@ from support.situations import demand_of, stop_of, tell
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.traffic_lights import TrafficLights
 from giveway.ego.rules.yielding import STOP_BEFORE
-from giveway.sumo.lane_path import Light
+from giveway.sumo.network.lane_path import Light
 
 LINE = 100.0  # [m]
 STOP = LINE - STOP_BEFORE

@@ -1,0 +1,1 @@
+"""The longitudinal model fitted to the drives of a vehicle FMU."""

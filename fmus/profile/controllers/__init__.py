@@ -1,0 +1,1 @@
+"""Profiles of controller FMUs: drafted, prepared and fitted to the FMU."""

@@ -1,0 +1,96 @@
+"""Preparing a controller FMU: it is read, a profile is chosen, and both are checked.
+
+As with vehicles, faults of a file or a profile are reported here, before native code is loaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from fmus.description.binaries import binary_of
+from fmus.description.model import Model, Value
+from fmus.description.reading import read_model
+from fmus.profile.controllers.controller_draft import draft_controller
+from fmus.profile.controllers.controller_profile import ControllerProfile
+from fmus.profile.controllers.controller_wiring import ControllerWiring, wire_controller
+from fmus.profile.preparation import Bound, bounds_of
+from fmus.profile.step_plan import StepPlan, step_plan_of
+
+
+@dataclass(frozen=True)
+class PreparedController:
+    """A controller that is ready to be unpacked and loaded.
+
+    Attributes:
+        model: Model of the FMU.
+        profile: Profile by which it is asked.
+        wiring: Variables for its inputs and its answer.
+        step_plan: Relation of the control steps to the FMU's steps.
+        bounds: Bounds of the inputs.
+        step_size: Step size between two questions [s].
+        binary: this platform's binary in the archive.
+    """
+
+    model: Model
+    profile: ControllerProfile
+    wiring: ControllerWiring
+    step_plan: StepPlan
+    bounds: tuple[Bound, ...]
+    step_size: float
+    binary: str
+
+    @property
+    def path(self) -> Path:
+        """Path of the FMU."""
+        return self.model.path
+
+
+def prepare_controller(
+    path: Path,
+    *,
+    step_size: float,
+    setup: Mapping[str, float],
+    profile: ControllerProfile | None = None,
+    start_values: Mapping[str, Value] | None = None,
+) -> PreparedController:
+    """Check and read a controller FMU, and fit a profile to it.
+
+    Args:
+        path: the .fmu file.
+        step_size: Step size between two questions [s].
+        setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
+        profile: Roles of the FMU's variables; None: a draft from names, if it leaves no doubt.
+        start_values: further start values by variable name.
+
+    Raises:
+        FmuFileError: the file is missing, or no readable FMU.
+        FmuInterfaceError: it has no interface that can be run here.
+        FmuPlatformError: it has no binary for this platform.
+        FmuVariableError: a variable is missing, or is not what it is used for.
+        FmuProfileError: the profile does not fit, or there is none where one is needed.
+    """
+    model = read_model(path)
+    profile = profile or draft_controller(model).profile()
+    wiring = wire_controller(model, profile, setup, start_values or {})
+    interface = wiring.interface
+    return PreparedController(
+        model=model,
+        profile=profile,
+        wiring=wiring,
+        step_plan=step_plan_of(path, profile.fmu.step, interface, model.default_step, step_size),
+        bounds=bounds_of(wiring.inputs),
+        step_size=step_size,
+        binary=binary_of(model, interface),
+    )
+
+
+def choose_controller_profile(path: Path, profile: ControllerProfile | None) -> ControllerProfile:
+    """Return the profile for asking an FMU: the given one, or a draft.
+
+    Raises:
+        FmuFileError: the file is missing, or no readable FMU.
+        FmuProfileError: there is doubt; the message says which lines to add.
+    """
+    return profile or draft_controller(read_model(path)).profile()

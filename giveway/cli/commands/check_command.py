@@ -1,0 +1,156 @@
+"""The command ``giveway check``: it tries a plug-in on made-up scenes, in a process of its own."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Sequence
+from multiprocessing.connection import Connection
+from typing import Any
+
+import typer
+
+from giveway.cli.flags import set_options
+from giveway.config import RunConfig
+from giveway.config.files.foreign_code import foreign_code, require_code
+from giveway.config.files.layers import Layer, build_config
+from giveway.config.run_config import PAPER_STEP
+from giveway.errors import ConfigError
+from giveway.plug_ins.sockets import CONTROLLER, RULE, SENSOR, Socket
+from pedestrian_model import JUPEDSIM_MODELS
+
+LIMIT = 60.0  # Time limit [s] of a rule; most take a tenth of a second
+_START = 60.0  # Extra time [s] for the first rule: kernels may have to be compiled
+_END = 5.0  # Time [s] for a process that has closed its pipe to end
+
+
+def check_command(
+    name: str,
+    words: Sequence[str],
+    socket: Socket,
+    limit: float = LIMIT,
+    time_step: float | None = None,
+    profile: str = "",
+) -> int:
+    """Print what was found and return the exit code: 1 if a rule is broken.
+
+    The battery runs in a process of its own, which may hang or end.
+
+    Args:
+        name: Name of the plug-in.
+        words: Words of the command line that set its options.
+        socket: Socket for which the plug-in is written.
+        limit: [s] for one rule.
+        time_step: [s] of the scenes; none: that of a run which sets none.
+        profile: Profile of a controller FMU.
+
+    Raises:
+        GivewayError: it cannot be found, imported or given its options.
+    """
+    config = _configured(name, words, socket, time_step, profile)
+    own = [one for one in foreign_code(config) if one.socket is socket]
+    if not own and name not in JUPEDSIM_MODELS:
+        msg = f"{name}: is giveway's own; expected a {socket.what} of another package"
+        raise ConfigError(msg)
+    require_code(config, time_step or PAPER_STEP)
+    findings = _in_a_process(config, socket, limit)
+    for rule, problem in findings:
+        typer.echo(f"{'broken' if problem else 'kept':7} {rule}")
+        if problem:
+            typer.echo(f"        {problem}")
+    broken = sum(bool(problem) for _, problem in findings)
+    typer.echo(f"{name}: {broken} of {len(findings)} rules broken" if broken else f"{name}: sound")
+    return 1 if broken else 0
+
+
+def _configured(
+    name: str, words: Sequence[str], socket: Socket, time_step: float | None, profile: str
+) -> RunConfig:
+    settings: dict[str, Any] = {socket.options: set_options(words)}
+    if socket is RULE:
+        settings = {RULE.options: {name: settings[RULE.options] or True}}
+    if time_step is not None:
+        settings["time_step"] = time_step
+    if profile:
+        settings["controller_profile"] = profile
+    if socket is not RULE:  # whose name is a key
+        node = settings
+        for table in socket.location[:-1]:
+            node = node.setdefault(table, {})
+        node[socket.location[-1]] = name
+    return build_config([Layer("command line", settings, from_flags=True)])
+
+
+def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple[str, str]]:
+    """Return the rules and what breaks each.
+
+    The last one counts as broken if the process hangs or ends in it.
+    """
+    # a fresh process, without threads or state of ours
+    spawn = multiprocessing.get_context("spawn")
+    ours, theirs = spawn.Pipe(duplex=False)
+    process = spawn.Process(
+        target=_battery, args=(theirs, config.model_dump_json(), socket.what), daemon=True
+    )
+    process.start()
+    theirs.close()
+    begun, rule = list[str](), "can be made"
+    try:
+        while ours.poll(limit if begun else limit + _START):
+            message = ours.recv()
+            if not isinstance(message, str):
+                return list(message)
+            begun.append(rule)
+            rule = message
+        problem = f"does not come back: ended after {limit:g} s"
+    except EOFError:
+        process.join(_END)
+        problem = f"ends the process (exit code {process.exitcode})"
+    finally:
+        process.kill()
+        process.join()
+    return [*((one, "") for one in begun), (rule, problem)]
+
+
+def _battery(connection: Connection, config: str, what: str) -> None:
+    """Print each rule's name before it is tried, and its findings.
+
+    This function runs in the process of its own.
+    """
+    effective = RunConfig.model_validate_json(config)
+    step = effective.time_step or PAPER_STEP
+    if what == CONTROLLER.what:
+        from controller import check_controller
+        from fmus import processes_reused
+        from giveway.config.files.controller_fmu import setup_of
+        from giveway.ego import plug_in
+
+        (own,) = effective.each_ego()
+        with processes_reused():
+            found = check_controller(
+                plug_in.maker(own), setup_of(own, step), begins=connection.send
+            )
+        connection.send([(finding.rule, finding.problem) for finding in found])
+    elif what == RULE.what:
+        from giveway.ego.rules.plug_ins.conformance import check_rule, made_up_route
+        from giveway.ego.rules.plug_ins.plug_in import maker
+
+        (own,) = effective.each_ego()
+        ((name, settings),) = own.rules.plugged_in.items()
+        ruled = check_rule(maker(name, settings), made_up_route(own, step), connection.send)
+        connection.send([(finding.rule, finding.problem) for finding in ruled])
+    elif what == SENSOR.what:
+        from giveway.ego.perception import plugged_in_sensor as sensors
+        from giveway.ego.perception.conformance import check_sensor
+
+        (own,) = effective.each_ego()
+        told = check_sensor(sensors.maker(own), sensors.setup_of(own, step), connection.send)
+        connection.send([(finding.rule, finding.problem) for finding in told])
+    else:
+        from giveway.crowd import models
+        from pedestrian_model import check_model
+
+        setup = models.setup_of(effective, step)
+        said = check_model(
+            models.maker(effective.crowd.model, effective), setup, begins=connection.send
+        )
+        connection.send([(finding.rule, finding.problem) for finding in said])

@@ -1,0 +1,63 @@
+"""``giveway doctor``: the findings as a table, the exit code for scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from giveway.cli.screen.printing import findings_table, print_json
+from giveway.doctor import Finding, examine_environment, examine_scenario
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+_STYLES = {"ok": "green", "note": "cyan", "warning": "yellow", "error": "bold red"}
+
+
+def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
+    """Examine the environment, and the scenario if one is named.
+
+    Args:
+        scenario: name or path.
+        as_json: print the findings as JSON.
+
+    Returns:
+        1 if there is an error among the findings, 0 otherwise.
+    """
+    console = Console(quiet=as_json)
+    with console.status("Examining the environment ..."):
+        findings = examine_environment()
+    console.print(_table("Environment", findings))
+    if scenario is not None:
+        with console.status("SUMO tries the scenario ..."):
+            of_scenario = examine_scenario(scenario)
+        console.print(_table("Scenario", of_scenario))
+        findings += of_scenario
+    errors = sum(finding.level == "error" for finding in findings)
+    warnings = sum(finding.level == "warning" for finding in findings)
+    console.print(_verdict(errors, warnings), highlight=False)
+    if as_json:
+        print_json(
+            {
+                "errors": errors,
+                "warnings": warnings,
+                "findings": [asdict(finding) for finding in findings],
+            }
+        )
+    return 1 if errors else 0
+
+
+def _table(title: str, findings: Sequence[Finding]) -> Table:
+    rows = ((found.level, found.subject, found.text, found.remedy) for found in findings)
+    return findings_table(title, _STYLES, rows)
+
+
+def _verdict(errors: int, warnings: int) -> str:
+    if errors:
+        return f"{errors} error{'s' * (errors > 1)}: a run will not work before that is put right."
+    if warnings:
+        return f"No errors, {warnings} warning{'s' * (warnings > 1)}."
+    return "All is well."

@@ -1,0 +1,94 @@
+"""``giveway export run``: a results folder in other people's formats."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from rich.console import Console
+
+from giveway.cli.screen.printing import print_place, writing
+from giveway.errors import ConfigError, ResultsError
+from giveway.exports.fcd import write_fcd
+from giveway.exports.geojson import write_geojson
+from giveway.exports.people import write_jupedsim, write_pedpy
+from giveway.exports.sampling import Sampled, sampled
+from giveway.replays.run_folder import RunFolder
+
+
+class _Format(NamedTuple):
+    suffix: str  # Suffix of the file's name
+    step: float | None  # Default step [s]; None: the control step
+    write: Callable[[RunFolder, Sampled, Path], str]
+
+
+def _film(run: RunFolder, samples: Sampled, file: Path) -> str:
+    from giveway.exports.film import write_gif, write_mp4  # imports matplotlib
+
+    return (write_gif if file.suffix == ".gif" else write_mp4)(run, samples, file)
+
+
+FORMATS = {
+    "fcd": _Format(".fcd.xml", None, write_fcd),
+    "pedpy": _Format(".txt", None, write_pedpy),
+    "jupedsim": _Format(".sqlite", None, write_jupedsim),
+    "geojson": _Format(".geojson", None, write_geojson),
+    "mp4": _Format(".mp4", 0.05, _film),
+    "gif": _Format(".gif", 0.1, _film),
+}
+
+
+def export_run_command(
+    folder: Path, to: str, out: Path | None, *, step: float | None = None, force: bool = False
+) -> int:
+    """Write a run in another format and return the exit code 0.
+
+    Args:
+        folder: the results folder.
+        to: one of ``FORMATS``.
+        out: the file; None: in the working folder, named after the results folder.
+        step: Time [s] between two instants. None: the one that fits the format.
+        force: replace a file that is there.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    found = FORMATS.get(to)
+    if found is None:
+        close = difflib.get_close_matches(to, FORMATS, n=1, cutoff=0.5)
+        hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(FORMATS)}"
+        raise ConfigError(f"--format {to}: no such format; {hint}")
+    run = RunFolder.read(folder)
+    file = out or Path(f"{folder.absolute().name}{found.suffix}")
+    _check(file, found.suffix, force=force)
+    samples = sampled(run, found.step if step is None else step)
+    try:
+        with writing(file, "name another file with --out"):
+            told = found.write(run, samples, file)
+    except BaseException:
+        file.unlink(missing_ok=True)  # do not leave half a file
+        raise
+    console = Console()
+    print_place(console, "Written", file)
+    console.print(told, highlight=False, markup=False, soft_wrap=True)
+    return 0
+
+
+def _check(file: Path, suffix: str, *, force: bool) -> None:
+    """Make sure that the file may be written.
+
+    Raises:
+        ResultsError: the name does not fit, or something is there that is not to be replaced.
+    """
+    ending = suffix[suffix.rindex(".") :]
+    if file.suffix != ending:
+        msg = f"--out {file}: expected the name of a {ending} file"
+    elif file.is_dir():
+        msg = f"--out {file}: is a folder; expected the name of a {ending} file"
+    elif file.exists() and not force:
+        msg = f"{file}: exists; replace it with --force or name another file with --out"
+    else:
+        return
+    raise ResultsError(msg)

@@ -1,0 +1,44 @@
+"""``giveway fmu compile``: an FMU that brings its C sources, made ready for this platform."""
+
+from pathlib import Path
+
+from rich.console import Console
+
+from fmus import FmuError
+from fmus.description.binaries import this_platform
+from fmus.sources.foreign import compile_fmu
+from giveway.cli.guards.fmu_arguments import require_fmu
+from giveway.cli.screen.printing import print_place, writing
+from giveway.errors import ConfigError, VehicleError
+
+
+def compile_command(path: Path, out: Path | None = None, *, force: bool = False) -> int:
+    """Write a copy of an FMU with a binary for this platform.
+
+    Args:
+        path: the FMU.
+        out: the copy; None: named after the FMU and the platform, in the working folder.
+        force: replace a file that is there.
+
+    Returns:
+        0.
+
+    Raises:
+        ConfigError: there is no such FMU, or the copy exists.
+        VehicleError: the FMU is refused, brings no sources, or they do not compile.
+        ResultsError: the copy cannot be written.
+    """
+    require_fmu(path)
+    out = out or Path(f"{path.stem}_{this_platform()}.fmu")
+    if out.exists() and (not force or out.samefile(path)):
+        raise ConfigError(f"{out}: exists; name another file with -o, or replace it with --force")
+    console = Console()
+    try:
+        with console.status("Compiling ..."), writing(out, "name another with -o"):
+            made = compile_fmu(path, out)
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    for name in made:
+        console.print(f"Compiled {name}", highlight=False, markup=False)
+    print_place(console, "FMU", out)
+    return 0

@@ -1,0 +1,181 @@
+"""``giveway fmu identify``: M and alpha of a vehicle FMU, into its profile."""
+
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+from rich.table import Table
+from rich.text import Text
+
+from fmus import FmuError
+from fmus.checking import Identification, identify, opener_of, require_converged
+from fmus.checking.identification import SPEEDS
+from fmus.checking.profile_file import profile_text, with_model
+from fmus.profile.preparation import choose_profile, prepare
+from fmus.profile.vehicle_profile import VehicleProfile
+from fmus.text import printable
+from giveway.cli.guards.fmu_arguments import profile_in, require_fmu, require_number, save_picture
+from giveway.cli.screen.printing import escape, print_place, writing
+from giveway.config.files.schema_names import PROFILE, with_schema
+from giveway.errors import ConfigError, VehicleError
+
+
+def identify_command(
+    path: Path,
+    profile: Path | None = None,
+    *,
+    out: Path | None = None,
+    step: float = 0.05,
+    horizon: int = 15,
+    force_limit: float = 8000.0,
+    speeds: Sequence[float] = SPEEDS,
+    picture: Path | None = None,
+    force: bool = False,
+) -> int:
+    """Find M and alpha by step tests, print them, and write the profile with them.
+
+    Args:
+        path: the .fmu file.
+        profile: its profile; None: ``out`` if that is there, else drafted.
+        out: the profile to write; None: only printed.
+        step: Time step of the MPC [s].
+        horizon: Prediction horizon of the MPC [steps].
+        force_limit: u_max [N].
+        speeds: Speeds from which the tests start [m/s].
+        picture: .png, .svg or .pdf to draw; None: none.
+        force: replace another file at ``out``.
+
+    Raises:
+        ConfigError: a file, a value or the profile cannot be used.
+        VehicleError: the FMU failed, or does not respond like a vehicle.
+        ResultsError: a file cannot be written.
+    """
+    require_fmu(path)
+    require_number("--step", step, 0.0, 1.0, "s")
+    require_number("--horizon", horizon, 1, 200, "steps")
+    require_number("--force-limit", force_limit, 0.0, 1e6, "N")
+    for speed in speeds or (-1.0,):
+        require_number("--speeds", speed, -1e-300, 70.0, "m/s")
+    if profile is None and out is not None and out.exists():
+        profile = out
+    if out is not None and out.exists() and not force and not _same(out, profile):
+        raise ConfigError(f"{out}: exists; name another file with -o, or replace it with --force")
+    given = profile_in(profile)
+    console = Console()
+    try:
+        chosen = choose_profile(path, given)
+        fmu_step = prepare(path, step_size=step, profile=chosen).step_plan.step
+        found = _identified(console, path, chosen, step, fmu_step, horizon, force_limit, speeds)
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    console.print(_summary(path, found))
+    for remark in found.remarks:
+        console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False, soft_wrap=True)
+    if out is not None:
+        text = with_model(_text(path, profile, chosen), found.model)
+        with writing(out, "name another with -o"):
+            out.write_text(text, encoding="utf-8")
+        print_place(console, "Profile", out)
+    if picture is not None:
+        from giveway.figures.vehicle_response import identification_figure
+
+        save_picture(identification_figure(found, title=_title(path, found)), picture)
+        print_place(console, "Picture", picture)
+    return 0
+
+
+def _same(out: Path, profile: Path | None) -> bool:
+    return profile is not None and profile.exists() and out.samefile(profile)
+
+
+def _identified(
+    console: Console,
+    path: Path,
+    profile: VehicleProfile,
+    step: float,
+    fmu_step: float,
+    horizon: int,
+    force_limit: float,
+    speeds: Sequence[float],
+) -> Identification:
+    opener = opener_of(path, step_size=step, profile=profile)
+    columns = (TextColumn("Step tests"), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task("")
+        require_converged(opener, fmu_step, path=path, force=0.5 * force_limit)
+        return identify(
+            opener,
+            path=path,
+            step_size=step,
+            horizon=horizon,
+            force_limit=force_limit,
+            profile=profile,
+            speeds=speeds,
+            progress=lambda done, total: progress.update(task, completed=done, total=total),
+        )
+
+
+def _summary(path: Path, found: Identification) -> Table:
+    model, (mass, friction) = found.model, found.intervals
+    table = Table(
+        title=Text(f"{printable(path.name, 60)}: M v' + alpha v = u"), title_justify="left",
+        show_header=False, box=None, pad_edge=False,
+    )  # fmt: skip
+    table.add_column()
+    table.add_column(justify="right")
+    table.add_column()
+    for label, value, unit in (
+        ("M", f"{model.mass:.6g}", f"kg ± {_small(mass)} (95 %)"),
+        ("alpha", f"{model.friction:.6g}", f"N.s/m ± {_small(friction)} (95 %)"),
+        ("Actuator lag", f"{model.lag:.3g}", "s"),
+        ("Dead time", f"{model.delay:.3g}", "s"),
+        *(
+            (f"{name} alone", f"{side.mass:.4g}", f"kg, {side.lag:.2g} s lag, {side.delay:.2g} s")
+            for name, side in (("Drive", found.sides.drive), ("Brake", found.sides.brake))
+            if side is not None
+        ),
+        ("Largest force of the tests", f"{found.largest_force:.0f}", "N"),
+        ("Drive force that arrives", _limit(found.drive_limit), "N"),
+        ("Brake force that arrives", _limit(found.brake_limit), "N"),
+        ("R² in a drive not fitted", f"{model.r_squared:.4f}", ""),
+        ("Speed error, one step", _small(model.speed_error), "m/s RMS"),
+        (f"Position error, {model.horizon:g} s", _small(model.position_error), "m (95 %)"),
+    ):
+        table.add_row(label, value, unit)
+    return table
+
+
+def _small(value: float) -> str:
+    """Return a number with two digits, and rounding errors as 0."""
+    return f"{value:.2g}" if value > 1e-9 else "0"
+
+
+def _limit(limit: float | None) -> str:
+    return "all" if limit is None else f"{limit:.0f}"
+
+
+def _title(path: Path, found: Identification) -> str:
+    model = found.model
+    return (
+        f"{printable(path.name, 60)}: M = {model.mass:.5g} kg, alpha = {model.friction:.4g} N s/m, "
+        f"lag {model.lag:.2g} s, dead time {model.delay:.2g} s"
+    )
+
+
+def _text(path: Path, file: Path | None, profile: VehicleProfile) -> str:
+    """The profile's text, with the user's comments where there is a file."""
+    if file is not None:
+        return file.read_text(encoding="utf-8-sig")
+    from fmus.profile.bundled import is_bundled
+
+    if not is_bundled(path):
+        from fmus.description.reading import read_model
+        from fmus.profile.draft_profile import draft_profile
+
+        text = draft_profile(read_model(path)).toml
+        tomllib.loads(text)
+        return with_schema(text, PROFILE)
+    text = profile_text(profile, f"{path.name}: how giveway drives it (docs/vehicles.md)")
+    return with_schema(text, PROFILE)

@@ -1,0 +1,41 @@
+"""``giveway recover``: the rows of runs that were killed, written as results."""
+
+from pathlib import Path
+
+from rich.console import Console
+
+from giveway.cli.commands.run_command import show
+from giveway.cli.screen.printing import escape
+from giveway.recovery import left_journals, recover_left
+
+
+def recover_command(journal: Path | None, out: Path | None, *, force: bool) -> int:
+    """Write the rows of a journal, or list the journals, and return the exit code 0.
+
+    Args:
+        journal: the folder of one; None lists them.
+        out: Folder for the rows. None: the folder in which the run would have written them.
+        force: replace the results there.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console()
+    if journal is None:
+        _list(console)
+        return 0
+    result, folder = recover_left(journal, out, force=force)
+    show(console, result, folder)
+    return 0
+
+
+def _list(console: Console) -> None:
+    left = left_journals()
+    if not left:
+        console.print("No run that was killed has left a journal with rows")
+    for found in left:
+        text = (
+            f"{found.path}  {found.scenario}: {found.steps:,} steps, up to {found.clock:.2f} s; "
+            f"results were to go to {found.results}"
+        )
+        console.print(escape(text), highlight=False, soft_wrap=True)

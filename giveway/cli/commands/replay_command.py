@@ -1,0 +1,80 @@
+"""``giveway replay``: from a results folder to a page that plays the run."""
+
+import contextlib
+import sys
+import webbrowser
+from collections.abc import Iterator
+from pathlib import Path
+
+from rich.console import Console
+
+from giveway.cli.screen.printing import print_place
+from giveway.replays.repetition import Predicted, predicted_again
+from giveway.replays.replay_page import content_of, write_beside, write_replay
+from giveway.replays.run_folder import PREDICTIONS, RunFolder
+
+_AGAIN = "Making the run once more for its predictions (--no-rerun skips this) ..."
+
+
+def replay_command(
+    run: Path,
+    *,
+    out: Path | None = None,
+    beside: Path | None = None,
+    rerun: bool = True,
+    show: bool = False,
+) -> int:
+    """Write the replay of a run and return the exit code 0.
+
+    Args:
+        run: a results folder.
+        out: the page; None: ``replay.html`` in the folder, or beside another run one here.
+        beside: another results folder, to be played in step with it.
+        rerun: make a run again if its predictions are not on record.
+        show: open the page in the browser.
+
+    Raises:
+        ResultsError: a folder holds no run, or the page cannot be written.
+    """
+    console = Console()
+    if beside is None:
+        target = out or run / "replay.html"
+        with _predicted(run, console, rerun=rerun) as predicted:
+            write_replay(run, target, predictions=predicted.file, remark=predicted.remark)
+    else:
+        target = out or Path(f"{run.absolute().name}_beside_{beside.absolute().name}.html")
+        contents = []
+        for folder in (run, beside):
+            with _predicted(folder, console, rerun=rerun) as predicted:
+                contents.append(content_of(folder, predicted.file, predicted.remark))
+        write_beside(contents, target)
+    print_place(console, "Replay", target)
+    if show:
+        webbrowser.open(target.absolute().as_uri())
+    return 0
+
+
+@contextlib.contextmanager
+def _predicted(run: Path, console: Console, *, rerun: bool) -> Iterator[Predicted]:
+    """The predictions of a run, made once more if that is wanted and worth it."""
+    with contextlib.ExitStack() as stack:
+        predicted = Predicted(None)
+        if rerun and _worth_it(run):
+            with console.status(_AGAIN):
+                if not console.is_terminal:
+                    console.print(_AGAIN)
+                predicted = stack.enter_context(predicted_again(run))
+            if predicted.remark:
+                sys.stderr.write(f"note: {predicted.remark}\n")
+        yield predicted
+
+
+def _worth_it(run: Path) -> bool:
+    """True if a repetition may give predictions that are not recorded.
+
+    A run that crashed is not repeated.
+    """
+    folder = RunFolder.read(run)
+    if (run / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
+        return False
+    return any(config.optimises for config in folder.egos.values())

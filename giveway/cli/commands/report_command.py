@@ -1,0 +1,53 @@
+"""``giveway report``: figures, replays and the HTML report of a study."""
+
+import sys
+from collections.abc import Collection
+from pathlib import Path
+
+from rich.console import Console
+
+from giveway.cli.screen.printing import print_place
+from giveway.studies.folder.study_folder import StudyFolder
+
+
+def report_command(
+    study: Path, *, replays: bool, quiet: bool, trusted: Collection[str] = ()
+) -> int:
+    """Write figures, replays and report anew.
+
+    Only the runs that are shown are computed again.
+
+    Args:
+        study: the study's folder.
+        replays: True if the shown runs are to be made again.
+        quiet: print nothing.
+        trusted: code, as module:Class, that the study may have imported.
+
+    Raises:
+        GivewayError: there is no study, or nothing to show, or the disk is full.
+    """
+    write_all(StudyFolder.open(study), Console(quiet=quiet), replays=replays, trusted=trusted)
+    return 0
+
+
+def write_all(
+    study: StudyFolder, console: Console, *, replays: bool = True, trusted: Collection[str] = ()
+) -> None:
+    """Write figures, replays and report, and the tables unless those of all runs exist."""
+    from giveway.precompile import compile_kernels_once
+    from giveway.reports.with_replays import write_report_of
+    from giveway.studies.folder.folder_contents import broken_tables, intact_tables
+    from giveway.studies.folder.sealing import put_aside
+    from giveway.studies.folder.table_files import TABLES, write_tables
+
+    compile_kernels_once(console)
+    for file in broken_tables(study.path):
+        there = put_aside(file, study.path)
+        sys.stderr.write(
+            f"note: {file}: is not what giveway wrote; put aside in {there}, it is made again\n"
+        )
+    if not study.complete or {f"{name}.csv" for name in TABLES} - intact_tables(study.path):
+        write_tables(study, whole=True)
+    with console.status("Drawing ...") as status:
+        page = write_report_of(study, replays=replays, tell=status.update, trusted=trusted)
+    print_place(console, "Report", page)

@@ -1,0 +1,65 @@
+"""``giveway rerun``: one run of a study once more, as ``giveway run`` would make it."""
+
+from collections.abc import Collection
+from pathlib import Path
+
+from rich.console import Console
+
+from giveway.cli.commands.run_command import Outputs, interrupted, show
+from giveway.cli.screen.printing import escape
+from giveway.cli.screen.progress_bars import run_progress
+from giveway.precompile import compile_kernels_once
+from giveway.results.folder import check_folder
+from giveway.run_data.progress import Ending
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.repeated_run import checked_run, rerun
+
+
+def rerun_command(
+    study: Path,
+    run: str,
+    outputs: Outputs,
+    *,
+    predictions: bool,
+    journal: Path | None,
+    trusted: Collection[str] = (),
+) -> int:
+    """Make the run again, and say whether its numbers are the study's.
+
+    Args:
+        study: the study's folder.
+        run: the run's id.
+        outputs: Outputs to keep and to print.
+        predictions: keep the predicted positions.
+        trusted: code, as module:Class, that the study may have imported.
+        journal: a folder for the rows in case this process dies.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=outputs.quiet)
+    folder = StudyFolder.open(study)
+    checked = checked_run(folder, run, predictions=predictions, trusted=trusted)
+    out = outputs.folder or study / "reruns" / run
+    check_folder(out, force=outputs.force)
+    compile_kernels_once(console)
+    with run_progress(console, checked.config) as watcher:
+        result = rerun(
+            folder,
+            run,
+            out,
+            checked=checked,
+            force=outputs.force,
+            pictures=outputs.pictures,
+            watcher=watcher,
+            journal=journal,
+        )
+    if result.ending is Ending.INTERRUPTED:
+        return interrupted(result, out)
+    show(console, result, out)
+    record = folder.record(run)
+    if record is not None and record.failed:
+        console.print(f"In the study it {record.ending}: {escape(record.failure)}", highlight=False)
+    elif record is not None:
+        console.print("Its numbers are those of the study's row.")
+    return 0

@@ -1,0 +1,167 @@
+"""``giveway run``: progress bar, run, files, one screen of summary."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+
+from giveway.cli.exit import INTERRUPTED, fail
+from giveway.cli.screen.printing import escape, print_json
+from giveway.cli.screen.progress_bars import run_progress
+from giveway.config.files.layers import Layer, dump_toml, read_toml
+from giveway.config.files.loading import load
+from giveway.errors import GivewayError
+from giveway.results.folder import check_folder, require_parquet
+from giveway.run_data.progress import Ending
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from giveway.config import RunConfig
+    from giveway.results.run_result import RunResult
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """The outputs that the user wants to keep, and to see."""
+
+    folder: Path | None
+    force: bool
+    parquet: bool
+    pictures: bool
+    quiet: bool
+    as_json: bool = False
+
+
+def layers_of(
+    scenario: str | None, config: Path | None, settings: Mapping[str, Any]
+) -> list[Layer]:
+    """The user's settings: the file, then the flags."""
+    layers = [] if config is None else [read_toml(config)]
+    named = {} if scenario is None else {"scenario": scenario}
+    return [*layers, Layer("command line", {**named, **settings}, from_flags=True)]
+
+
+def run_command(
+    scenario: str | None,
+    config: Path | None,
+    settings: Mapping[str, Any],
+    outputs: Outputs,
+    journal: Path | None = None,
+) -> int:
+    """Run once and return the exit code: 0, or 130 if the user interrupted.
+
+    Args:
+        scenario: name or path; None: the file's, or the default.
+        config: a TOML file.
+        settings: Settings given by flags.
+        outputs: Outputs to keep and to print.
+        journal: a folder for the rows in case this process dies.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=outputs.quiet or outputs.as_json)
+    effective, found = load(layers_of(scenario, config, settings))
+    if outputs.parquet:
+        require_parquet()
+    from giveway.cosimulation.preflight import preflight
+    from giveway.precompile import compile_kernels_once
+
+    checked = preflight(effective, found)
+    folder = outputs.folder or default_folder(effective, found.name)
+    check_folder(folder, force=outputs.force)
+    compile_kernels_once(console, threads=effective.crowd.threads)
+    from giveway.api import run_checked
+
+    with run_progress(console, effective) as watcher:
+        try:
+            result = run_checked(
+                checked,
+                results=folder,
+                force=outputs.force,
+                parquet=outputs.parquet,
+                pictures=outputs.pictures,
+                watcher=watcher,
+                journal=journal,
+            )
+        except GivewayError as error:
+            if error.result is not None and len(error.result.time):
+                error.args = (f"{error}; rows up to then are in {folder}",)
+            raise
+    if result.ending is Ending.INTERRUPTED:
+        return interrupted(result, folder)
+    show(console, result, folder)
+    if outputs.as_json:
+        print_json(
+            {
+                "results": str(folder),
+                "ending": result.ending.value,
+                "remarks": list(result.remarks),
+                "summary": json.loads((folder / "summary.json").read_text(encoding="utf-8")),
+            }
+        )
+    return 0
+
+
+def interrupted(result: RunResult, folder: Path) -> int:
+    """Say what has been kept of a run that the user has ended, and return the exit code."""
+    kept = f"rows up to then are in {folder}" if len(result.time) else "there are no rows yet"
+    return fail(f"interrupted; {kept}", INTERRUPTED)
+
+
+def default_folder(config: RunConfig, scenario: str) -> Path:
+    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos taken over.
+
+    Where anything else differs from the scenario's settings and the defaults, six digits of a hash
+    over the whole configuration follow, so that different runs have different folders.
+    """
+    egos = config.each_ego()
+    controllers = _safe("_".join(dict.fromkeys(ego.controller_name for ego in egos))) or "no_ego"
+    taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
+    safe = _safe(taken)
+    pedestrians = f"{config.crowd.pedestrians}ped"
+    name = f"{scenario}_{controllers}{safe[:60]}_{pedestrians}_seed{config.seed}"
+    if not _is_told_by_name(config):
+        name += f"_{sha256(dump_toml(config).encode()).hexdigest()[:6]}"
+    return Path("results") / name
+
+
+def _safe(name: str) -> str:
+    """A part of a folder's name, on every system."""
+    return "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in name)
+
+
+def _is_told_by_name(config: RunConfig) -> bool:
+    """True if the folder's name tells everything that differs from the scenario's own settings."""
+    ego = {key: value for key in ("take_over", "none") if (value := getattr(config.ego, key))}
+    told = {
+        "scenario": config.scenario,
+        "controller": config.controller,
+        "seed": config.seed,
+        "crowd": {"pedestrians": config.crowd.pedestrians},
+        "ego": ego,
+    }
+    try:
+        plain, _ = load([Layer("", told)])
+    except GivewayError:
+        return False
+    return dump_toml(plain) == dump_toml(config)
+
+
+def show(console: Console, result: RunResult, folder: Path) -> None:
+    """Print the run's summary and what was written."""
+    from giveway.cli.screen.run_summary import summary_table
+
+    console.print(summary_table(result))
+    for remark in result.remarks:
+        console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False)
+    files = ", ".join(sorted(path.name for path in folder.iterdir()))
+    console.print(
+        f"Results in [bold]{escape(str(folder))}[/bold]: {escape(files)}", highlight=False
+    )

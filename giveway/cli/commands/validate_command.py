@@ -1,0 +1,111 @@
+"""``giveway validate``: the pedestrian model against recorded trajectories, printed and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
+
+from giveway.cli.screen.printing import escape, print_place
+from giveway.cli.screen.progress_bars import counting
+from giveway.config.files.presets import parameters_of, require_steady_preset
+from giveway.precompile import compile_kernels_once
+from giveway.results.folder import check_folder
+from giveway.validation import Validation, dataset_of, read_clips, validate
+from giveway.validation.contacts import DATA, ORDER
+from giveway.validation.evaluation import EVERYWHERE, NEAR
+from giveway.validation.output import FILES, write_validation
+from giveway.validation.predictors import VCI
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def validate_command(
+    clips_in: Path, *, dataset: str | None, preset: str, out: Path | None, force: bool, quiet: bool
+) -> None:
+    """Read the clips, predict, print the tables, write the folder.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=quiet)
+    described = dataset_of(dataset)
+    parameters = parameters_of(preset)
+    folder = out or Path("results") / f"validation_{Path(preset).stem}"
+    check_folder(folder, force=force, ours=FILES, writer="giveway validate")
+    clips = read_clips(clips_in, described)
+    step = 1.0 / described.frame_rate
+    require_steady_preset(preset, step, "--preset")
+    compile_kernels_once(console)
+    with counting(console, "Predicting") as count:
+        found = validate(clips, parameters, progress=lambda done, of: count(done, of, ""))
+    with console.status("Drawing ..."):
+        write_validation(found, parameters, folder)
+    _print(console, found, preset)
+    print_place(console, "Tables and pictures", folder)
+
+
+def _print(console: Console, found: Validation, preset: str) -> None:
+    with_vehicle = sum(clip.poses.shape[1] > 0 for clip in found.clips)
+    console.print(
+        f"{escape(found.clips[0].dataset.name)}: "
+        f"{len(found.clips)} clips, {with_vehicle} with a vehicle, {found.pedestrians} "
+        f"pedestrians, {len(found.cut)} windows; parameters {escape(preset)}",
+        highlight=False,
+    )
+    near = f"within {found.protocol.near:g} m of the vehicle"
+    for subset, title in ((EVERYWHERE, "everybody"), (NEAR, near)):
+        rows = found.errors[found.errors["subset"] == subset]
+        if rows["count"].sum():
+            console.print(_errors(rows, f"Displacement errors [m], {title}"))
+    if len(found.contacts):
+        console.print(_contacts(found.contacts))
+    else:
+        console.print("No clip has a vehicle: nobody to touch.", highlight=False)
+    console.print(
+        f"The closest two people, centre to centre: {found.apart[DATA]:.2f} m in the data, "
+        f"{found.apart[VCI]:.2f} m by the model.",
+        highlight=False,
+    )
+
+
+def _errors(rows: pd.DataFrame, title: str) -> Table:
+    """Return a table of ADE / FDE per predictor and horizon, with the FDE's intervals below."""
+    caption = "ADE / FDE [95 % interval of the FDE, clips resampled]"
+    table = Table(title=escape(title), caption=escape(caption))
+    table.add_column("")
+    horizons = list(dict.fromkeys(rows["horizon"]))
+    for horizon in horizons:
+        count = int(rows.loc[rows["horizon"] == horizon, "count"].iloc[0])
+        table.add_column(f"{horizon:g} s (n = {count})", justify="right")
+    for name in dict.fromkeys(rows["predictor"]):
+        mine = rows[rows["predictor"] == name]
+        table.add_row(name, *(_cell(mine[mine["horizon"] == horizon]) for horizon in horizons))
+    return table
+
+
+def _cell(rows: pd.DataFrame) -> str:
+    ade, fde = (rows[rows["metric"] == metric].iloc[0] for metric in ("ADE", "FDE"))
+    numbers = f"{ade['mean']:.2f} / {fde['mean']:.2f}"
+    known = fde["low"] == fde["low"]  # not nan
+    return f"{numbers} [{fde['low']:.2f}, {fde['high']:.2f}]" if known else numbers
+
+
+def _contacts(contacts: pd.DataFrame) -> Table:
+    pedestrians = int(contacts.loc[contacts["predictor"] == ORDER[0], "pedestrians"].sum())
+    table = Table(title=f"Touching the vehicle in whole clips, of {pedestrians}")
+    for heading in ("", "touching", "closest [m]"):
+        table.add_column(escape(heading), justify="right" if heading else "left")
+    for row in _totals(contacts):
+        table.add_row(*row)
+    return table
+
+
+def _totals(contacts: pd.DataFrame) -> Iterator[tuple[str, str, str]]:
+    for name in ORDER:
+        mine = contacts[contacts["predictor"] == name]
+        yield name, str(int(mine["touching"].sum())), f"{mine['closest'].min():.2f}"

@@ -1,0 +1,1 @@
+"""Guards: files are checked, or opened in a process of their own, before a command trusts them."""

@@ -1,0 +1,54 @@
+"""The archive gate of foreign FMUs, before a command loads what it needs for its work.
+
+An archive that is refused costs no more than its examination: neither SUMO nor any library of
+numbers is loaded for it.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from giveway.config.files.layers import Layer, merge, read_toml
+from giveway.config.tables.basics import BUNDLED_VEHICLES
+from giveway.errors import VehicleError
+from giveway.plug_ins.finding import is_fmu
+
+
+def require_archives(config: Path | None, settings: Mapping[str, Any]) -> None:
+    """Have the FMUs that a file and the flags name pass the gate.
+
+    One that is not there is left to the command, which knows what it was for.
+
+    Args:
+        config: a TOML file; None: there is none.
+        settings: Settings given by flags.
+
+    Raises:
+        ConfigError: the file cannot be read.
+        VehicleError: an archive is hostile, damaged or too large.
+    """
+    layers = [] if config is None else [read_toml(config)]
+    merged = merge([*layers, Layer("command line", dict(settings), from_flags=True)])
+    paths = [path for path in _named(merged) if path.is_file()]
+    if not paths:
+        return
+    from fmus.archive.archive_check import open_archive
+    from fmus.errors import FmuError
+
+    for path in paths:
+        try:
+            open_archive(path)
+        except FmuError as error:
+            raise VehicleError(str(error)) from error
+
+
+def _named(settings: Mapping[str, Any]) -> Iterator[Path]:
+    egos = settings.get("egos")
+    for table in (settings, *(egos if isinstance(egos, list) else ())):
+        vehicle = table.get("vehicle") if isinstance(table, Mapping) else None
+        fmu = vehicle.get("fmu") if isinstance(vehicle, Mapping) else None
+        if isinstance(fmu, str) and fmu not in BUNDLED_VEHICLES and "\0" not in fmu:
+            yield Path(fmu)
+        controller = table.get("controller") if isinstance(table, Mapping) else None
+        if isinstance(controller, str) and is_fmu(controller) and "\0" not in controller:
+            yield Path(controller)

@@ -1,0 +1,80 @@
+"""Output that several commands share: findings, the place of a file, errors in writing it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich import markup
+from rich.table import Table
+from rich.text import Text
+
+from giveway.cli.exit import visible
+from giveway.errors import ResultsError
+from giveway.results.json_text import json_text
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def escape(text: str) -> str:
+    """``text`` as it is, and no markup of rich's: names and labels come from a user's files."""
+    return markup.escape(visible(text))
+
+
+def findings_table(
+    title: str, styles: Mapping[str, str], findings: Iterable[tuple[str, str, str, str]]
+) -> Table:
+    """A row per finding.
+
+    Args:
+        title: above the table.
+        styles: Style of each level.
+        findings: level, subject, text and remedy of each; the remedy may be empty.
+    """
+    table = Table(
+        title=Text(title), title_justify="left", show_header=False, box=None, pad_edge=False
+    )
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold", ratio=1)
+    for level, subject, finding, remedy in findings:
+        text = Text(visible(finding))  # not markup: ids, names and paths may hold brackets
+        if remedy:
+            text.append(f"\n-> {remedy}", style="italic")
+        table.add_row(Text(level, style=styles[level]), Text(visible(subject)), text)
+    return table
+
+
+def print_place(console: Console, what: str, path: Path) -> None:
+    """Tell where something has been written, on one line, so that the path can be copied."""
+    where = f"{what} in [bold]{escape(str(path))}[/bold]"
+    console.print(where, highlight=False, soft_wrap=True)
+
+
+def print_json(content: dict[str, Any]) -> None:
+    """Print what a command has found for a script: JSON on standard output, and nothing else."""
+    sys.stdout.write(json_text(content))
+
+
+@contextmanager
+def writing(file: Path, remedy: str) -> Iterator[None]:
+    """Make the folder of a file that is about to be written.
+
+    Args:
+        file: File that is written within the context.
+        remedy: Advice for a file that cannot be written.
+
+    Raises:
+        ResultsError: the folder or the file cannot be written.
+    """
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise ResultsError(
+            f"{file}: cannot be written ({error.strerror or error}); {remedy}"
+        ) from error

@@ -1,0 +1,1 @@
+"""Pictures of studies; each is drawn from the tables of a study."""

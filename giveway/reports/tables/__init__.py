@@ -1,0 +1,1 @@
+"""Tables of a report, with names in words and units."""

@@ -1,0 +1,1 @@
+"""The folder of a study: its records, tables, seals and lock."""

@@ -1,0 +1,114 @@
+"""The content of a study's folder beside its records, and whether it is still as written.
+
+The manifest is sealed and names the definition's checksum; the data package is sealed and names
+those of the tables.
+"""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from giveway.studies.folder.sealing import (
+    SEAL,
+    BrokenFileError,
+    fingerprint,
+    read_json,
+    read_sealed,
+)
+
+DEFINITION = "study.toml"
+MANIFEST = "manifest.json"
+PACKAGE = "datapackage.json"
+# Keys of the manifest that its seal covers
+_SEALED = {"study", "seeds", "complete", "identity", "definition", "cells"}
+SHA256 = "sha256:"  # Prefix of a checksum in a data package
+
+
+def broken_files(study: Path) -> list[Path]:
+    """The files of a study, but for its records, that are there and not what was written."""
+    found = broken_tables(study)
+    try:
+        require_definition(study, read_manifest(study))
+    except BrokenFileError as error:
+        found.append(error.file)
+    except OSError:  # killed before one of them was written
+        pass
+    return found
+
+
+def read_manifest(study: Path) -> dict[str, Any]:
+    """Return the manifest of a study, without its seal.
+
+    A manifest of an earlier giveway has no seal.
+
+    Raises:
+        BrokenFileError: it is not what was written.
+        OSError: it cannot be read.
+    """
+    file = study / MANIFEST
+    manifest = read_json(file)
+    if not {SEAL, "definition"} & manifest.keys():
+        return manifest
+    manifest = read_sealed(file)
+    if not manifest.keys() >= _SEALED:
+        raise BrokenFileError(file, "it is no manifest")
+    return manifest
+
+
+def require_definition(study: Path, manifest: dict[str, Any]) -> None:
+    """Make sure that a study's definition is the one that its manifest is about.
+
+    Raises:
+        BrokenFileError: it is not.
+        OSError: it cannot be read.
+    """
+    file = study / DEFINITION
+    known = manifest.get("definition")
+    if known is not None and known != fingerprint(file.read_bytes()):
+        raise BrokenFileError(
+            file, f"{MANIFEST} is about another, as after a kill in the beginning"
+        )
+
+
+def intact_tables(study: Path) -> frozenset[str]:
+    """The names of those tables in a study's folder that are what was written."""
+    try:
+        return frozenset(name for name, intact in _tables(study) if intact)
+    except (BrokenFileError, OSError):
+        return frozenset()
+
+
+def broken_tables(study: Path) -> list[Path]:
+    """Return the tables in a study's folder, and their description, that have changed since.
+
+    Missing ones are not among them, nor are those of an earlier giveway, which has sealed none.
+    """
+    try:
+        if SEAL not in read_json(study / PACKAGE):
+            return []
+        return [study / name for name, intact in _tables(study) if not intact]
+    except BrokenFileError as error:
+        return [error.file]
+    except OSError:
+        return []
+
+
+def _tables(study: Path) -> Iterator[tuple[str, bool]]:
+    """The tables that are there, and whether each is what its description is about.
+
+    Raises:
+        BrokenFileError: the description is not what was written, or another file in its place.
+        OSError: it cannot be read.
+    """
+    file = study / PACKAGE
+    try:
+        described = {
+            table["path"]: {"bytes": table["bytes"], "sha256": table["hash"].removeprefix(SHA256)}
+            for table in read_sealed(file)["resources"]
+        }
+    except (KeyError, TypeError):
+        raise BrokenFileError(file, "it is no description of tables") from None
+    for name, known in described.items():
+        with suppress(OSError):
+            yield name, fingerprint((study / name).read_bytes()) == known

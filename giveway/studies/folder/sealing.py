@@ -1,0 +1,119 @@
+"""Seals: how a study knows a file of its own that a disk, an editor or a copy has changed.
+
+A sealed file is JSON with one more entry: length and SHA-256 of all the others, and the code that
+wrote them. A file that is not JSON, as a table, has its length and checksum in a sealed file.
+"""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+from giveway.errors import ResultsError
+
+SEAL = "seal"
+ASIDE = "broken"  # the folder for files whose seal is broken
+_UNREADABLE = (ValueError, RecursionError)  # Errors of reading text or JSON
+
+
+class BrokenFileError(ResultsError):
+    """A file of a study is not what was written.
+
+    Args:
+        file: the file.
+        reason: Reason why it is refused.
+
+    Attributes:
+        file: the file.
+        reason: Reason why it is refused.
+    """
+
+    def __init__(self, file: Path, reason: str) -> None:
+        self.file, self.reason = file, reason
+        super().__init__(
+            f"{file}: is not what giveway wrote ({reason}); giveway study with --resume puts it "
+            "aside and makes it again"
+        )
+
+
+def fingerprint(content: bytes) -> dict[str, Any]:
+    """Length and checksum of a file's content."""
+    return {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+
+
+def sealed(content: dict[str, Any], software: str) -> dict[str, Any]:
+    """``content`` with its seal.
+
+    Args:
+        content: Content of a JSON file.
+        software: identity of the code that made it.
+    """
+    return content | {SEAL: _seal(content, software)}
+
+
+def read_sealed(file: Path, *, software: str | None = None) -> dict[str, Any]:
+    """The content of a sealed file, without its seal.
+
+    Args:
+        file: File to be read.
+        software: identity of the code that must have made it; None: any.
+
+    Raises:
+        BrokenFileError: it is not what was written, or other code wrote it.
+        OSError: it cannot be read.
+    """
+    content = read_json(file)
+    seal = content.pop(SEAL, None)
+    if seal is None:
+        raise BrokenFileError(file, "its seal is missing")
+    maker = seal.get("software") if isinstance(seal, dict) else None
+    if seal != _seal(content, maker):
+        raise BrokenFileError(file, "length or checksum differ from its seal")
+    if software not in (None, maker):
+        raise BrokenFileError(file, f"made by software {maker}; expected {software}")
+    return content
+
+
+def read_json(file: Path) -> dict[str, Any]:
+    """The content of a JSON file, its seal included and not looked at.
+
+    Raises:
+        BrokenFileError: it is none.
+        OSError: it cannot be read.
+    """
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except _UNREADABLE:
+        raise BrokenFileError(file, "it is no JSON") from None
+    if not isinstance(content, dict):
+        raise BrokenFileError(file, "it is no JSON object")
+    return content
+
+
+def put_aside(file: Path, study: Path) -> Path:
+    """Move a broken file into a folder of its own, so that it can be examined.
+
+    Args:
+        file: File of the study.
+        study: the study's folder.
+
+    Returns:
+        Where it is now.
+
+    Raises:
+        ResultsError: it cannot be moved.
+    """
+    there = study / ASIDE / file.relative_to(study)
+    try:
+        there.parent.mkdir(parents=True, exist_ok=True)
+        return file.replace(there)
+    except OSError as error:
+        raise ResultsError(
+            f"{file}: is broken and cannot be moved to {there} ({error.strerror}); remove it and "
+            "go on with --resume"
+        ) from error
+
+
+def _seal(content: dict[str, Any], software: Any) -> dict[str, Any]:
+    text = json.dumps(content, sort_keys=True)
+    return {**fingerprint(text.encode("ascii")), "software": software}

@@ -1,0 +1,236 @@
+"""A study's folder, read: its definition, its records, its tables."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections import defaultdict
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from giveway.errors import ResultsError
+from giveway.studies.definition import StudyDefinition, parse_definition
+from giveway.studies.design import Cell, Design, design
+from giveway.studies.folder.folder_contents import (
+    DEFINITION,
+    MANIFEST,
+    intact_tables,
+    read_manifest,
+    require_definition,
+)
+from giveway.studies.folder.frames import (
+    cells_frame,
+    computing_frame,
+    execution_frame,
+    failures_frame,
+    runs_columns,
+    runs_frame,
+)
+from giveway.studies.folder.store import RecordStore
+from giveway.studies.identity import run_key
+from giveway.studies.record import RunRecord, run_id
+from giveway.studies.statistics import COMPARISON_COLUMNS, compare, fronts, levels, situations
+
+_RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
+
+
+class StudyFolder:
+    """The files that a study has written, or has written so far if it is running.
+
+    Args:
+        path: its folder.
+
+    Attributes:
+        path: its folder.
+        definition: Definition of the study as it was run.
+        design: its factors and cells.
+        manifest: software, input files, the cells' digests.
+
+    Raises:
+        ResultsError: there is no study, or one that was killed before it had begun.
+        BrokenFileError: definition or manifest are not what was written.
+    """
+
+    path: Path
+    definition: StudyDefinition
+    design: Design
+    manifest: dict[str, Any]
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        origin = str(path / DEFINITION)
+        try:
+            text = (path / DEFINITION).read_text(encoding="utf-8")
+            self.manifest = read_manifest(path)
+            by_seals = self.manifest["identity"] if "definition" in self.manifest else None
+            self._store = RecordStore(path, by_seals)
+            cells = self.manifest["cells"]
+            self._digests: dict[int, str] = {cell["cell"]: cell["digest"] for cell in cells}
+            labels: dict[int, str] = {cell["cell"]: cell["label"] for cell in cells}
+            self._seeds = int(self.manifest["seeds"])
+        except (OSError, UnicodeDecodeError, KeyError, TypeError):
+            raise ResultsError(
+                f"{path}: no study there ({DEFINITION} and {MANIFEST} that giveway wrote); "
+                "name the folder that giveway study printed"
+            ) from None
+        require_definition(path, self.manifest)
+        self.definition = parse_definition(text, origin, path.absolute())
+        self.design = design(self.definition, origin)
+        if labels != {cell.number: cell.label for cell in self.design.cells}:
+            raise ResultsError(
+                f"{path}: {MANIFEST} lists other cells than {DEFINITION}, as after a kill in the "
+                "very beginning; go on with giveway study and --resume"
+            )
+
+    def __repr__(self) -> str:
+        made, cells = len(self.records), len(self.design.cells)
+        return f"<StudyFolder {self.path}: {cells} cells, {made} of {cells * self._seeds} runs>"
+
+    @classmethod
+    def open(cls, path: str | Path) -> StudyFolder:
+        """The study in ``path``."""
+        return cls(Path(path))
+
+    @property
+    def seeds(self) -> range:
+        """The seeds of every cell: all that were asked for, or as many as were enough."""
+        first = self.definition.first_seed
+        return range(first, first + self._seeds)
+
+    @property
+    def complete(self) -> bool:
+        """True if the tables in the folder are those of all runs."""
+        return bool(self.manifest.get("complete"))
+
+    @property
+    def planned(self) -> int:
+        """The number of runs of the complete study."""
+        return len(self.seeds) * len(self.design.cells)
+
+    @cached_property
+    def records(self) -> list[tuple[Cell, int, RunRecord]]:
+        """Every finished run with its cell and seed, cell by cell."""
+        found = []
+        for cell in self.design.cells:
+            for seed in self.seeds:
+                record = self._kept_record(cell, seed)
+                if record is not None:
+                    found.append((cell, seed, record))
+        return found
+
+    @cached_property
+    def runs(self) -> pd.DataFrame:
+        """One row per run and ego."""
+        return runs_frame(self.records, self.design)
+
+    @cached_property
+    def cells(self) -> pd.DataFrame:
+        """One row per cell."""
+        return cells_frame(self.design.cells, self._by_cell)
+
+    @cached_property
+    def levels(self) -> pd.DataFrame:
+        """Every level's own means: one row per cell, ego and metric."""
+        return levels(self.runs, self.design, self.definition.comparison)
+
+    @cached_property
+    def fronts(self) -> pd.DataFrame:
+        """Costs to the ego and to the people: one row per cell and ego with a twin."""
+        return fronts(self.levels, self.design, self.definition.comparison)
+
+    @cached_property
+    def computing(self) -> pd.DataFrame:
+        """The computing time of runs and control steps: one row per cell."""
+        return computing_frame(self.design.cells, self._by_cell)
+
+    @cached_property
+    def _by_cell(self) -> dict[int, list[RunRecord]]:
+        by_cell: defaultdict[int, list[RunRecord]] = defaultdict(list)
+        for cell, _, record in self.records:
+            by_cell[cell.number].append(record)
+        return by_cell
+
+    @cached_property
+    def comparison(self) -> pd.DataFrame:
+        """Paired differences: one row per context, ego, treatment, situation and metric."""
+        kept = self._kept_comparison()
+        if kept is not None:
+            return kept
+        return compare(self.runs, self.design, self.definition.comparison)
+
+    @cached_property
+    def situations(self) -> pd.DataFrame:
+        """Counts of pairs in which both sides, one side or neither stopped."""
+        return situations(self.runs, self.design, self.definition.comparison)
+
+    @cached_property
+    def failures(self) -> pd.DataFrame:
+        """The runs without a result."""
+        return failures_frame(self.records, f"giveway rerun {shlex.quote(str(self.path))}")
+
+    @cached_property
+    def execution(self) -> pd.DataFrame:
+        """The execution of each run: how it was computed."""
+        return execution_frame(record for _, _, record in self.records)
+
+    def cell_of(self, run: str) -> tuple[Cell, int]:
+        """Return the cell and the seed of a run.
+
+        Raises:
+            ResultsError: this study has no such run.
+        """
+        parts = _RUN.fullmatch(run)
+        if parts is not None:
+            number, seed = map(int, parts.groups())
+            cell = next((c for c in self.design.cells if c.number == number), None)
+            if cell is not None and seed in self.seeds:
+                return cell, seed
+        first = run_id(1, self.seeds[0])
+        last = run_id(len(self.design.cells), self.seeds[-1])
+        raise ResultsError(
+            f"run '{run}': not in {self.path}; expected c<cell>-s<seed>, "
+            f"{first} to {last}: see runs.csv"
+        )
+
+    def record(self, run: str) -> RunRecord | None:
+        """Return the record of a run, or None if the run has not been made.
+
+        Raises:
+            ResultsError: this study has no such run.
+        """
+        return self._kept_record(*self.cell_of(run))
+
+    def key_of(self, run: str) -> str:
+        """Return the key of a run's record, which differs if settings, input files or code differ.
+
+        Raises:
+            ResultsError: this study has no such run.
+        """
+        cell, seed = self.cell_of(run)
+        return run_key(self._digests[cell.number], seed)
+
+    def _kept_record(self, cell: Cell, seed: int) -> RunRecord | None:
+        record = self._store.get(run_key(self._digests[cell.number], seed))
+        return None if record is None else record.called(run_id(cell.number, seed))
+
+    def _kept_comparison(self) -> pd.DataFrame | None:
+        """Read ``comparison.csv``, which takes long to compute.
+
+        The result is None if the file does not cover all runs.
+        """
+        path = self.path / "comparison.csv"
+        if not self.complete or path.name not in intact_tables(self.path):
+            return None
+        columns = (*runs_columns(self.design), *COMPARISON_COLUMNS)
+        texts = {column.name for column in columns if column.type == "string"}
+        try:
+            frame = pd.read_csv(
+                path, dtype=dict.fromkeys(texts, str), keep_default_na=False, na_values=[""]
+            )
+        except (OSError, ValueError):
+            return None
+        empty = dict.fromkeys(texts & set(frame.columns), "")  # no ego, or no unit
+        return frame.fillna(empty)

@@ -1,0 +1,99 @@
+"""The tables of a study as CSV files, and the data package that describes them."""
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from giveway.results.folder import package_of
+from giveway.run_data.columns import Column
+from giveway.studies.folder.atomic_files import write_atomically
+from giveway.studies.folder.folder_contents import PACKAGE, SHA256
+from giveway.studies.folder.frames import (
+    COMPUTING_COLUMNS,
+    EXECUTION_COLUMNS,
+    FAILURE_COLUMNS,
+    as_written,
+    runs_columns,
+)
+from giveway.studies.folder.sealing import fingerprint, sealed
+from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.identity import software_identity
+from giveway.studies.statistics.rounding import tabulated
+from giveway.studies.table_columns import (
+    COMPARISON_COLUMNS,
+    FRONT_COLUMNS,
+    LEVEL_COLUMNS,
+    SITUATION_COLUMNS,
+)
+
+TABLES = (
+    "runs",
+    "cells",
+    "levels",
+    "fronts",
+    "comparison",
+    "situations",
+    "execution",
+    "computing",
+    "failures",
+)
+_LONG = frozenset({"comparison", "levels", "fronts", "situations"})  # these take some seconds
+_COUNTS = (
+    Column("runs", "integer", None, "runs of the cell that are there"),
+    Column("failed", "integer", None, "of these without a result"),
+)
+_COUNTED = (*_COUNTS, *COMPUTING_COLUMNS, *COMPARISON_COLUMNS, *SITUATION_COLUMNS)
+_DESCRIBED: dict[str, tuple[Column, ...]] = {"levels": LEVEL_COLUMNS, "fronts": FRONT_COLUMNS}
+_TYPES: dict[str, Any] = {"b": "boolean", "i": "integer", "f": "number"}
+
+
+def write_tables(study: StudyFolder, *, whole: bool) -> None:
+    """Write the tables into the study's folder.
+
+    Args:
+        study: its folder.
+        whole: also those tables that take some seconds to compute.
+
+    Raises:
+        ResultsError: the disk is full or not writable.
+    """
+    names = [name for name in TABLES if whole or name not in _LONG]
+    if whole and study.fronts.empty:  # there are no twins
+        names.remove("fronts")
+    columns = {name: _columns(study, name) for name in names}
+    seals = {}
+    for name in names:
+        frame = as_written(getattr(study, name), columns[name])
+        floats = [column for column in frame.columns if frame[column].dtype == np.float64]
+        text = tabulated(frame, floats).to_csv(index=False, lineterminator="\n")
+        write_atomically(study.path / f"{name}.csv", text)
+        seal = fingerprint(text.encode("utf-8"))
+        seals[name] = {"bytes": seal["bytes"], "hash": f"{SHA256}{seal['sha256']}"}
+    name = f"giveway-study-{study.definition.name}"
+    title = study.definition.description or f"giveway study {study.definition.name}"
+    package = package_of(name, title, columns)
+    for resource in package["resources"]:
+        resource |= seals[resource["name"]]
+    text = json.dumps(sealed(package, software_identity()), indent=2, ensure_ascii=False) + "\n"
+    write_atomically(study.path / PACKAGE, text)
+
+
+def _columns(study: StudyFolder, name: str) -> Sequence[Column]:
+    if name == "runs":
+        return runs_columns(study.design)
+    if name == "execution":
+        return EXECUTION_COLUMNS
+    if name == "failures":
+        return FAILURE_COLUMNS
+    frame: pd.DataFrame = getattr(study, name)
+    known = {column.name: column for column in runs_columns(study.design)}
+    described = {column.name: column for column in _DESCRIBED.get(name, _COUNTED)}
+    return [
+        described.get(column)
+        or known.get(column)
+        or Column(column, _TYPES.get(frame[column].dtype.kind, "string"), None, column)
+        for column in frame.columns
+    ]

@@ -1,0 +1,1 @@
+"""The loaded network: its lanes, junctions, crossings and footpaths."""

@@ -1,0 +1,161 @@
+"""The lanes of the running network that people walk on, edge by edge."""
+
+import itertools
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from giveway.sumo.network.lanes import admits
+
+_IN_JUNCTION = re.compile(r"^:(.*)_[wc]?\d+$")  # the edge of a crossing, walkingarea or turn
+_HALF_BODY = 0.25  # [m] a person keeps this far from its lane's edge
+_LANE_END = 0.05  # [m] a person keeps this far from its lane's ends
+
+
+@dataclass(frozen=True, slots=True)
+class Foot:
+    """The point of a lane that is nearest to some place."""
+
+    lane: str
+    position: float  # [m] along the lane, in SUMO's metres
+    lateral: float  # [m] offset to the left of the centre line, at most half the usable width
+    distance: float  # [m] distance from the lane's centre line
+
+
+@dataclass(frozen=True, slots=True)
+class _Lane:
+    """The remembered properties of a lane."""
+
+    name: str
+    shape: Sequence[tuple[float, float]]
+    length: float  # [m] SUMO's: nominal
+    metres: float  # [m] length of the polyline
+    half_width: float  # [m] largest distance of a body's centre from the centre line
+
+
+class FootPaths:
+    """The lanes that people walk on, edge by edge.
+
+    Args:
+        sumo: the libsumo module.
+    """
+
+    def __init__(self, sumo: Any) -> None:
+        self._sumo = sumo
+        self._lanes: dict[str, _Lane | None] = {}
+        self._ends: dict[str, tuple[str, str]] = {}
+
+    def lane(self, edge: str) -> str | None:
+        """Return the lane on which SUMO lets people walk along ``edge``, or None."""
+        lane = self._lane(edge)
+        return None if lane is None else lane.name
+
+    def foot(self, edge: str, x: float, y: float) -> Foot | None:
+        """Return the nearest point of the edge's footpath, or None without a footpath."""
+        lane = self._lane(edge)
+        if lane is None:
+            return None
+        best, passed = (math.inf, 0.0, 0.0), 0.0
+        for (x0, y0), (x1, y1) in itertools.pairwise(lane.shape):
+            dx, dy = x1 - x0, y1 - y0
+            length = math.hypot(dx, dy)
+            if length > 0.0:
+                share = min(max(((x - x0) * dx + (y - y0) * dy) / length**2, 0.0), 1.0)
+                distance = math.hypot(x - x0 - share * dx, y - y0 - share * dy)
+                side = (dx * (y - y0) - dy * (x - x0)) / length
+                best = min(best, (distance, passed + share * length, side))
+            passed += length
+        distance, along, side = best
+        return Foot(
+            lane.name,
+            _inside(lane, along * lane.length / max(lane.metres, 1e-9)),
+            min(max(side, -lane.half_width), lane.half_width),
+            distance,
+        )
+
+    def at(self, edge: str, position: float, lateral: float = 0.0) -> Foot | None:
+        """The point at ``position`` [m] of the edge's footpath, moved onto it if outside."""
+        lane = self._lane(edge)
+        if lane is None:
+            return None
+        lateral = min(max(lateral, -lane.half_width), lane.half_width)
+        return Foot(lane.name, _inside(lane, position), lateral, abs(lateral))
+
+    def index(self, person: str, edges: Sequence[str], lane: str, arrival: float) -> int:
+        """Return the index in ``edges`` (of its route) of the edge of a person on ``lane``.
+
+        Of a person inside a junction it is the edge before the junction.
+        """
+        edge = lane.rpartition("_")[0]
+        inside = _IN_JUNCTION.match(edge)
+        if inside is None:
+            found = [k for k, name in enumerate(edges) if name == edge]
+        else:
+            junction = inside.group(1)
+            pairs = enumerate(itertools.pairwise(edges))
+            found = [k for k, pair in pairs if all(junction in self._joined(e) for e in pair)]
+        if len(found) == 1:
+            return found[0]
+        return self._by_distance(person, edges, arrival, found or range(len(edges)))
+
+    def _by_distance(
+        self, person: str, edges: Sequence[str], arrival: float, candidates: Sequence[int]
+    ) -> int:
+        """Return the edge from which the rest of the route is as long as the person's.
+
+        This is for an edge that a route repeats. Where no footpaths join the edges, SUMO knows no
+        distance: then the nearest candidate is taken.
+        """
+        sumo = self._sumo
+        try:
+            left = sumo.person.getWalkingDistance(person, edges[-1], arrival)
+        except (sumo.TraCIException, sumo.FatalTraCIError):
+            return self._nearest(edges, candidates, *sumo.person.getPosition(person))
+        lengths = [self._sumo.lane.getLength(f"{edge}_0") for edge in edges]
+        return min(candidates, key=lambda k: abs(sum(lengths[k + 1 : -1]) + arrival - left))
+
+    def _nearest(self, edges: Sequence[str], candidates: Sequence[int], x: float, y: float) -> int:
+        """The first of the candidates whose footpath is closest to a place [m]."""
+
+        def distance(k: int) -> float:
+            foot = self.foot(edges[k], x, y)
+            return math.inf if foot is None else foot.distance
+
+        return min(candidates, key=distance)
+
+    def _joined(self, edge: str) -> tuple[str, str]:
+        """The junctions at both ends of an edge."""
+        if edge not in self._ends:
+            edges = self._sumo.edge
+            self._ends[edge] = edges.getFromJunction(edge), edges.getToJunction(edge)
+        return self._ends[edge]
+
+    def _lane(self, edge: str) -> _Lane | None:
+        if edge not in self._lanes:
+            self._lanes[edge] = self._find(edge)
+        return self._lanes[edge]
+
+    def _find(self, edge: str) -> _Lane | None:
+        """Find SUMO's choice: a lane for pedestrians alone, else the first that admits them."""
+        sumo = self._sumo
+        try:
+            names = [f"{edge}_{i}" for i in range(sumo.edge.getLaneNumber(edge))]
+        except sumo.TraCIException:
+            return None
+        names = [name for name in names if admits(sumo, name, "pedestrian")]
+        if not names:
+            return None
+        alone = (n for n in names if tuple(sumo.lane.getAllowed(n)) == ("pedestrian",))
+        name = next(alone, names[0])
+        shape = tuple(sumo.lane.getShape(name))
+        metres = math.fsum(math.dist(a, b) for a, b in itertools.pairwise(shape))
+        half_width = max(sumo.lane.getWidth(name) / 2 - _HALF_BODY, 0.0)
+        return _Lane(name, shape, sumo.lane.getLength(name), metres, half_width)
+
+
+def _inside(lane: _Lane, position: float) -> float:
+    """Return ``position`` [m], moved off the very ends of the lane."""
+    margin = min(_LANE_END, lane.length / 2)
+    return min(max(position, margin), lane.length - margin)

@@ -1,0 +1,95 @@
+"""The junctions of the loaded network: the movements through them, and their priorities."""
+
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from giveway.scenario_files.right_of_way import JunctionLogic, right_of_way
+from giveway.sumo.network.internal_lanes import lanes_inside
+from giveway.sumo.network.lanes import Lanes
+
+
+class Movement(NamedTuple):
+    """A link through a junction, from one lane to another."""
+
+    junction: str  # SUMO's id
+    number: int  # index of the link among the junction's
+    source: str  # lane
+    target: str  # lane
+    inside: tuple[str, ...]  # lanes in between, in order; a vehicle may wait where one ends
+    state: str  # SUMO's letter of the link where no light governs it
+    direction: str  # SUMO's letter: "s" straight on, "l", "L" left, "r", "R" right, "t" turn
+    speed: float  # [m/s] speed limit of the lanes inside
+    system: str  # SUMO's id of the traffic light; empty: none
+    link: int  # index of the movement in the light's state
+    yields_to: frozenset[int]  # numbers of links whose vehicles go first
+    meets: frozenset[int]  # numbers of links whose ways cross or join its own
+
+    @property
+    def has_stop_sign(self) -> bool:
+        """True if a vehicle has to stop before the link, and no light governs it."""
+        return self.state in ("s", "w") and not self.system
+
+
+class Junctions:
+    """Reads the movements through junctions, each junction once.
+
+    Args:
+        sumo: the libsumo module, while a simulation runs.
+        net_file: the network's file.
+        lanes: the network's.
+    """
+
+    def __init__(self, sumo: Any, net_file: Path, lanes: Lanes) -> None:
+        self._sumo = sumo
+        self._net_file = net_file
+        self._lanes = lanes
+        self._known: dict[str, dict[int, Movement]] = {}
+
+    def at(self, inside: str) -> dict[int, Movement]:
+        """Return :meth:`of` the junction inside which a link ends with the lane ``inside``."""
+        return self.of(self._junctions.get(inside, ""))
+
+    def of(self, junction: str) -> dict[int, Movement]:
+        """Return all movements of vehicles through a junction, by number.
+
+        Raises:
+            ScenarioError: the network's file cannot be read (any more).
+        """
+        if junction not in self._known:
+            logic = self._logic.get(junction)
+            self._known[junction] = {} if logic is None else self._movements(junction, logic)
+        return self._known[junction]
+
+    @cached_property
+    def _logic(self) -> dict[str, JunctionLogic]:
+        return right_of_way(self._net_file)
+
+    @cached_property
+    def _junctions(self) -> dict[str, str]:
+        """The junction of each lane that ends a link inside one."""
+        return {lane: name for name, logic in self._logic.items() for lane in logic.inside}
+
+    def _movements(self, junction: str, logic: JunctionLogic) -> dict[int, Movement]:
+        numbers = {lane: i for i, lane in enumerate(logic.inside[: len(logic.requests)])}
+        found: dict[int, Movement] = {}
+        for source in logic.incoming:
+            if source.startswith(":"):
+                continue  # people's
+            for link in self._sumo.lane.getLinks(source):
+                inside = lanes_inside(self._sumo, link[4])
+                number = numbers.get(inside[-1]) if inside else None
+                if number is not None:
+                    found[number] = Movement(
+                        junction,
+                        number,
+                        source,
+                        link[0],
+                        inside,
+                        link[5],
+                        link[6],
+                        min(map(self._lanes.speed_limit, inside)),
+                        *self._lanes.signals.get((source, link[0]), ("", -1)),
+                        *logic.requests[number],
+                    )
+        return found

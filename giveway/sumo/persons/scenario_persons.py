@@ -1,0 +1,277 @@
+"""The scenario's own persons: taken over where they walk, handed back to SUMO afterwards.
+
+A person keeps everything in SUMO while we hold it: its plan, type, colour and parameters. A held
+person is moved as a ghost (see giveway/sumo/session.py), and its place in SUMO's books lies far
+outside of its lane: otherwise SUMO's pedestrians would walk round the spot where it was taken over,
+and vehicles would wait for ever at a crossing that it has long left.
+"""
+
+import contextlib
+import enum
+import itertools
+import math
+from collections import Counter
+from collections.abc import Container, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.path import angle_to_heading
+from giveway.sumo.library import direct
+from giveway.sumo.network.footpaths import Foot, FootPaths
+from giveway.sumo.persons.handover import Handover, Route
+from giveway.sumo.persons.walk_speeds import WalkSpeeds
+
+_WALKING = 2  # SUMO's stage type
+_SLOWEST = 0.1  # [m/s] smallest desired speed
+_DETOUR = 5.0  # [m] largest extra distance to a person's own route if it is to go on along it
+
+
+class Arrival(enum.Enum):
+    """The outcome for a person that has reached the end of its route."""
+
+    ARRIVED = "arrived"  # the person leaves SUMO with the next step
+    CONTINUED = "continued"  # a stop, a ride or another walk follows in SUMO
+
+
+@dataclass(frozen=True, slots=True)
+class Person:
+    """A person as SUMO walks it, at SUMO's present instant."""
+
+    id: str
+    type: str
+    x: float  # [m]
+    y: float  # [m]
+    heading: float  # [rad], counter-clockwise from +x
+    speed: float  # [m/s]
+    desired_speed: float  # [m/s] > 0
+    edges: tuple[str, ...]  # the present walk's remaining normal edges, the current one first
+    lane: str  # SUMO's present lane, may lie inside a junction
+    arrival_position: float  # [m] arrival position on the last edge
+    stages_left: int  # number of stages after this walk
+
+
+class ScenarioPersons:
+    """The scenario's persons: which of them SUMO moves at present, and which giveway moves.
+
+    Args:
+        sumo: the libsumo module, with a simulation running.
+        ours: Ids of persons that giveway added: never touched.
+
+    Attributes:
+        held: Ids of the persons that giveway moves at present.
+        counts: ``taken`` = ``handed_back`` + ``arrived`` + ``continued`` + ``lost`` + those held;
+            ``lost`` are held persons that something else took out of SUMO.
+    """
+
+    held: set[str]
+    counts: Counter[str]
+
+    def __init__(self, sumo: Any, ours: Container[str]) -> None:
+        self._sumo = sumo
+        self._ours = ours
+        self.held = set()
+        self.counts = Counter(taken=0, handed_back=0, arrived=0, continued=0, lost=0)
+        self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
+        self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
+        self._routes: dict[str, Route] = {}
+        self._leaving: dict[str, tuple[int, float]] = {}  # at their walks' ends: see `arrive`
+        self._put_back: set[str] = set()  # since SUMO's last step
+        self._paths = FootPaths(sumo)
+        self._speeds = WalkSpeeds.of_running(sumo)
+        self._handover = Handover(sumo)
+        self._position = direct(sumo, "person", "getPosition")
+
+    # --- who is where -------------------------------------------------------------------------
+
+    def positions(self) -> tuple[list[str], NDArray[np.float64]]:
+        """Ids and positions (n, 2) [m] of every departed person that we do not hold.
+
+        Call it once after each of SUMO's steps. After a step without a call, all persons in SUMO
+        are looked at.
+        """
+        self._update()
+        try:
+            return self._read()
+        except self._handover.refusals:  # somebody vanished without having arrived
+            self._look_at_everybody()
+            return self._read()
+
+    def _read(self) -> tuple[list[str], NDArray[np.float64]]:
+        ids = list(self._free)
+        flat = itertools.chain.from_iterable(map(self._position, ids))
+        return ids, np.fromiter(flat, dtype=np.float64, count=2 * len(ids)).reshape(-1, 2)
+
+    def _update(self) -> None:
+        simulation = self._sumo.simulation
+        now = float(simulation.getTime())
+        if now == self._seen_until:
+            return
+        if now - self._seen_until > 1.5 * simulation.getDeltaT():
+            self._look_at_everybody()
+        else:
+            for name in simulation.getDepartedPersonIDList():
+                if name not in self._ours:
+                    self._free[name] = None
+            for name in simulation.getArrivedPersonIDList():
+                self._free.pop(name, None)
+                self._leaving.pop(name, None)
+                if name in self.held:
+                    self._lose(name)
+        self._seen_until = now
+        self._put_back.clear()
+        if self._leaving:
+            self._end_overdue()
+        self._handover.end_paces()
+
+    def _look_at_everybody(self) -> None:
+        present = dict.fromkeys(self._sumo.person.getIDList())
+        self._free = {
+            name: None
+            for name in present
+            if name not in self.held and name not in self._ours and name not in self._leaving
+        }
+        for name in [name for name in self.held if name not in present]:
+            self._lose(name)
+        for name in [name for name in self._leaving if name not in present]:
+            del self._leaving[name]
+
+    def _end_overdue(self) -> None:
+        """End the walks that SUMO's step should have ended and has not."""
+        person = self._sumo.person
+        for name, (stages_left, begun) in self._leaving.items():
+            if person.getStage(name).depart == begun:  # still the same stage
+                if stages_left:
+                    person.removeStage(name, 0)
+                else:
+                    person.removeStages(name)
+            if stages_left:
+                self._free[name] = None
+        self._leaving.clear()
+
+    def _lose(self, name: str) -> None:
+        self.held.discard(name)
+        del self._routes[name]
+        self.counts["lost"] += 1
+
+    # --- taking over --------------------------------------------------------------------------
+
+    def take(self, ids: Sequence[str]) -> list[Person]:
+        """Take over those of ``ids`` that walk right now, and skip the others.
+
+        A person that was handed back since SUMO's last step is skipped, too. From now on those
+        taken over are held: they must be moved in every step of SUMO.
+        """
+        return [taken for taken in map(self._take, ids) if taken is not None]
+
+    def _take(self, name: str) -> Person | None:
+        person = self._sumo.person
+        if name not in self._free or name in self._put_back:  # its speed would be the jump's
+            return None
+        lane = person.getLaneID(name)
+        if not lane:  # waiting; this call is cheaper than to ask for the stage
+            return None
+        stage = person.getStage(name)
+        if stage.type != _WALKING:
+            return None
+        edges, arrival = tuple(stage.edges), float(stage.arrivalPos)
+        current = self._paths.index(name, edges, lane, arrival)
+        own_speed = self._speeds.speed(name, stage, person.getRemainingStages(name))
+        x, y = self._position(name)
+        speed = float(person.getSpeed(name))
+        taken = Person(
+            id=name,
+            type=person.getTypeID(name),
+            x=x,
+            y=y,
+            heading=angle_to_heading(person.getAngle(name)),
+            speed=speed,
+            desired_speed=max(own_speed or float(person.getMaxSpeed(name)), speed, _SLOWEST),
+            edges=edges[current:],
+            lane=lane,
+            arrival_position=arrival,
+            stages_left=person.getRemainingStages(name) - 1,
+        )
+        inside = lane.startswith(":")
+        hideout = self._paths.lane(taken.edges[0]) if inside else lane
+        try:
+            self._handover.park(name, hideout or lane)
+        except self._handover.refusals:
+            return None  # it stands beside its own route, where SUMO cannot put it back either
+        self._routes[name] = Route(
+            edges=taken.edges,
+            arrival_position=arrival,
+            stages_left=taken.stages_left,
+            type=taken.type,
+            own_speed=own_speed,
+            was_inside=inside,
+        )
+        self.held.add(name)
+        del self._free[name]
+        self.counts["taken"] += 1
+        return taken
+
+    # --- giving back --------------------------------------------------------------------------
+
+    def hand_back(self, name: str, x: float, y: float, place: tuple[str, float]) -> bool:
+        """Give a held person back to SUMO, which walks it on to the same destination.
+
+        Args:
+            name: the person's id.
+            x: Coordinate x of its place [m].
+            y: Coordinate y of its place [m].
+            place: the nearest edge for pedestrians, and the position [m] on it. If an edge of the
+                person's route is hardly farther away, it goes on there; else it gets a new route.
+
+        Returns:
+            False if SUMO finds no way; the person stays held then, unharmed.
+        """
+        if not all(map(math.isfinite, (x, y, place[1]))):
+            return False
+        route = self._routes[name]
+        edge, position = place
+        nearest = self._paths.foot(edge, x, y)
+        foot = self._paths.at(edge, position, nearest.lateral if nearest else 0.0)
+        if foot is None or nearest is None:
+            return False
+        step, own = self._on_route(route, x, y)
+        try:
+            if own is not None and own.distance <= nearest.distance + _DETOUR:
+                self._handover.walk_on(name, route, step, own)
+            elif not self._handover.walk_anew(name, route, edge, foot):
+                return False
+        except self._handover.refusals:
+            with contextlib.suppress(*self._handover.refusals):
+                self._handover.park(name, self._sumo.person.getLaneID(name))
+            return False
+        self._release(name, "handed_back")
+        self._free[name] = None
+        self._put_back.add(name)
+        return True
+
+    def _on_route(self, route: Route, x: float, y: float) -> tuple[int, Foot | None]:
+        """Return the nearest place on the rest of the route, and its edge's index."""
+        feet = [(k, self._paths.foot(edge, x, y)) for k, edge in enumerate(route.edges)]
+        return min(feet, key=lambda candidate: candidate[1].distance if candidate[1] else math.inf)
+
+    def arrive(self, name: str) -> Arrival:
+        """Let a held person end its walk in SUMO's next step.
+
+        It is put on the very end of its route, so that SUMO itself makes it arrive or go on with
+        what follows: a stop, a ride or another walk, on which it can be taken over again.
+        """
+        route = self._routes[name]
+        end = self._paths.lane(route.edges[-1])
+        with contextlib.suppress(*self._handover.refusals):  # otherwise it is ended after the step
+            self._handover.finish(name, end or "", route)
+        self._leaving[name] = route.stages_left, self._sumo.person.getStage(name).depart
+        arrival = Arrival.CONTINUED if route.stages_left else Arrival.ARRIVED
+        self._release(name, arrival.value)
+        return arrival
+
+    def _release(self, name: str, as_what: str) -> None:
+        self.held.discard(name)
+        del self._routes[name]
+        self.counts[as_what] += 1

@@ -1,0 +1,88 @@
+"""Cars of other sizes than ours: trucks, set-points without a lead, limits with much resistance."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fmus.checking import check, opener_of
+from fmus.checking.identification import identify
+from fmus.checking.model_fit.fitting import fit, prepare
+from fmus.checking.model_fit.saturation import ResistanceModel
+from fmus.profile.vehicle_profile import make_profile
+
+TRUCK = {"mass": 18_000.0, "friction": 50.0, "constant": 900.0, "lag": 0.8}
+
+
+def finding(report, name):
+    return next(found for found in report.findings if found.name == name)
+
+
+def identified(opener, force_limit):
+    return identify(
+        opener, path=Path("car.fmu"), step_size=0.05, horizon=15, force_limit=force_limit
+    )
+
+
+def test_rolling_resistance_is_not_taken_for_a_drive_that_falls_short(car):
+    found = identified(car(**TRUCK), 8_000.0)  # its weakest tests do not even move it
+    assert (found.drive_limit, found.brake_limit) == (None, None)
+    assert found.model.mass == pytest.approx(18_000.0, rel=0.1)
+
+
+def test_a_limit_is_that_of_the_actuator_whatever_resists(car):
+    opener = car(mass=1400.0, friction=0.0, constant=300.0, drag=0.5, drive_limit=4500.0)
+    assert identified(opener, 8_000.0).drive_limit == pytest.approx(4500.0, rel=0.02)
+
+
+def test_with_forces_of_its_size_a_truck_is_known_well(car):
+    found = identified(car(**TRUCK), 60_000.0)
+    assert found.model.mass == pytest.approx(18_000.0, rel=0.01)
+    assert found.model.lag == pytest.approx(0.8, rel=0.02)
+
+
+def test_all_four_resistances_come_back(car):
+    opener = car(mass=1500.0, friction=40.0, constant=200.0, drag=0.8)
+    drives = [prepare(trace) for trace in identified(opener, 6_000.0).tests]
+    model = fit(drives)
+    found = ResistanceModel.of(model, drives)
+    assert found.mass == pytest.approx(1500.0, rel=0.01)
+    assert found.constant == pytest.approx(200.0, rel=0.1)
+    assert found.quadratic == pytest.approx(0.8, rel=0.1)
+    speed, zero = np.array([10.0]), np.array([0.0])
+    assert found.force(speed, zero) == pytest.approx(40.0 * 10 + 200.0 + 80.0, rel=0.02)
+
+
+def test_forces_too_small_for_a_truck_are_said_with_the_flag_that_helps(car):
+    force = {"inputs": {"force": {"variable": "F"}}, "outputs": {"speed": {"variable": "v"}}}
+    profile = make_profile(force, "test")
+    report = check(car(**TRUCK), step_size=0.05, profile=profile)
+    found = finding(report, "force limits")
+    assert found.verdict == "warn"
+    assert "m/s² at most" in found.text
+    assert (
+        "identify it with --force-limit 100000, run it with --vehicle-force-limit" in found.remedy
+    )
+
+
+def test_a_set_point_without_a_lead_is_told_its_lead(zoo):
+    path = zoo.car(role="speed_setpoint", values={"response": 0.6})
+    values = zoo.profile(path)
+    values["inputs"]["speed_setpoint"].pop("lead", None)
+    profile = make_profile(values, "test")
+    opener = opener_of(path, step_size=0.05, profile=profile, isolated=False)
+    report = check(opener, step_size=0.05, profile=profile)
+    assert "lead = 0.6" in finding(report, "controller's model").remedy
+    assert finding(report, "force limits").verdict == "pass"
+
+
+def test_a_gearbox_that_passes_less_on_in_higher_gears_is_no_limit(zoo):
+    values = {"gear_speed": 3.0, "gear_ratio": 0.6}
+    path = zoo.car(fmi="2.0", kind="model-exchange", values=values)
+    profile = make_profile(zoo.profile(path), "test")
+    opener = opener_of(path, step_size=0.05, profile=profile, isolated=False)
+    found = identified(opener, 8_000.0)
+    assert found.drive_limit is None
+    assert finding(check(opener, step_size=0.05, profile=profile), "force limits").verdict == "pass"
