@@ -135,10 +135,14 @@ class Predictor:
     def desired_velocities(
         self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND
     ) -> NDArray[np.float64]:
-        """(n, 3) what everybody wishes at the end of the latest prediction, see :func:`desired_velocity`."""
-        wishes = np.empty((len(crowd), 3))
-        fill_desired_velocities(self.arrays(crowd, surroundings), wishes)
-        return wishes
+        """The desired velocities at the end of the latest prediction.
+
+        Returns:
+            (n, 3) Velocity x, y [m/s], and how long [s] it holds; see :func:`desired_velocity`.
+        """
+        velocities = np.empty((len(crowd), 3))
+        fill_desired_velocities(self.arrays(crowd, surroundings), velocities)
+        return velocities
 
     @staticmethod
     def divergence(crowd: Crowd, bad: int) -> DivergenceError:
@@ -178,11 +182,11 @@ def desired_velocity(
 
 
 @kernel
-def fill_desired_velocities(arrays: Arrays, wishes: NDArray[np.float64]) -> None:
-    """Fill ``wishes`` (n, 3) with those at the end of the latest prediction."""
+def fill_desired_velocities(arrays: Arrays, velocities: NDArray[np.float64]) -> None:
+    """Fill ``velocities`` (n, 3) with those at the end of the latest prediction."""
     scene = parts(arrays[:-4])[1]
     x, _, at, _ = borrowed(arrays[-4:])
     for i in range(x.shape[0]):
-        wishes[i, 0], wishes[i, 1], wishes[i, 2] = desired_velocity(
+        velocities[i, 0], velocities[i, 1], velocities[i, 2] = desired_velocity(
             x[i, 0], x[i, 1], at[i], i, scene
         )

@@ -21,7 +21,7 @@ class Rollout(NamedTuple):
 
 @inlined
 def start(arrays: Arrays) -> tuple[Rollout, Scene, Scratch]:
-    """The present state, ready for :func:`rollout_step` to be changed, with what the crowd walks among.
+    """Copy the present state into the memory of a rollout, for :func:`rollout_step` to change.
 
     Inlined, for compiled functions that predict step by step: handing so many arrays from one to
     the next costs as much as the forces of ten people.
@@ -97,8 +97,9 @@ def roll_out(
 ) -> int:
     """Fill ``out`` (N, n, 2) with the positions of the next N steps.
 
-    As :func:`rollout_step`, with ``vehicles`` (N, m, 7). The state stays as it is, unless it is its own
-    memory for the state ahead; ``out`` may have room for fewer than there are, or for nobody.
+    As :func:`rollout_step`, with ``vehicles`` (N, m, 7). The state stays as
+    it is, unless it is its own memory for the rollout. ``out`` may have room for fewer pedestrians
+    than there are, or for none.
     """
     ahead, scene, scratch = start(arrays)
     x = ahead.state.position

@@ -1,7 +1,7 @@
 """A step of a large crowd in domains: threads walk bands of strips at once, to the same bits.
 
 Each domain owns the pedestrians of some strips of the cell list and has a workspace of its own. The
-force on a pedestrian is a sum in the order of the tiles (``_cells.py``), each summand a function
+force on a pedestrian is a sum in the order of the tiles (``cell_list.py``), each summand a function
 of the old state alone. A tile adds to its own strip and to those within reach above it. So a domain
 visits, in the order of the sequential pass, the tiles of its own strips and of the *ghost* strips
 within reach below: whatever is added to its own pedestrians is added there, in the same order.
