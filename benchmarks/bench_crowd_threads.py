@@ -5,7 +5,7 @@
 The crowds of bench_crowd.py at constant density. Each row is taken in turns within one process.
 *Elapsed* compares the wall clock, which needs as many idle processors; *processor* compares the
 thread CPU time of one thread with that of the longest way through the shared step (sorting, the
-slowest share, taking over): others on the machine hardly show in it, and the waking of threads not
+slowest domain, taking over): others on the machine hardly show in it, and the waking of threads not
 at all. The bits of both are compared.
 """
 
@@ -22,7 +22,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from bench_crowd import city, our_crowd
 
-from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, _team
+from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
+from pedestrian_model.vci import threads
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,11 +36,11 @@ class Stopwatch:
     """The thread CPU time of the kernels of a shared step, by their longest way."""
 
     def __init__(self) -> None:
-        self.shares: list[float] = []
+        self.domains: list[float] = []
         self.alone = 0.0
-        _team.lay_out = self._timed(_team.lay_out, self._add_alone)
-        _team.take_over = self._timed(_team.take_over, self._add_alone)
-        _team.walk_share = self._timed(_team.walk_share, self.shares.append)
+        threads.lay_out = self._timed(threads.lay_out, self._add_alone)
+        threads.write_back = self._timed(threads.write_back, self._add_alone)
+        threads.step_domain = self._timed(threads.step_domain, self.domains.append)
 
     def _add_alone(self, time: float) -> None:
         self.alone += time
@@ -56,9 +57,9 @@ class Stopwatch:
 
     def longest(self) -> float:
         """Of the step since the last call [s]."""
-        time = self.alone + max(self.shares, default=0.0)
+        time = self.alone + max(self.domains, default=0.0)
         self.alone = 0.0
-        self.shares.clear()
+        self.domains.clear()
         return time
 
 

@@ -20,7 +20,7 @@ from giveway.processes.child import die_with
 from giveway.processes.interpreter import command
 from giveway.processes.processors import processors
 from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
-from pedestrian_model.model import SHARED_FROM
+from pedestrian_model.vci.model import THREADS_FROM
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -206,7 +206,7 @@ def _run(settings: dict[str, Any], *, measured: bool = True) -> None:
 
 def _step_on_threads() -> None:
     """Two threads step a crowd that is large enough for them."""
-    n = SHARED_FROM
+    n = THREADS_FROM
     places = np.column_stack([np.arange(n) % 40, np.arange(n) // 40]) * 1.5
     ways = np.column_stack([places, places + 9.0]).reshape(n, 2, 2)[:, 1:]
     crowd = Crowd.create(places, np.tile([1.0, 0.0], (n, 1)), 1.4, list(ways))

@@ -1,8 +1,5 @@
 """The vehicle-crowd interaction (VCI) model: a social force model of pedestrians near vehicles."""
 
-from pedestrian_model._ahead import leap, start
-from pedestrian_model._jit import borrowed
-from pedestrian_model.conformance import Finding, check_model
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import (
     CrowdError,
@@ -13,30 +10,26 @@ from pedestrian_model.errors import (
     SurroundingsError,
     VehicleError,
 )
-from pedestrian_model.influence import vehicle_influence
-from pedestrian_model.jupedsim_models import JUPEDSIM_MODELS, JuPedSimName, JuPedSimPeople
-from pedestrian_model.model import (
-    LONGEST_STEP,
-    CrowdModel,
-    any_arrived,
-    arrived,
-    require_steady,
-)
+from pedestrian_model.other_models.jupedsim import JUPEDSIM_MODELS, JuPedSimName, JuPedSimPeople
+from pedestrian_model.other_models.simple import PLAIN_MODELS, PlainModel, PlainName, unmoved
+from pedestrian_model.other_models.stepwise_prediction import StepwisePredictor
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
-from pedestrian_model.plain_models import PLAIN_MODELS, PlainModel, PlainName, unmoved
-from pedestrian_model.plug_in import (
+from pedestrian_model.plug_ins.conformance import Finding, check_model
+from pedestrian_model.plug_ins.plug_in import (
     Accelerations,
     ModelPlugIn,
     ModelSetup,
     Velocities,
     Walkers,
 )
-from pedestrian_model.plugged_in import PluggedInModel
-from pedestrian_model.prediction import Predictor, wish
+from pedestrian_model.plug_ins.plugged_in import PluggedInModel
 from pedestrian_model.protocol import CrowdPredictor, PedestrianModel
-from pedestrian_model.stepwise_prediction import StepwisePredictor
+from pedestrian_model.stepping import LONGEST_STEP
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
-from pedestrian_model.targets import remaining_distance, targets
+from pedestrian_model.targets import any_arrived, arrived, remaining_distance, targets
+from pedestrian_model.vci.influence import vehicle_influence
+from pedestrian_model.vci.model import CrowdModel, require_steady
+from pedestrian_model.vci.prediction import Predictor
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
@@ -77,14 +70,10 @@ __all__ = [
     "Walls",
     "any_arrived",
     "arrived",
-    "borrowed",
     "check_model",
-    "leap",
     "remaining_distance",
     "require_steady",
-    "start",
     "targets",
     "unmoved",
     "vehicle_influence",
-    "wish",
 ]

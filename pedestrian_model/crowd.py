@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
-from pedestrian_model._routes import Routes
-from pedestrian_model._rows import Arrays
-from pedestrian_model._selection import extent, select_into
+from pedestrian_model.arrays import Arrays, extent, select_into
 from pedestrian_model.errors import CrowdError
+from pedestrian_model.routes import Routes, offsets, passage_rows, signal_rows
 
 _UNIT = 1e-6  # a direction's length may differ from one by this
 
@@ -70,7 +69,7 @@ class Crowd:
         ):
             check_shape(getattr(self, name), (length,), name, CrowdError)
             _check_memory(getattr(self, name), np.dtype(np.int64), name)
-        self._check_offsets()
+        self._checkoffsets()
         self._check_passages()
 
     def _check_priority(self) -> None:
@@ -79,7 +78,7 @@ class Crowd:
             i = int(np.argmax(bad))
             raise CrowdError(f"priority[{i}] = {self.priority[i]}, expected 0 to 1")
 
-    def _check_offsets(self) -> None:
+    def _checkoffsets(self) -> None:
         start, total = self.waypoint_start, self.waypoints.shape[0]
         if start[0] != 0 or start[-1] != total:
             raise CrowdError(
@@ -165,13 +164,15 @@ class Crowd:
             velocity=v.reshape(0, 2) if v.size == 0 else v.copy(),
             desired_speed=_for_each(v0, n),
             waypoints=np.concatenate(routes) if routes else np.empty((0, 2)),
-            waypoint_start=_offsets(np.array([len(route) for route in routes], dtype=np.int64)),
+            waypoint_start=offsets(np.array([len(route) for route in routes], dtype=np.int64)),
             waypoint_index=np.zeros(n, dtype=np.int64),
             waypoint_passage=(
-                np.zeros((total, 3)) if passages is None else _passages(passages, routes)
+                np.zeros((total, 3)) if passages is None else passage_rows(passages, routes)
             ),
             waypoint_signal=(
-                np.full(total, -1, dtype=np.int64) if signals is None else _signals(signals, routes)
+                np.full(total, -1, dtype=np.int64)
+                if signals is None
+                else signal_rows(signals, routes)
             ),
             priority=_for_each(relying, n),
         )
@@ -189,7 +190,7 @@ class Crowd:
         )
 
     @cached_property
-    def wishes(self) -> Arrays:
+    def fixed_arrays(self) -> Arrays:
         """What the crowd brings to a ``Scene``: the desired speeds, priority, and the routes."""
         return (self.desired_speed, self.priority, *self.routes)
 
@@ -232,7 +233,9 @@ class Crowd:
         n, total = extent(mask, self.waypoint_start)
         if room is None or (len(room.position), len(room.waypoints)) != (n, total):
             room = _unfilled(n, total)
-        signals = select_into((*self.state, *self.wishes), mask, (*room.state, *room.wishes))
+        signals = select_into(
+            (*self.state, *self.fixed_arrays), mask, (*room.state, *room.fixed_arrays)
+        )
         room.__dict__["signals"] = signals
         return room
 
@@ -251,55 +254,6 @@ class Crowd:
 _JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint_start")
 
 
-def _for_each(values: NDArray[np.float64], n: int) -> NDArray[np.float64]:
-    """A value for each of n pedestrians, from one for all or one each."""
-    return np.full(n, values) if values.ndim == 0 or values.size == 0 else values.copy()
-
-
-def _passages(
-    passages: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
-) -> NDArray[np.float64]:
-    """(total, 3) of all, the directions of length one."""
-    _check_count(passages, "passages", routes)
-    rows = [as_floats(rows, f"passages[{i}]", CrowdError) for i, rows in enumerate(passages)]
-    for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
-        check_shape(row, (len(route), 3), f"passages[{i}]", CrowdError)
-        check_values(row, f"passages[{i}]", CrowdError)
-    out = np.concatenate(rows) if rows else np.empty((0, 3))
-    length = np.sqrt((out[:, :2] ** 2).sum(axis=1))
-    pointing = length > 0.0
-    out[pointing, :2] /= length[pointing, None]
-    out[~pointing] = 0.0
-    return out
-
-
-def _signals(
-    signals: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
-) -> NDArray[np.int64]:
-    """(total,) of all."""
-    _check_count(signals, "signals", routes)
-    rows = [np.asarray(row) for row in signals]
-    for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
-        check_shape(row, (len(route),), f"signals[{i}]", CrowdError)
-        if row.dtype.kind not in "iu":
-            raise CrowdError(f"signals[{i}] is {row.dtype}, expected integers")
-    return np.concatenate(rows).astype(np.int64) if rows else np.empty(0, dtype=np.int64)
-
-
-def _check_count(
-    values: Sequence[ArrayLike], what: str, routes: Sequence[NDArray[np.float64]]
-) -> None:
-    if len(values) != len(routes):
-        raise CrowdError(
-            f"{what} has {len(values)} entries, expected one for each of {len(routes)}"
-        )
-
-
-def _offsets(count: NDArray[np.int64]) -> NDArray[np.int64]:
-    """(n + 1,) offsets of runs of these lengths."""
-    return np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(count, dtype=np.int64)])
-
-
 def _check_memory(array: NDArray[np.generic], dtype: np.dtype[np.generic], name: str) -> None:
     """The kernels take C-contiguous arrays of one type only."""
     if array.dtype != dtype or not array.flags.c_contiguous:
@@ -311,20 +265,20 @@ def _unfilled(n: int, total: int) -> Crowd:
     state = np.empty((n, 2)), np.empty((n, 2)), np.empty(n, dtype=np.int64)
     signal, start = np.empty(total, dtype=np.int64), np.empty(n + 1, dtype=np.int64)
     routes = np.empty((total, 2)), np.empty((total, 3)), signal, start
-    wishes = np.empty(n), np.empty(n), *routes
+    fixed = np.empty(n), np.empty(n), *routes
     return _unchecked(
         {
             "position": state[0],
             "velocity": state[1],
-            "desired_speed": wishes[0],
+            "desired_speed": fixed[0],
             "waypoints": routes[0],
             "waypoint_start": start,
             "waypoint_index": state[2],
             "waypoint_passage": routes[1],
             "waypoint_signal": signal,
-            "priority": wishes[1],
+            "priority": fixed[1],
             "routes": routes,
-            "wishes": wishes,
+            "fixed_arrays": fixed,
         }
     )
 
@@ -334,3 +288,8 @@ def _unchecked(state: dict[str, Any]) -> Crowd:
     crowd = object.__new__(Crowd)
     crowd.__dict__.update(state)
     return crowd
+
+
+def _for_each(values: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    """A value for each of n pedestrians, from one for all or one each."""
+    return np.full(n, values) if values.ndim == 0 or values.size == 0 else values.copy()

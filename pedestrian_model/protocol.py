@@ -49,5 +49,7 @@ class CrowdPredictor(Protocol):
     ) -> NDArray[np.float64]:
         """The positions (N, n, 2) [m] after 1 ... N steps under (N, m, 7) vehicles."""
 
-    def wishes(self, crowd: Crowd, surroundings: Surroundings = ...) -> NDArray[np.float64]:
+    def desired_velocities(
+        self, crowd: Crowd, surroundings: Surroundings = ...
+    ) -> NDArray[np.float64]:
         """(n, 3) velocities [m/s] wished for at the end of the latest, and for how long [s]."""

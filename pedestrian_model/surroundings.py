@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pedestrian_model import _walls
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model.errors import SurroundingsError
+from pedestrian_model.walls import COLUMNS, REACH, join_walls, nearest_walls, sort_walls
 
 _CELL = 1.0  # [m] of the grid of walls
 _MOST_CELLS = 2**21  # the grid of a larger place is coarser: 16 MB
@@ -62,13 +62,13 @@ class Walls:
         check_shape(x, (None, 2), "points", SurroundingsError)
         check_values(x, "points", SurroundingsError)
         out = np.empty((3, x.shape[0]))
-        _walls.nearest_walls(x[:, 0].copy(), x[:, 1].copy(), self._lines, self._cells, out)
+        nearest_walls(x[:, 0].copy(), x[:, 1].copy(), self._lines, self._cells, out)
         return out[0], out[1:].T.copy()
 
 
 def _lines(segments: NDArray[np.float64], length: NDArray[np.float64]) -> NDArray[np.float64]:
     """(1 + k, COLUMNS) of the segments, grid still missing, ends still loose: normals of zero."""
-    lines = np.zeros((1 + len(segments), _walls.COLUMNS))
+    lines = np.zeros((1 + len(segments), COLUMNS))
     lines[1:, :2] = segments[:, :2]
     lines[1:, 2:4] = (segments[:, 2:] - segments[:, :2]) / length[:, None]
     lines[1:, 4] = length
@@ -78,8 +78,8 @@ def _lines(segments: NDArray[np.float64], length: NDArray[np.float64]) -> NDArra
 def _sorted(lines: NDArray[np.float64]) -> NDArray[np.int64]:
     """The cells of the lines; sets their grid and joins them."""
     ends = lines[1:, :2] + lines[1:, 2:4] * lines[1:, 4:5]
-    low = np.minimum(lines[1:, :2], ends).min(axis=0) - _walls.REACH
-    size = np.maximum(lines[1:, :2], ends).max(axis=0) + _walls.REACH - low
+    low = np.minimum(lines[1:, :2], ends).min(axis=0) - REACH
+    size = np.maximum(lines[1:, :2], ends).max(axis=0) + REACH - low
     side = _CELL
     while np.prod(size / side + 1.0) > _MOST_CELLS:
         side *= 2.0
@@ -87,19 +87,19 @@ def _sorted(lines: NDArray[np.float64]) -> NDArray[np.int64]:
     lines[0, :5] = low[0], low[1], 1.0 / side, columns, strips
     count = np.zeros(columns * strips + 1, dtype=np.int64)
     closest = np.full(columns * strips, np.inf)
-    _walls.sort_walls(lines, closest, count, 0)
-    _walls.sort_walls(lines, closest, count, 1)
+    sort_walls(lines, closest, count, 0)
+    sort_walls(lines, closest, count, 1)
     first = len(count) + np.cumsum(count)
     cells = np.empty(int(first[-1]), dtype=np.int64)
     cells[: len(first)] = first
-    _walls.sort_walls(lines, closest, cells, 2)
+    sort_walls(lines, closest, cells, 2)
     cells[: len(first)] = first
-    _walls.join_walls(lines, cells)
+    join_walls(lines, cells)
     return cells
 
 
 _NO_CELLS = np.zeros(1, dtype=np.int64)
-_NO_LINES = np.zeros((1, _walls.COLUMNS))
+_NO_LINES = np.zeros((1, COLUMNS))
 
 
 def _none_closed() -> NDArray[np.bool_]:

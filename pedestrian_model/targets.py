@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model._jit import kernel
-from pedestrian_model._routes import Line, aim, is_passed
+from pedestrian_model._jit import inlined, kernel
+from pedestrian_model.arrays import Arrays
 from pedestrian_model.crowd import Crowd
+from pedestrian_model.routes import Line, Routes, aim, is_passed
 
 
 def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -87,3 +88,59 @@ def _fill_targets(
             at += 1
             p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
         out[k, 0], out[k, 1] = aim(x, y, p, 0.0)
+
+
+def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
+    """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
+    mask = np.empty(len(crowd), dtype=np.bool_)
+    _fill_arrived(crowd.position, crowd.waypoint_index, crowd.routes, radius, mask)
+    return mask
+
+
+def any_arrived(crowd: Crowd, radius: float) -> bool:
+    """Whether :func:`arrived` is true of anybody: at most steps of nobody, which is soon known."""
+    return bool(_any_arrived(crowd.position, crowd.waypoint_index, crowd.routes, radius))
+
+
+@kernel
+def _fill_arrived(
+    position: NDArray[np.float64],
+    waypoint_index: NDArray[np.int64],
+    routes: Arrays,
+    radius: float,
+    mask: NDArray[np.bool_],
+) -> None:
+    for i in range(len(mask)):
+        mask[i] = _is_there(i, position, waypoint_index, Routes(*routes), radius)
+
+
+@kernel
+def _any_arrived(
+    position: NDArray[np.float64],
+    waypoint_index: NDArray[np.int64],
+    routes: Arrays,
+    radius: float,
+) -> bool:
+    for i in range(len(position)):
+        if _is_there(i, position, waypoint_index, Routes(*routes), radius):
+            return True
+    return False
+
+
+@inlined
+def _is_there(
+    i: int,
+    position: NDArray[np.float64],
+    waypoint_index: NDArray[np.int64],
+    routes: Routes,
+    radius: float,
+) -> bool:
+    """Whether i is on the way to the last way-point and within ``radius`` of it, or its line."""
+    w, q, last = routes.waypoints, routes.passage, routes.start[i + 1] - 1
+    if routes.start[i] + waypoint_index[i] != last:
+        return False
+    x, y = position[i, 0], position[i, 1]
+    p = Line(w[last, 0], w[last, 1], q[last, 0], q[last, 1], q[last, 2])
+    to_x, to_y = aim(x, y, p, 0.0)
+    dx, dy = to_x - x, to_y - y
+    return bool(dx * dx + dy * dy <= radius * radius)

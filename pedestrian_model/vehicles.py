@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model._check import as_floats, check_shape, check_values
-from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
+from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 from pedestrian_model.errors import VehicleError
 
 COLUMNS = ("x", "y", "heading", "speed", "front", "rear", "width")

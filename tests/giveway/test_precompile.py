@@ -36,8 +36,8 @@ for _ in range(2):
     precompile.compile_kernels_once(Console())
 for _ in range(2):
     precompile.compile_kernels_once(Console(), threads=2)
-from pedestrian_model import _team
-assert _team.walk_share.stats.cache_hits or _team.walk_share.stats.cache_misses
+from pedestrian_model.vci import threads
+assert threads.step_domain.stats.cache_hits or threads.step_domain.stats.cache_misses
 before = looked_for()
 for settings in (
     {"seed": 4, "twin": True}, {"seed": 3, "controller": "pid"}, {"scenario": "street"}

@@ -11,27 +11,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pedestrian_model import OPEN_GROUND, Vehicles
-from pedestrian_model._constants import pack
-from pedestrian_model._detour import detour
 from pedestrian_model._jit import kernel
 from pedestrian_model._mathematics import cosine_sine
-from pedestrian_model._routes import Routes, set_targets
-from pedestrian_model._rows import (
-    FX,
-    FY,
-    PX,
-    PY,
-    SOFT,
-    TX,
-    TY,
-    VFX,
-    VFY,
-    Scratch,
-    Workspace,
-)
-from pedestrian_model._step import FINE, first_insane, gather_forces
-from pedestrian_model._walls import add_walls
-from pedestrian_model.model import divergence, unknown_signal
+from pedestrian_model.routes import Routes
+from pedestrian_model.stepping import FINE, divergence, first_insane, unknown_signal
+from pedestrian_model.vci.buffers import FX, FY, PX, PY, SOFT, TX, TY, VFX, VFY, Scratch, Workspace
+from pedestrian_model.vci.constants import pack
+from pedestrian_model.vci.destination import set_targets
+from pedestrian_model.vci.detour import detour
+from pedestrian_model.vci.step import gather_forces
+from pedestrian_model.vci.wall_force import add_walls
 
 cosine_sine = kernel(cosine_sine)
 

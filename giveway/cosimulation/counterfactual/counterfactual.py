@@ -165,6 +165,6 @@ def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
         drawn,
     ):
         digest.update(repr(part).encode())
-    for array in (*crowd.state, *crowd.wishes):
+    for array in (*crowd.state, *crowd.fixed_arrays):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.digest()

@@ -18,7 +18,7 @@ from giveway.ego.foresight.later_crossings import fill_crossers
 from giveway.ego.foresight.workspace import Arrays
 from giveway.ego.perception.corridor import set_pose
 from giveway.geometry.kernel import Array, inlined, inner, kernel
-from pedestrian_model import borrowed, leap, start, wish
+from pedestrian_model.kernels import borrowed, desired_velocity, rollout_step, start
 
 _FINE = -1  # no pedestrian whose state is not finite
 
@@ -47,7 +47,7 @@ def run_race(
 
     Args:
         path: vertices, stations and headings of the ego's.
-        people: what :func:`pedestrian_model.start` takes.
+        people: what :func:`pedestrian_model.kernels.start` takes.
         law: the numbers of the model, and :attr:`Beliefs.halting`.
         poses: (M, m, 7) of all vehicles; the ego's row is changed.
         row: the ego's.
@@ -147,7 +147,7 @@ def fill_ends(state: Array, index: NDArray[np.int64], row: int, scene: Any, ends
     for p in range(n):
         at = row * n + p
         x, y = state[4 * at], state[4 * at + 1]
-        w_x, w_y, until = wish(x, y, index[at], p, scene)
+        w_x, w_y, until = desired_velocity(x, y, index[at], p, scene)
         ends[p, 0], ends[p, 1], ends[p, 2], ends[p, 3], ends[p, 4] = x, y, w_x, w_y, until
 
 
@@ -221,7 +221,7 @@ def advance(
         station = front + 0.5 * (distance[k, step] + distance[k, late])
         pace = 0.5 * (speed[k, step] + speed[k, late])
         set_pose(vertices, stations, headings, station, pace, View(*view).length, poses[j, row])
-        bad = leap(ahead, scene, poses[j], scratch, *law[:-1])
+        bad = rollout_step(ahead, scene, poses[j], scratch, *law[:-1])
         if bad != _FINE:
             return bad
         if j > 0:  # the first step tells who yields: it is the model's

@@ -205,7 +205,7 @@ class CrowdForesight:
             conflicts,
             calm,
         )
-        wishes = self._predictor.wishes(self._pedestrians, self._surroundings)
+        wishes = self._predictor.desired_velocities(self._pedestrians, self._surroundings)
         crossers = np.empty((len(wishes), 4))
         fill_crossers(
             *self._way[:2],

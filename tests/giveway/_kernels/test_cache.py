@@ -51,7 +51,7 @@ def test_the_same_kernels_at_another_place_are_the_same(elsewhere):
         ("giveway/geometry/passage.py", True),  # inlined into kernels of other files
         ("giveway/geometry/kernel.py", True),  # how all are compiled
         ("controller/parameters.py", True),
-        ("pedestrian_model/_constants.py", True),
+        ("pedestrian_model/vci/constants.py", True),
         ("giveway/cli/commands/run_command.py", False),
     ],
 )
@@ -71,7 +71,7 @@ def test_a_file_of_inlined_functions_alone_is_looked_at(elsewhere):
 
 
 HALF = """
-from pedestrian_model._constants import _exp
+from pedestrian_model.vci.constants import _exp
 value = _exp(-1.0)
 made_ready = 'numba.cpython.setobj' in sys.modules
 print(f'{value:.6f}', sum(_exp.stats.cache_hits.values()), made_ready)

@@ -53,7 +53,7 @@ def test_begin_end_and_scale_hold() -> None:
 
 def state(roster: Roster) -> list[bytes]:
     crowd = roster.crowd
-    return [array.tobytes() for array in (*crowd.state, *crowd.wishes)]
+    return [array.tobytes() for array in (*crowd.state, *crowd.fixed_arrays)]
 
 
 def test_who_comes_depends_on_the_seed_alone_and_not_on_other_flows_or_people() -> None:

@@ -1,0 +1,242 @@
+"""Optimal reciprocal collision avoidance, for one pedestrian among people, vehicles and a wall.
+
+van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (Robotics Research, STAR
+70, 2011): everybody who would meet somebody within ``tau`` takes the half of the velocity's change
+that avoids it; of the velocities that all these half-planes permit one takes the closest to that
+which one wants, by an incremental linear programme, and, where they permit none, the one that
+breaks the worst least. A vehicle takes no half: people get out of its way alone. It is a row of
+circles that cover it. A wall is a half-plane that nobody may break.
+
+A line is (point, direction); the permitted velocities lie on its left.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import inlined, inner
+from pedestrian_model._mathematics import cosine_sine
+from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
+
+Array = NDArray[np.float64]
+
+TAU = 3.0  # [s] ahead in which people avoid to meet (ours; the paper's scenes have 2 to 10)
+_WALL_TAU = 0.5  # [s] in which nobody may reach a wall (ours)
+_NEIGHBOURS = 10  # people at most that one looks at, the nearest
+_SIGHT = 10.0  # [m] at most
+_CIRCLES = 4  # that a vehicle is
+_VEHICLES = 8  # at most, the nearest
+LINES = 1 + _CIRCLES * _VEHICLES + _NEIGHBOURS
+_PARALLEL = 1e-9
+
+
+@inlined
+def _det(a_x: float, a_y: float, b_x: float, b_y: float) -> float:
+    return a_x * b_y - a_y * b_x
+
+
+@inlined
+def _add_line(
+    lines: Array,
+    at: int,
+    r_x: float,
+    r_y: float,
+    w_x: float,
+    w_y: float,
+    v_x: float,
+    v_y: float,
+    radius: float,
+    share: float,
+    dt: float,
+) -> None:
+    """The half-plane that avoids a circle ``radius`` at r, seen at the relative velocity w."""
+    apart, both = r_x * r_x + r_y * r_y, radius * radius
+    meets = apart <= both
+    per = 1.0 / dt if meets else 1.0 / TAU
+    c_x, c_y = w_x - per * r_x, w_y - per * r_y  # from the centre of the circle that cuts off
+    length_2 = c_x * c_x + c_y * c_y
+    before = c_x * r_x + c_y * r_y
+    if meets or (before < 0.0 and before * before > both * length_2):
+        length = math.sqrt(length_2)
+        n_x, n_y = 1.0, 0.0
+        if length > 0.0:
+            n_x, n_y = c_x / length, c_y / length
+        elif apart > 0.0:
+            away = math.sqrt(apart)
+            n_x, n_y = -r_x / away, -r_y / away
+        d_x, d_y = n_y, -n_x
+        u = radius * per - length
+        u_x, u_y = u * n_x, u * n_y
+    else:
+        leg = math.sqrt(apart - both)
+        side = 1.0 if _det(r_x, r_y, c_x, c_y) > 0.0 else -1.0
+        d_x = side * (r_x * leg - side * r_y * radius) / apart
+        d_y = side * (side * r_x * radius + r_y * leg) / apart
+        along = w_x * d_x + w_y * d_y
+        u_x, u_y = along * d_x - w_x, along * d_y - w_y
+    lines[at, 0], lines[at, 1] = v_x + share * u_x, v_y + share * u_y
+    lines[at, 2], lines[at, 3] = d_x, d_y
+
+
+@inlined
+def _nearest(found: Array, count: int, most: int, distance: float, which: int) -> int:
+    """Put a neighbour into the sorted list ``found`` (distance, index); how many it holds then."""
+    if count == most and distance >= found[count - 1, 0]:
+        return count
+    place = count if count < most else count - 1
+    while place > 0 and found[place - 1, 0] > distance:
+        found[place, 0], found[place, 1] = found[place - 1, 0], found[place - 1, 1]
+        place -= 1
+    found[place, 0], found[place, 1] = distance, which
+    return min(count + 1, most)
+
+
+@inner
+def orca_velocity(
+    i: int,
+    position: Array,
+    velocity: Array,
+    preferred: tuple[float, float],
+    fastest: float,
+    radius: float,
+    vehicles: Array,
+    travelled: float,
+    wall: tuple[float, float, float],
+    dt: float,
+    lines: Array,
+    projected: Array,
+    found: Array,
+) -> tuple[float, float]:
+    """The velocity [m/s] that pedestrian i takes.
+
+    ``travelled`` [s]: since the vehicles were where they are said to be. ``wall``: distance [m] and
+    normal of the nearest. ``lines``, ``projected`` (LINES, 4) and ``found`` (LINES, 2) are scratch.
+    """
+    x, y = position[i, 0], position[i, 1]
+    v_x, v_y = velocity[i, 0], velocity[i, 1]
+    n = 0
+    if wall[0] < np.inf:
+        most = -(wall[0] - radius) / _WALL_TAU  # towards it, or away from it at least
+        lines[0, 0], lines[0, 1] = most * wall[1], most * wall[2]
+        lines[0, 2], lines[0, 3] = wall[2], -wall[1]
+        n = 1
+    hard = n
+    count = 0
+    for k in range(vehicles.shape[0]):
+        reach = _SIGHT + vehicles[k, FRONT] + vehicles[k, REAR] + TAU * abs(vehicles[k, SPEED])
+        away = math.sqrt((vehicles[k, X] - x) ** 2 + (vehicles[k, Y] - y) ** 2)
+        if away < reach:
+            count = _nearest(found, count, _VEHICLES, away, k)
+    for near in range(count):
+        vehicle = vehicles[int(found[near, 1])]
+        c, s = cosine_sine(vehicle[HEADING])
+        part = (vehicle[FRONT] + vehicle[REAR]) / _CIRCLES
+        circle = 0.5 * math.sqrt(part * part + vehicle[WIDTH] * vehicle[WIDTH]) + radius
+        for j in range(_CIRCLES):
+            ahead = (j + 0.5) * part - vehicle[REAR] + travelled * vehicle[SPEED]
+            r_x, r_y = vehicle[X] + ahead * c - x, vehicle[Y] + ahead * s - y
+            w_x, w_y = v_x - vehicle[SPEED] * c, v_y - vehicle[SPEED] * s
+            _add_line(lines, n, r_x, r_y, w_x, w_y, v_x, v_y, circle, 1.0, dt)
+            n += 1
+    count = 0
+    for j in range(position.shape[0]):
+        away = math.sqrt((position[j, 0] - x) ** 2 + (position[j, 1] - y) ** 2)
+        if j != i and away < _SIGHT:
+            count = _nearest(found, count, _NEIGHBOURS, away, j)
+    for near in range(count):
+        j = int(found[near, 1])
+        r_x, r_y = position[j, 0] - x, position[j, 1] - y
+        if r_x == 0.0 and r_y == 0.0:  # two in one place part by their order
+            r_x = math.copysign(1e-9, j - i)
+        w_x, w_y = v_x - velocity[j, 0], v_y - velocity[j, 1]
+        _add_line(lines, n, r_x, r_y, w_x, w_y, v_x, v_y, 2.0 * radius, 0.5, dt)
+        n += 1
+    p_x, p_y = preferred
+    pace = math.sqrt(p_x * p_x + p_y * p_y)
+    if pace > fastest:
+        p_x, p_y = p_x * fastest / pace, p_y * fastest / pace
+    failed, o_x, o_y = _closest(lines, n, fastest, p_x, p_y, False)
+    if failed < n:
+        return _least_broken(lines, n, hard, failed, fastest, o_x, o_y, projected)
+    return o_x, o_y
+
+
+@inner
+def _closest(
+    lines: Array, n: int, fastest: float, p_x: float, p_y: float, furthest: bool
+) -> tuple[int, float, float]:
+    """The permitted velocity closest to p, or furthest along the unit vector p.
+
+    The first is n, or the line at which none was left; the velocity is that before it, then.
+    """
+    o_x, o_y = (fastest * p_x, fastest * p_y) if furthest else (p_x, p_y)
+    for i in range(n):
+        q_x, q_y, d_x, d_y = lines[i, 0], lines[i, 1], lines[i, 2], lines[i, 3]
+        if _det(d_x, d_y, q_x - o_x, q_y - o_y) <= 0.0:
+            continue
+        middle = q_x * d_x + q_y * d_y
+        inside = middle * middle + fastest * fastest - q_x * q_x - q_y * q_y
+        if inside < 0.0:
+            return i, o_x, o_y
+        half = math.sqrt(inside)
+        low, high = -middle - half, half - middle
+        for j in range(i):
+            across = _det(d_x, d_y, lines[j, 2], lines[j, 3])
+            beyond = _det(lines[j, 2], lines[j, 3], q_x - lines[j, 0], q_y - lines[j, 1])
+            if abs(across) <= _PARALLEL:
+                if beyond < 0.0:
+                    return i, o_x, o_y
+                continue
+            if across > 0.0:
+                high = min(high, beyond / across)
+            else:
+                low = max(low, beyond / across)
+            if low > high:
+                return i, o_x, o_y
+        t = d_x * (p_x - q_x) + d_y * (p_y - q_y)
+        if furthest:
+            t = high if p_x * d_x + p_y * d_y > 0.0 else low
+        t = min(max(t, low), high)
+        o_x, o_y = q_x + t * d_x, q_y + t * d_y
+    return n, o_x, o_y
+
+
+@inner
+def _least_broken(
+    lines: Array,
+    n: int,
+    hard: int,
+    first: int,
+    fastest: float,
+    o_x: float,
+    o_y: float,
+    projected: Array,
+) -> tuple[float, float]:
+    """The velocity that is least far outside of the half-planes; the ``hard`` ones hold."""
+    deepest = 0.0
+    for i in range(first, n):
+        q_x, q_y, d_x, d_y = lines[i, 0], lines[i, 1], lines[i, 2], lines[i, 3]
+        if _det(d_x, d_y, q_x - o_x, q_y - o_y) <= deepest:
+            continue
+        projected[:hard] = lines[:hard]
+        m = hard
+        for j in range(hard, i):
+            across = _det(d_x, d_y, lines[j, 2], lines[j, 3])
+            if abs(across) <= _PARALLEL:
+                if d_x * lines[j, 2] + d_y * lines[j, 3] > 0.0:
+                    continue
+                projected[m, 0] = 0.5 * (q_x + lines[j, 0])
+                projected[m, 1] = 0.5 * (q_y + lines[j, 1])
+            else:
+                t = _det(lines[j, 2], lines[j, 3], q_x - lines[j, 0], q_y - lines[j, 1]) / across
+                projected[m, 0], projected[m, 1] = q_x + t * d_x, q_y + t * d_y
+            e_x, e_y = lines[j, 2] - d_x, lines[j, 3] - d_y
+            length = math.sqrt(e_x * e_x + e_y * e_y)
+            projected[m, 2], projected[m, 3] = e_x / length, e_y / length
+            m += 1
+        done, b_x, b_y = _closest(projected, m, fastest, -d_y, d_x, True)
+        if done == m:
+            o_x, o_y = b_x, b_y
+        deepest = _det(d_x, d_y, q_x - o_x, q_y - o_y)
+    return o_x, o_y

@@ -1,0 +1,276 @@
+"""Other models of people than VCI: is what holds for one crowd true whatever people do?
+
+``constant-velocity``
+    Everybody walks to the next way-point at the desired speed, through whatever is there: the
+    least that a model of people can be, and the assumption behind a time to collision.
+``social-force``
+    Helbing and Molnár, "Social force model for pedestrian dynamics" (Phys. Rev. E 51, 4282, 1995),
+    with its numbers: the way to the goal, elliptical repulsion among people, borders, and the
+    weight of what one sees. A vehicle is a rectangle that repels as a border does, by the ellipse
+    of its way in the next two seconds.
+``gap-acceptance``
+    Among themselves people walk by the same social force. To a vehicle that moves they answer by a
+    gap: they stop before the strip that it will sweep, unless it takes longer to arrive than their
+    critical headway t_c = L / v_0 + t_s, of the Highway Capacity Manual (2010, equation 19-69: the
+    way across over the walking speed, and 3 s to start and to be clear of it). Who has begun to
+    cross goes on. A vehicle that stands is a rectangle, as a wall is.
+``orca``
+    Optimal reciprocal collision avoidance (van den Berg et al. 2011): everybody takes the velocity
+    closest to the desired one that meets nobody within the next 3 s, if the others do their half;
+    out of a vehicle's way people get alone.
+
+All of them know way-points, lines and signals, and keep to the parameters' largest acceleration and
+speed; they have no detour around cars, and no priority.
+"""
+
+import math
+from dataclasses import replace
+from typing import Any, Final, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import inlined, kernel
+from pedestrian_model.arrays import FRONT, REAR, SPEED, WIDTH
+from pedestrian_model.crowd import Crowd
+from pedestrian_model.other_models.orca import LINES, orca_velocity
+from pedestrian_model.other_models.social_force import (
+    AHEAD,
+    EPSILON,
+    FASTER,
+    RELAXATION,
+    border,
+    in_frame,
+    of_people,
+    of_vehicles,
+)
+from pedestrian_model.parameters import SIM, VciParameters
+from pedestrian_model.routes import heading_for
+from pedestrian_model.stepping import FINE, divergence, first_insane, substeps, unknown_signal
+from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
+from pedestrian_model.vehicles import Vehicles
+from pedestrian_model.walls import nearest_walls
+
+PlainName = Literal["constant-velocity", "social-force", "gap-acceptance", "orca"]
+PLAIN_MODELS: Final[tuple[PlainName, ...]] = get_args(PlainName)
+
+_STRAIGHT, _FORCES, _GAPS, _ORCA = range(len(PLAIN_MODELS))
+Array = NDArray[np.float64]
+
+# Highway Capacity Manual 2010, equation 19-69
+_START = 3.0  # [s] t_s, to start and to be clear of the way
+_HALT = 4.0 * RELAXATION  # [s] v = room / T stops before a kerb and not beyond it
+_BESIDE = 0.3  # [m] between the vehicle's side and a body that waits (ours)
+_STANDS = 0.1  # [m/s] a slower vehicle stands
+_ARRIVES = 0.3  # [m] about a way-point at which somebody slows down (ours)
+
+
+def unmoved(parameters: VciParameters) -> VciParameters:
+    """VCI of people whom nothing moves: ``constant-velocity``, for what predicts by VCI alone.
+
+    Args:
+        parameters: whose bodies, limits and way-points hold.
+    """
+    return replace(
+        parameters,
+        repulsion_strength=0.0,
+        navigation_strength=0.0,
+        collision_stiffness=0.0,
+        vehicle_strength=0.0,
+        wall_strength=0.0,
+        destination_gain=parameters.mass / RELAXATION,
+        destination_smoothing=_ARRIVES,
+    )
+
+
+class PlainModel:
+    """One of the plain models with a time step; it holds no state but scratch memory.
+
+    Args:
+        name: which one.
+        parameters: of VCI; its body radius, largest speed and acceleration, and its way-points'
+            radius hold here too.
+        time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
+            drive straight on at constant speed.
+
+    Raises:
+        ParameterError: if the time step is not positive and finite.
+    """
+
+    def __init__(
+        self, name: PlainName, parameters: VciParameters = SIM, time_step: float = 0.05
+    ) -> None:
+        self.name = name
+        self.parameters = parameters
+        self.time_step = float(time_step)
+        self._kind = PLAIN_MODELS.index(name)
+        self._substeps = substeps(self.time_step)
+        self._limits = (
+            parameters.body_radius,
+            parameters.max_acceleration,
+            parameters.max_speed,
+            parameters.waypoint_radius,
+        )
+        self._next = np.empty((0, 4))
+        self._walls = np.empty((3, 0))
+        self._scratch = (np.empty((LINES, 4)), np.empty((LINES, 4)), np.empty((LINES, 2)))
+
+    def advance(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> None:
+        """Change position, velocity and waypoint_index of ``crowd`` in place, one time step on.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
+        """
+        if crowd.signals > surroundings.closed.shape[0]:
+            raise unknown_signal(crowd, surroundings)
+        n = len(crowd)
+        if n == 0:
+            return
+        if n > len(self._next):
+            self._next, self._walls = np.empty((2 * n, 4)), np.empty((3, 2 * n))
+        closed, lines, cells = surroundings.arrays
+        bad = _advance(
+            self._kind,
+            crowd.state,
+            (crowd.desired_speed, *crowd.fixed_arrays[2:]),
+            closed,
+            surroundings.walls is not None,
+            lines,
+            cells,
+            vehicles.array,
+            self._limits,
+            self.time_step / self._substeps,
+            self._substeps,
+            self._next[:n],
+            self._walls[:, :n],
+            self._scratch,
+        )
+        if bad != FINE:
+            raise divergence(bad, crowd, vehicles)
+
+
+@kernel
+def _advance(
+    kind: int,
+    state: tuple[Any, ...],
+    wishes: tuple[Any, ...],
+    closed: NDArray[np.bool_],
+    walled: bool,
+    lines: Array,
+    cells: NDArray[np.int64],
+    vehicles: Array,
+    limits: tuple[float, ...],
+    dt: float,
+    steps: int,
+    after: Array,
+    walls: Array,
+    scratch: tuple[Array, Array, Array],
+) -> int:
+    """Advance the state in place by ``steps`` steps of dt; ``FINE`` or the first bad index."""
+    position, velocity, waypoint_index = state
+    desired_speed, routes, start = wishes[0], wishes[1:], wishes[4]
+    radius, a_max, v_max, r_waypoint = limits
+    ahead = AHEAD if kind == _FORCES else 0.0
+    n = position.shape[0]
+    bad = first_insane(position, velocity)
+    if bad != FINE:
+        return bad
+    for step in range(steps):
+        if walled:
+            nearest_walls(position[:, 0].copy(), position[:, 1].copy(), lines, cells, walls)
+        for i in range(n):
+            x, y = position[i, 0], position[i, 1]
+            at, stops, to_x, to_y = heading_for(
+                x,
+                y,
+                start[i] + waypoint_index[i],
+                start[i + 1] - 1,
+                routes,
+                closed,
+                r_waypoint,
+                radius,
+            )
+            waypoint_index[i] = at - start[i]
+            e_x, e_y = to_x - x, to_y - y
+            left = math.sqrt(e_x * e_x + e_y * e_y)
+            e_x, e_y = e_x / max(left, EPSILON), e_y / max(left, EPSILON)
+            pace = desired_speed[i]
+            if stops:
+                pace *= left / math.sqrt(left * left + _ARRIVES * _ARRIVES)
+            if kind == _GAPS:
+                pace = min(pace, speed_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
+            a_x = (pace * e_x - velocity[i, 0]) / RELAXATION
+            a_y = (pace * e_y - velocity[i, 1]) / RELAXATION
+            fastest = min(FASTER * desired_speed[i], v_max)
+            if kind == _ORCA:
+                wall = (walls[0, i], walls[1, i], walls[2, i]) if walled else (np.inf, 0.0, 0.0)
+                o_x, o_y = orca_velocity(
+                    i,
+                    position,
+                    velocity,
+                    (velocity[i, 0] + dt * a_x, velocity[i, 1] + dt * a_y),
+                    fastest,
+                    radius,
+                    vehicles,
+                    step * dt,
+                    wall,
+                    dt,
+                    *scratch,
+                )
+                a_x, a_y = (o_x - velocity[i, 0]) / dt, (o_y - velocity[i, 1]) / dt
+            elif kind != _STRAIGHT:
+                b_x, b_y = of_people(i, e_x, e_y, position, velocity)
+                a_x, a_y = a_x + b_x, a_y + b_y
+                b_x, b_y = of_vehicles(ahead, x, y, e_x, e_y, vehicles, radius, step * dt)
+                a_x, a_y = a_x + b_x, a_y + b_y
+                if walled and walls[0, i] < np.inf:
+                    push = border(walls[0, i] - radius)
+                    a_x, a_y = a_x + push * walls[1, i], a_y + push * walls[2, i]
+            a = math.sqrt(a_x * a_x + a_y * a_y)
+            scale = a_max / a if a > a_max else 1.0
+            v_x, v_y = velocity[i, 0] + dt * scale * a_x, velocity[i, 1] + dt * scale * a_y
+            v = math.sqrt(v_x * v_x + v_y * v_y)
+            scale = fastest / v if v > fastest else 1.0
+            after[i, 2], after[i, 3] = scale * v_x, scale * v_y
+            after[i, 0] = x + 0.5 * dt * (velocity[i, 0] + after[i, 2])
+            after[i, 1] = y + 0.5 * dt * (velocity[i, 1] + after[i, 3])
+        for i in range(n):
+            position[i, 0], position[i, 1] = after[i, 0], after[i, 1]
+            velocity[i, 0], velocity[i, 1] = after[i, 2], after[i, 3]
+    return first_insane(position, velocity)
+
+
+@inlined
+def speed_before(
+    x: float,
+    y: float,
+    e_x: float,
+    e_y: float,
+    pace: float,
+    vehicles: Array,
+    radius: float,
+    travelled: float,
+) -> float:
+    """The speed [m/s] that stops somebody before the strips of vehicles that come too soon."""
+    slowest = np.inf
+    for k in range(vehicles.shape[0]):
+        vehicle = vehicles[k]
+        along, across, c, s = in_frame(x, y, vehicle, travelled)
+        half = 0.5 * vehicle[WIDTH] + radius + _BESIDE
+        forth, aside = e_x * c + e_y * s, e_y * c - e_x * s
+        u = vehicle[SPEED]
+        if u < _STANDS or abs(across) <= half or across * aside >= 0.0 or pace <= 0.0:
+            continue
+        room = (abs(across) - half) / abs(aside)  # [m] to walk to the strip
+        if room > _HALT * pace:
+            continue
+        meets = along + room * forth - vehicle[FRONT]  # [m] ahead of the front
+        if meets < -vehicle[REAR] - vehicle[FRONT]:
+            continue
+        critical = 2.0 * half / (abs(aside) * pace) + _START
+        if max(meets, 0.0) / u - room / pace < critical:
+            slowest = min(slowest, room / _HALT)
+    return slowest

@@ -1,0 +1,128 @@
+"""The social force of Helbing and Molnár (Phys. Rev. E 51, 4282, 1995), with its numbers.
+
+People repel by ellipses over the way that they go in the next two seconds, and count half where
+they are not seen; borders repel by their distance. A vehicle is a rectangle that repels as a border
+does, by the ellipse of its way in the next two seconds (ours).
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import inlined
+from pedestrian_model._mathematics import cosine_sine, exponential
+from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
+
+Array = NDArray[np.float64]
+
+RELAXATION = 0.5  # [s] in which people take up their pace
+AHEAD = 2.0  # [s] of somebody's way that counts as theirs
+FASTER = 1.3  # of the desired speed, at most
+EPSILON = 1e-9  # [m]
+
+_PERSON, _PERSON_RANGE = 2.1, 0.3  # V_0 [m^2/s^2] and sigma [m]
+_BORDER, _BORDER_RANGE = 10.0, 0.2  # U_0 [m^2/s^2] and R [m]
+_SIGHT, _UNSEEN = -0.17364817766693033, 0.5  # cos 100 degrees; the share of what lies behind
+_FAR = 8.0  # [m] beyond it nobody is felt: less than 1e-6 m/s^2 is left out
+
+
+@inlined
+def elliptical(r_x: float, r_y: float, s_x: float, s_y: float) -> tuple[float, float, float]:
+    """B [m] and its gradient, of the ellipse about somebody who steps (s_x, s_y), seen at r.
+
+    2 b = sqrt((|r| + |r - s|)^2 - |s|^2).
+    """
+    first = max(math.sqrt(r_x * r_x + r_y * r_y), EPSILON)
+    u_x, u_y = r_x - s_x, r_y - s_y
+    second = max(math.sqrt(u_x * u_x + u_y * u_y), EPSILON)
+    both = first + second
+    b = 0.5 * math.sqrt(max(both * both - s_x * s_x - s_y * s_y, EPSILON))
+    share = both / (4.0 * b)
+    return b, share * (r_x / first + u_x / second), share * (r_y / first + u_y / second)
+
+
+@inlined
+def _seen(e_x: float, e_y: float, f_x: float, f_y: float) -> float:
+    """The weight of an influence f on somebody who looks along e."""
+    f = math.sqrt(f_x * f_x + f_y * f_y)
+    return 1.0 if -(e_x * f_x + e_y * f_y) >= f * _SIGHT else _UNSEEN
+
+
+@inlined
+def of_people(
+    i: int, e_x: float, e_y: float, position: Array, velocity: Array
+) -> tuple[float, float]:
+    """The acceleration [m/s^2] that others give pedestrian i."""
+    a_x, a_y = 0.0, 0.0
+    for j in range(position.shape[0]):
+        r_x, r_y = position[i, 0] - position[j, 0], position[i, 1] - position[j, 1]
+        if j == i or r_x * r_x + r_y * r_y > _FAR * _FAR:
+            continue
+        s_x, s_y = AHEAD * velocity[j, 0], AHEAD * velocity[j, 1]
+        b, g_x, g_y = elliptical(r_x, r_y, s_x, s_y)
+        push = _PERSON / _PERSON_RANGE * exponential(max(-b / _PERSON_RANGE, -700.0))
+        f_x, f_y = push * g_x, push * g_y
+        w = _seen(e_x, e_y, f_x, f_y)
+        a_x, a_y = a_x + w * f_x, a_y + w * f_y
+    return a_x, a_y
+
+
+@inlined
+def border(distance: float) -> float:
+    """The acceleration [m/s^2] away from a border at a distance [m] of the skin."""
+    if distance > _FAR:
+        return 0.0
+    return _BORDER / _BORDER_RANGE * exponential(-max(distance, 0.0) / _BORDER_RANGE)
+
+
+@inlined
+def in_frame(
+    x: float, y: float, vehicle: Array, travelled: float
+) -> tuple[float, float, float, float]:
+    """A point in the vehicle's frame after some time [s], and its heading's cosine and sine."""
+    c, s = cosine_sine(vehicle[HEADING])
+    d_x = x - vehicle[X] - travelled * vehicle[SPEED] * c
+    d_y = y - vehicle[Y] - travelled * vehicle[SPEED] * s
+    return d_x * c + d_y * s, d_y * c - d_x * s, c, s
+
+
+@inlined
+def of_vehicles(
+    ahead: float,
+    x: float,
+    y: float,
+    e_x: float,
+    e_y: float,
+    vehicles: Array,
+    radius: float,
+    travelled: float,
+) -> tuple[float, float]:
+    """The acceleration [m/s^2] that vehicles give somebody at (x, y).
+
+    ``ahead`` [s]: of a vehicle's way that counts as its own; 0: it is a border.
+    """
+    a_x, a_y = 0.0, 0.0
+    for k in range(vehicles.shape[0]):
+        vehicle = vehicles[k]
+        along, across, c, s = in_frame(x, y, vehicle, travelled)
+        half = 0.5 * vehicle[WIDTH]
+        off_x = along - min(max(along, -vehicle[REAR]), vehicle[FRONT])
+        off_y = across - min(max(across, -half), half)
+        distance = math.sqrt(off_x * off_x + off_y * off_y)
+        step = ahead * vehicle[SPEED]
+        if distance > _FAR + abs(step):
+            continue
+        if distance <= EPSILON:  # inside: out by the nearer side
+            off_x, off_y = 0.0, math.copysign(EPSILON, across)
+        if step == 0.0:
+            push = border(distance - radius)
+            g_x, g_y = off_x / max(distance, EPSILON), off_y / max(distance, EPSILON)
+        else:
+            shrink = max(distance - radius, EPSILON) / max(distance, EPSILON)
+            b, g_x, g_y = elliptical(shrink * off_x, shrink * off_y, step, 0.0)
+            push = _BORDER / _BORDER_RANGE * exponential(max(-b / _BORDER_RANGE, -700.0))
+        f_x, f_y = push * (c * g_x - s * g_y), push * (s * g_x + c * g_y)
+        w = _seen(e_x, e_y, f_x, f_y)
+        a_x, a_y = a_x + w * f_x, a_y + w * f_y
+    return a_x, a_y

@@ -1,0 +1,99 @@
+"""Where the crowd will be by any model: asked step by step, under given vehicle poses."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model.crowd import Crowd
+from pedestrian_model.errors import ParameterError, PlugInError
+from pedestrian_model.parameters import VciParameters
+from pedestrian_model.protocol import PedestrianModel
+from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
+from pedestrian_model.vci.buffers import Workspace
+from pedestrian_model.vci.prediction import fill_desired_velocities
+from pedestrian_model.vehicles import Vehicles
+
+
+class StepwisePredictor:
+    """Predicts N steps of the crowd by N calls of a model.
+
+    Args:
+        model: by which people are believed to walk; one that remembers something is made to forget
+            it (``reset``) before each prediction, and belongs to this predictor alone.
+        horizon: N, the number of the model's steps.
+
+    Raises:
+        ParameterError: if the horizon is not positive.
+    """
+
+    def __init__(self, model: PedestrianModel, horizon: int) -> None:
+        if horizon < 1:
+            raise ParameterError(f"horizon = {horizon} steps, expected at least 1")
+        self.horizon = int(horizon)
+        self._model = model
+        self._reset = getattr(model, "reset", None)
+        self._ahead = Crowd.empty()
+        self._vehicles = Vehicles.empty()
+        self._workspace = Workspace()
+
+    @property
+    def parameters(self) -> VciParameters:
+        """Bodies and limits of the people."""
+        return self._model.parameters
+
+    @property
+    def time_step(self) -> float:
+        """[s]."""
+        return self._model.time_step
+
+    def predict(
+        self,
+        crowd: Crowd,
+        vehicles_trajectory: NDArray[np.float64],
+        surroundings: Surroundings = OPEN_GROUND,
+    ) -> NDArray[np.float64]:
+        """The positions (N, n, 2) [m] after 1 ... N steps; ``crowd`` is not changed.
+
+        Args:
+            crowd: the present state.
+            vehicles_trajectory: (N, m, 7) the vehicles at 0 ... N - 1 steps, see ``Vehicles``.
+            surroundings: walls and signals; those closed now stay closed over the horizon.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+            PlugInError: somebody else's model does not answer as it should.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
+        """
+        if self._reset is not None:
+            self._reset()
+        if self._vehicles.array.shape != vehicles_trajectory.shape[1:]:
+            self._vehicles = Vehicles(vehicles_trajectory[0].copy())
+        ahead = self._ahead = crowd.copy()
+        out = np.empty((self.horizon, len(crowd), 2))
+        for k in range(self.horizon):
+            self._vehicles.array[:] = vehicles_trajectory[k]
+            try:
+                self._model.advance(ahead, self._vehicles, surroundings)
+            except PlugInError as error:  # whom it names is a row of those looked at alone
+                raise PlugInError(f"{error} (predicting {k + 1} steps ahead)") from error
+            out[k] = ahead.position
+        return out
+
+    def desired_velocities(
+        self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND
+    ) -> NDArray[np.float64]:
+        """(n, 3) what everybody wishes at the end of the latest prediction, of ``crowd``."""
+        wishes, ahead = np.empty((len(crowd), 3)), self._ahead
+        fill_desired_velocities(
+            (
+                *ahead.state,
+                *ahead.fixed_arrays,
+                *surroundings.arrays,
+                *self._workspace.arrays,
+                *ahead.state,
+                ahead.velocity,
+            ),
+            wishes,
+        )
+        return wishes

@@ -1,0 +1,127 @@
+"""Where a route leads next: way-points hit or lines crossed, signals waited at, the last kept.
+
+A way-point is passed within a radius. With a passage it is a line as well, across the way: who
+crosses the line within its half-width has passed, and who has not yet walks to the nearest point
+of the line, so that a crowd goes through side by side instead of through one point. All ours.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pedestrian_model._check import as_floats, check_shape, check_values
+from pedestrian_model._jit import inlined
+from pedestrian_model.errors import CrowdError
+
+
+class Routes(NamedTuple):
+    """The routes of a crowd, as in ``Crowd``."""
+
+    waypoints: NDArray[np.float64]  # (total, 2) [m]
+    passage: NDArray[np.float64]  # (total, 3) unit direction, half-width [m]; 0: none
+    signal: NDArray[np.int64]  # (total,) index into ``closed``; -1: none
+    start: NDArray[np.int64]  # (n + 1,) offsets
+
+
+class Line(NamedTuple):
+    """A way-point and its passage: scalars, because passing arrays about costs a count of each."""
+
+    x: float  # [m]
+    y: float
+    d_x: float  # unit direction
+    d_y: float
+    half: float  # [m] half-width, 0: a point only
+
+
+@inlined
+def aim(x: float, y: float, p: Line, R: float) -> tuple[float, float]:
+    """The nearest point to (x, y) of a line, R inside its ends if it can be."""
+    if p.half <= 0.0:
+        return p.x, p.y
+    room = max(p.half - R, 0.0)
+    lateral = min(max(p.d_x * (y - p.y) - p.d_y * (x - p.x), -room), room)
+    return p.x - lateral * p.d_y, p.y + lateral * p.d_x
+
+
+@inlined
+def is_passed(x: float, y: float, p: Line, radius: float) -> bool:
+    """Whether (x, y) is within ``radius`` of the way-point, or beyond its line where that is."""
+    dx, dy = x - p.x, y - p.y
+    if dx * dx + dy * dy <= radius * radius:
+        return True
+    along, across = p.d_x * dx + p.d_y * dy, p.d_x * dy - p.d_y * dx
+    return p.half > 0.0 and along >= 0.0 and abs(across) <= p.half
+
+
+@inlined
+def heading_for(
+    x: float,
+    y: float,
+    at: int,
+    last: int,
+    routes: Any,
+    closed: NDArray[np.bool_],
+    radius: float,
+    R: float,
+) -> tuple[int, bool, float, float]:
+    """Which way-point is next for somebody at (x, y), whether to stop there, and where it is.
+
+    ``at`` was the next one so far, ``last`` ends the way; ``routes`` are the arrays of ``Routes``.
+    """
+    w, q, signal = routes[0], routes[1], routes[2]
+    stops = True
+    p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+    while at < last and not (signal[at] >= 0 and closed[signal[at]]):
+        if not is_passed(x, y, p, radius):
+            stops = False
+            break
+        at += 1
+        p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+    to_x, to_y = aim(x, y, p, R)
+    return at, stops, to_x, to_y
+
+
+def passage_rows(
+    passages: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
+) -> NDArray[np.float64]:
+    """(total, 3) of all, the directions of length one."""
+    _check_count(passages, "passages", routes)
+    rows = [as_floats(rows, f"passages[{i}]", CrowdError) for i, rows in enumerate(passages)]
+    for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
+        check_shape(row, (len(route), 3), f"passages[{i}]", CrowdError)
+        check_values(row, f"passages[{i}]", CrowdError)
+    out = np.concatenate(rows) if rows else np.empty((0, 3))
+    length = np.sqrt((out[:, :2] ** 2).sum(axis=1))
+    pointing = length > 0.0
+    out[pointing, :2] /= length[pointing, None]
+    out[~pointing] = 0.0
+    return out
+
+
+def signal_rows(
+    signals: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
+) -> NDArray[np.int64]:
+    """(total,) of all."""
+    _check_count(signals, "signals", routes)
+    rows = [np.asarray(row) for row in signals]
+    for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
+        check_shape(row, (len(route),), f"signals[{i}]", CrowdError)
+        if row.dtype.kind not in "iu":
+            raise CrowdError(f"signals[{i}] is {row.dtype}, expected integers")
+    return np.concatenate(rows).astype(np.int64) if rows else np.empty(0, dtype=np.int64)
+
+
+def _check_count(
+    values: Sequence[ArrayLike], what: str, routes: Sequence[NDArray[np.float64]]
+) -> None:
+    if len(values) != len(routes):
+        raise CrowdError(
+            f"{what} has {len(values)} entries, expected one for each of {len(routes)}"
+        )
+
+
+def offsets(count: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(n + 1,) offsets of runs of these lengths."""
+    return np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(count, dtype=np.int64)])

@@ -1,0 +1,164 @@
+"""The crowd, stepped: Newton's law under the sum of the sub-forces."""
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from pedestrian_model.arrays import Arrays
+from pedestrian_model.crowd import Crowd
+from pedestrian_model.errors import ParameterError
+from pedestrian_model.parameters import SIM, VciParameters
+from pedestrian_model.stepping import FINE, LONGEST_STEP, divergence, substeps, unknown_signal
+from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
+from pedestrian_model.vci.buffers import Workspace
+from pedestrian_model.vci.constants import pack
+from pedestrian_model.vci.rollout import roll_out
+from pedestrian_model.vehicles import Vehicles
+
+if TYPE_CHECKING:
+    from pedestrian_model.vci.threads import CrowdThreads
+
+#: From so many pedestrians on, neighbours are found by a cell list (benchmarks/bench_crowd.py).
+CELL_LIST_FROM = 100
+#: From so many on, several threads step a crowd: with fewer, they would wait for each other more.
+THREADS_FROM = 1000
+#: More threads than this are taken for a mistake.
+MOST_THREADS = 256
+_NOWHERE: Final = np.empty((1, 0, 2))  # where nobody's position after a step is noted
+
+
+def require_steady(
+    parameters: VciParameters, time_step: float, longest: float = LONGEST_STEP
+) -> None:
+    """Make sure that the integration's step does not make people's speeds swing.
+
+    Somebody alone under the destination force has v' = (k_des/m)(v_d - v), of which one step of
+    forward Euler makes v_d - v_(n+1) = (1 - z)(v_d - v_n), z = k_des dt/m (Hairer & Wanner 1996,
+    "Solving Ordinary Differential Equations II", section IV.2). For z <= 1 the speed settles, for
+    1 < z < 2 it overshoots in every step, beyond 2 it swings until a_max and v_max hold it. Near
+    the last destination v_d = -v0 x/s_des, and the step (x too is integrated) has
+    the trace 2 - z - z W/2 and the determinant 1 - z + z W/2 with W = v0 dt/s_des: for z <= 1 it
+    is stable and has no negative eigenvalue exactly if W < 2.
+
+    Args:
+        parameters: of the model.
+        time_step: [s]; its sub-steps count.
+        longest: [s] of these.
+
+    Raises:
+        ParameterError: they swing.
+    """
+    dt = time_step / substeps(time_step, longest)
+    p = parameters
+    steady = p.mass / dt
+    if p.destination_gain > steady:
+        raise ParameterError(
+            f"destination_gain = {p.destination_gain:g} N s/m: people's speeds swing from step to "
+            f"step, k_des dt/m = {p.destination_gain / steady:.2g} > 1; expected at most m/dt = "
+            f"{steady:g} N s/m for {p.mass:g} kg and steps of {dt:.4g} s"
+        )
+    nearest = 0.5 * p.max_speed * dt
+    if p.destination_smoothing <= nearest:
+        raise ParameterError(
+            f"destination_smoothing = {p.destination_smoothing:g} m: people swing about their "
+            f"destinations; expected more than v_max dt/2 = {nearest:g} m for {p.max_speed:g} m/s "
+            f"and steps of {dt:.4g} s"
+        )
+
+
+class CrowdModel:
+    """The VCI model with a time step; it holds no state but scratch memory.
+
+    Args:
+        parameters: the numbers of the model.
+        time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
+            drive straight on at constant speed.
+        cell_list_from: the crowd size from which neighbours are found by a cell list (they always
+            are beyond 332, where the ring no longer fits its buffer).
+        detour: whether people see the way round a standing car (ours), or walk into its side and
+            stay there, as by the published forces alone.
+        creep: whether the angle of a vehicle's force takes it to move below the static speed
+            too, or to stand, as its contour does.
+        threads: how many step a crowd of ``THREADS_FROM`` or more; the result is the same, bit by
+            bit.
+
+    Raises:
+        ParameterError: if the time step is not positive and finite, or makes speeds swing, or
+            there are less than one or more than ``MOST_THREADS`` threads.
+    """
+
+    def __init__(
+        self,
+        parameters: VciParameters = SIM,
+        time_step: float = 0.05,
+        *,
+        cell_list_from: int = CELL_LIST_FROM,
+        detour: bool = True,
+        creep: bool = True,
+        threads: int = 1,
+    ) -> None:
+        require_steady(parameters, time_step)
+        if not 1 <= threads <= MOST_THREADS:
+            raise ParameterError(f"threads = {threads}, expected 1 to {MOST_THREADS}")
+        self.parameters = parameters
+        self.time_step = float(time_step)
+        self.cell_list_from = int(cell_list_from)
+        self._substeps = substeps(self.time_step)
+        self._dt = self.time_step / self._substeps
+        self._constants = pack(parameters, detour=detour, creep=creep)
+        self._workspace = Workspace()
+        self._latest: tuple[Crowd | None, Surroundings, Arrays] = None, OPEN_GROUND, ()
+        self._team = _team(threads) if threads > 1 else None
+
+    def step(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> Crowd:
+        """The crowd one time step later; all forces come from the old state.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
+        """
+        after = crowd.copy()
+        self.advance(after, vehicles, surroundings)
+        return after
+
+    def advance(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> None:
+        """Like ``step``, but changes position, velocity and waypoint_index of ``crowd`` in place.
+
+        Bit-equal to ``step``, and allocates nothing unless the crowd has grown.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
+        """
+        if crowd.signals > surroundings.closed.shape[0]:
+            raise unknown_signal(crowd, surroundings)
+        n = crowd.position.shape[0]
+        if n > self._workspace.capacity:
+            self._workspace.reserve(n)
+        people = self._latest[2]
+        if crowd is not self._latest[0] or surroundings is not self._latest[1]:
+            state, memory = crowd.state, self._workspace.arrays
+            people = (*state, *crowd.fixed_arrays, *surroundings.arrays, *memory)
+            people += (*state, crowd.velocity)  # the crowd is its own memory for the state ahead:
+            self._latest = crowd, surroundings, people  # one kernel less to compile
+        time = (self._dt, self._substeps)
+        if self._team is not None and n >= max(THREADS_FROM, self.cell_list_from):
+            bad = self._team.advance(
+                people[:-4], self._workspace, vehicles.array, self._constants, *time
+            )
+        else:
+            law = (self._constants, *time, self.cell_list_from, 0.0)
+            bad = roll_out(people, vehicles.array[None], *law, _NOWHERE)
+        if bad != FINE:
+            raise divergence(bad, crowd, vehicles)
+
+
+def _team(threads: int) -> "CrowdThreads":
+    """The threads; imported here, so that who has one only loads none of their kernels."""
+    from pedestrian_model.vci.threads import CrowdThreads
+
+    return CrowdThreads(threads)

@@ -1,0 +1,167 @@
+"""Forces between two pedestrians: repulsion, collision and navigation, evaluated once per pair.
+
+Distance, direction and the navigational force are shared by the two of a pair; only the
+anisotropy of the repulsion differs. ``pair`` has no branch, no call and no libm function, so that
+the loops round it (``all_pairs.py`` for a small crowd, ``cell_list.py`` for a large one) become vector
+instructions under strict IEEE arithmetic.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import fma, inlined
+from pedestrian_model._mathematics import angle_polynomial, cosine_sine
+from pedestrian_model.vci.buffers import FX, FY, PX, PY, UX, UY, VX, VY
+
+COINCIDENT_2 = 1e-6**2  # [m^2] closer centres have no direction of their own (ours)
+_STANDSTILL_2 = 1e-3**2  # [m^2/s^2] slower relative motion is not navigated round (ours)
+
+
+class PairConstants(NamedTuple):
+    """The constants of the pair loops, held in registers: loads could alias the loops' stores."""
+
+    two_R: float  # noqa: N815
+    r_max_2: float
+    # flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2))
+    d_rep: float
+    s_rep_2: float
+    a_rep: float  # As(phi; l) M_rep/(2 d_rep) = a + b cos phi
+    b_rep: float
+    k_col: float
+    d_nav: float
+    s_nav_2: float
+    decay_0: float  # M_nav/(2 d_nav) Ae(phi) at phi = pi/8, 3 pi/8, 5 pi/8, 7 pi/8
+    decay_1: float
+    decay_2: float
+    decay_3: float
+    cos_pi_8: float
+    sin_pi_8: float
+    g: tuple[float, ...]  # the polynomial for Ae around these angles
+
+
+@inlined
+def pair_constants(c: Any) -> PairConstants:
+    """The constants of the pair loops out of the record of all constants."""
+    g = c.g
+    # fmt: off
+    return PairConstants(
+        c.two_R, c.r_max * c.r_max, c.d_rep, c.s_rep_2, c.a_rep, c.b_rep, c.k_col,
+        c.d_nav, c.s_nav_2, c.decay_0, c.decay_1, c.decay_2, c.decay_3, c.cos_pi_8, c.sin_pi_8,
+        (g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7],
+         g[8], g[9], g[10], g[11], g[12], g[13], g[14], g[15]),
+    )
+    # fmt: on
+
+
+@inlined
+def pair(
+    dx: float,
+    dy: float,
+    length: float,
+    d: float,
+    wx: float,
+    wy: float,
+    ux_i: float,
+    uy_i: float,
+    ux_j: float,
+    uy_j: float,
+    counts: bool,
+    c: PairConstants,
+) -> tuple[float, float, float, float]:
+    """The forces of a pair (i, j) on each other: x, y on i, then x, y on j [N].
+
+    Args:
+        dx: [m] with dy a vector of ``length`` from i to j; its direction is n.
+        dy: see dx.
+        length: see dx.
+        d: [m] from skin to skin.
+        wx: [m/s] with wy the relative velocity v_i - v_j.
+        wy: see wx.
+        ux_i: with uy_i the direction of v_i, zero if it stands; so for j.
+        uy_i: see ux_i.
+        ux_j: see ux_i.
+        uy_j: see ux_i.
+        counts: False makes all forces zero.
+        c: the constants.
+
+    The angle phi of Ae = exp(-l phi) is never formed: with the cross and dot products of w and n,
+    phi is folded into [0, pi/4] and turned by pi/8; exp(-l atan t) is then a polynomial in
+    |t| <= tan(pi/8), times a constant of the quarter.
+    """
+    q_rep = c.d_rep - d
+    f_r = q_rep + math.sqrt(fma(q_rep, q_rep, c.s_rep_2))
+    f_c = c.k_col * max(0.0, -d)
+    q_nav = c.d_nav - d
+    f_n = q_nav + math.sqrt(fma(q_nav, q_nav, c.s_nav_2))
+    moving = fma(wx, wx, wy * wy) >= _STANDSTILL_2
+    along = fma(wx, dx, wy * dy)
+    across = fma(wx, dy, -(wy * dx))
+    steep = abs(across) > abs(along)
+    obtuse = along < 0.0
+    a = min(abs(across), abs(along))
+    b = max(abs(across), abs(along))
+    below = fma(a, c.cos_pi_8, -(b * c.sin_pi_8))
+    above = fma(b, c.cos_pi_8, a * c.sin_pi_8)
+    above = above if moving else 1.0
+    inverse = 1.0 / (length * above)  # one division serves both quotients
+    t = below * (inverse * length)
+    t = -t if steep != obtuse else t
+    inverse = inverse * above if counts else 0.0
+    decay_steep = c.decay_2 if obtuse else c.decay_1
+    decay_flat = c.decay_3 if obtuse else c.decay_0
+    decay = decay_steep if steep else decay_flat
+    decay = -decay if across < 0.0 else decay  # sgn(0) = +1: keep right
+    f_n = f_n * (decay * angle_polynomial(t, c.g))
+    f_n = f_n if moving & counts else 0.0
+    n_x, n_y = dx * inverse, dy * inverse
+    even = fma(f_r, c.a_rep, f_c)
+    odd = f_r * c.b_rep
+    on_i = fma(odd, fma(n_x, ux_i, n_y * uy_i), even)
+    on_j = fma(-odd, fma(n_x, ux_j, n_y * uy_j), even)
+    aside_x, aside_y = f_n * n_y, -f_n * n_x  # along t = (n_y, -n_x)
+    return (
+        fma(-on_i, n_x, aside_x),
+        fma(-on_i, n_y, aside_y),
+        fma(on_j, n_x, -aside_x),
+        fma(on_j, n_y, -aside_y),
+    )
+
+
+@inlined
+def add_coincident(
+    rows: NDArray[np.float64],
+    order: NDArray[np.int64],
+    i: int,
+    stop: int,
+    c: PairConstants,
+) -> None:
+    """The rare pairs of row i with later rows whose centres coincide: a direction by indices."""
+    for j in range(i + 1, stop):
+        dx, dy = rows[PX, j] - rows[PX, i], rows[PY, j] - rows[PY, i]
+        r_2 = fma(dx, dx, dy * dy)
+        if r_2 < COINCIDENT_2:
+            low, high = min(order[i], order[j]), max(order[i], order[j])
+            n_x, n_y = cosine_sine(float((low * 7919 + high * 104729) % 4096))
+            if order[i] > order[j]:
+                n_x, n_y = -n_x, -n_y
+            f = pair(
+                n_x,
+                n_y,
+                1.0,
+                math.sqrt(r_2) - c.two_R,
+                rows[VX, i] - rows[VX, j],
+                rows[VY, i] - rows[VY, j],
+                rows[UX, i],
+                rows[UY, i],
+                rows[UX, j],
+                rows[UY, j],
+                True,
+                c,
+            )
+            rows[FX, i] += f[0]
+            rows[FY, i] += f[1]
+            rows[FX, j] += f[2]
+            rows[FY, j] += f[3]

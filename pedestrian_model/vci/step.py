@@ -1,0 +1,188 @@
+"""One step of the crowd: all forces from the old state, then all states at once."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import borrowed, fma, inlined
+from pedestrian_model.arrays import Arrays
+from pedestrian_model.routes import Routes
+from pedestrian_model.stepping import FINE, first_insane
+from pedestrian_model.vci.buffers import (
+    BLOCK,
+    FX,
+    FY,
+    LARGEST_RING,
+    NVX,
+    NVY,
+    NX,
+    NY,
+    PRIORITY,
+    PX,
+    PY,
+    SOFT,
+    TX,
+    TY,
+    V0,
+    VFX,
+    VFY,
+    VX,
+    VY,
+    Scratch,
+)
+from pedestrian_model.vci.destination import set_targets
+from pedestrian_model.vci.detour import detour
+from pedestrian_model.vci.pairs.all_pairs import add_all_pairs
+from pedestrian_model.vci.pairs.cell_list import add_near_pairs
+from pedestrian_model.vci.vehicle_force import add_near_vehicles, add_vehicles
+from pedestrian_model.vci.wall_force import add_walls
+
+
+class State(NamedTuple):
+    """What a step changes, as in ``Crowd``."""
+
+    position: NDArray[np.float64]  # (n, 2) [m]
+    velocity: NDArray[np.float64]  # (n, 2) [m/s]
+    waypoint_index: NDArray[np.int64]  # (n,)
+
+
+class Scene(NamedTuple):
+    """What a crowd walks among and what it wants: no step changes it."""
+
+    desired_speed: NDArray[np.float64]  # (n,) [m/s]
+    priority: NDArray[np.float64]  # (n,) 0 to 1
+    routes: Routes
+    closed: NDArray[np.bool_]  # (signals,)
+    walls: NDArray[np.float64]  # the lines of ``Walls``
+    wall_cells: NDArray[np.int64]  # and their cells
+
+
+@inlined
+def any_priority(priority: NDArray[np.float64]) -> bool:
+    """Whether anybody has priority."""
+    most = 0.0
+    for i in range(priority.shape[0]):
+        most = max(most, priority[i])
+    return most > 0.0
+
+
+@inlined
+def _fill_priority(
+    rows: NDArray[np.float64], order: NDArray[np.int64], priority: NDArray[np.float64]
+) -> None:
+    """Copy everybody's priority into the rows in ``order``."""
+    for k in range(priority.shape[0]):
+        rows[PRIORITY, k] = priority[order[k]]
+
+
+@inlined
+def gather_forces(
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    priority: NDArray[np.float64],
+    vehicles: NDArray[np.float64],
+    travelled: float,
+    scratch: Scratch,
+    constants: NDArray[Any],
+    cell_list_from: int,
+) -> None:
+    """Fill the rows and their pair and vehicle forces from the state."""
+    n = position.shape[0]
+    rows, index, buffer = scratch
+    relied_on = any_priority(priority)
+    if n >= cell_list_from or n > LARGEST_RING:
+        grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
+        if relied_on:
+            _fill_priority(rows, index[0], priority)
+        add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, relied_on, constants)
+    else:
+        add_all_pairs(rows, index, buffer, position, velocity, constants)
+        if relied_on:
+            _fill_priority(rows, index[0], priority)
+        add_vehicles(rows, n, vehicles, travelled, relied_on, constants[0])
+
+
+@inlined
+def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
+    """The next state of the first n rows: total force, limits, synchronous update.
+
+    With whole blocks no row is left to a scalar loop; what comes of dummies is never read.
+    """
+    m, k_des, F_2, inverse_F = c.m, c.k_des, c.F_2, c.inverse_F
+    most, v_max = c.m * c.a_max, c.v_max
+    x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
+    fx, fy, vfx, vfy = rows[FX], rows[FY], rows[VFX], rows[VFY]
+    to_x, to_y, v0, s_des_2 = rows[TX], rows[TY], rows[V0], rows[SOFT]
+    nx, ny, nvx, nvy = rows[NX], rows[NY], rows[NVX], rows[NVY]
+    for k in range(n):
+        # v_d = v0 (p - x)/sqrt(|p - x|^2 + s_des^2), f_d = k_des (v_d - v)
+        dx, dy = to_x[k] - x[k], to_y[k] - y[k]
+        pace = v0[k] / math.sqrt(fma(dx, dx, fma(dy, dy, s_des_2[k])))
+        f_v = math.sqrt(fma(vfx[k], vfx[k], vfy[k] * vfy[k]))
+        beta = min(1.0, max(0.0, (F_2 - f_v) * inverse_F))
+        # Yang & Özgüner 2019: F = sum (f_r + f_c + f_n) + f_v + beta f_d
+        drive = beta * k_des
+        F_x = fx[k] + vfx[k] + drive * fma(pace, dx, -vx[k])
+        F_y = fy[k] + vfy[k] + drive * fma(pace, dy, -vy[k])
+        # at most m a_max
+        F = math.sqrt(fma(F_x, F_x, F_y * F_y))
+        scale = most / F if most < F else 1.0
+        a_x, a_y = F_x * scale / m, F_y * scale / m
+        # at most v_max at the end of the step
+        end_x, end_y = fma(a_x, dt, vx[k]), fma(a_y, dt, vy[k])
+        speed = math.sqrt(fma(end_x, end_x, end_y * end_y))
+        slower = v_max / speed if speed > v_max else 1.0
+        end_x, end_y = end_x * slower, end_y * slower
+        a_x = (end_x - vx[k]) / dt if speed > v_max else a_x
+        a_y = (end_y - vy[k]) / dt if speed > v_max else a_y
+        nx[k] = fma(fma(0.5 * dt, a_x, vx[k]), dt, x[k])
+        ny[k] = fma(fma(0.5 * dt, a_y, vy[k]), dt, y[k])
+        nvx[k], nvy[k] = end_x, end_y
+
+
+@inlined
+def step_n(
+    state: State,
+    scene: Scene,
+    vehicles: NDArray[np.float64],
+    scratch: Scratch,
+    constants: NDArray[Any],
+    dt: float,
+    substeps: int,
+    cell_list_from: int,
+) -> int:
+    """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index."""
+    c = constants[0]
+    position, velocity, waypoint_index = state
+    desired_speed, priority, routes, closed, walls, wall_cells = scene
+    rows, index = scratch.rows, scratch.sorting
+    n = position.shape[0]
+    insane = first_insane(position, velocity)
+    if n == 0 or insane != FINE:
+        return insane
+    for step in range(substeps):
+        time = step * dt
+        gather_forces(
+            position, velocity, priority, vehicles, time, scratch, constants, cell_list_from
+        )
+        order = index[0]
+        add_walls(rows, n, FX, FY, walls, wall_cells, c)
+        set_targets(rows, order, desired_speed, routes, waypoint_index, closed, c)
+        detour(rows, n, vehicles, c)
+        _integrate(rows, (n + BLOCK - 1) // BLOCK * BLOCK, dt, c)
+        for k in range(n):
+            i = order[k]
+            position[i, 0], position[i, 1] = rows[NX, k], rows[NY, k]
+            velocity[i, 0], velocity[i, 1] = rows[NVX, k], rows[NVY, k]
+    return first_insane(position, velocity)
+
+
+@inlined
+def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
+    """What Python has handed over as one plain tuple, by name."""
+    a = borrowed(arrays)
+    routes = Routes(a[5], a[6], a[7], a[8])
+    scene = Scene(a[3], a[4], routes, a[9], a[10], a[11])
+    return State(a[0], a[1], a[2]), scene, Scratch(a[12], a[13], a[14])

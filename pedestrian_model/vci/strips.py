@@ -1,0 +1,276 @@
+"""A step of a large crowd in domains: threads walk bands of strips at once, to the same bits.
+
+Each domain owns the pedestrians of some strips of the cell list and has a workspace of its own. The
+force on a pedestrian is a sum in the order of the tiles (``cell_list.py``), each summand a function
+of the old state alone. A tile adds to its own strip and to those within reach above it. So a domain
+visits, in the order of the sequential pass, the tiles of its own strips and of the *ghost* strips
+within reach below: whatever is added to its own pedestrians is added there, in the same order.
+From a ghost tile only the candidates that the domain owns are met: a candidate's sum over the tile
+does not depend on the other candidates. What a domain adds to pedestrians of the domain above stays
+in its own workspace and is not used. All else (vehicles, walls, targets, integration) is done for
+each pedestrian by itself. Thus the bits do not depend on the number of domains, and the domains
+never wait for each other.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import inlined, inner, kernel
+from pedestrian_model.arrays import Arrays
+from pedestrian_model.stepping import FINE, first_insane
+from pedestrian_model.vci.buffers import (
+    FX,
+    FY,
+    NVX,
+    NVY,
+    NX,
+    NY,
+    PRIORITY,
+    ROWS,
+    STRIDE,
+    Workspace,
+    aligned,
+    fill_some,
+)
+from pedestrian_model.vci.destination import set_targets_of
+from pedestrian_model.vci.detour import detour
+from pedestrian_model.vci.pairs.cell_list import (
+    _TILE,
+    Grid,
+    _find_segments,
+    _lay_grid,
+    _meet_candidates,
+    _sort,
+)
+from pedestrian_model.vci.pairs.pair_force import add_coincident, pair_constants
+from pedestrian_model.vci.step import _integrate, any_priority, parts
+from pedestrian_model.vci.vehicle_force import add_vehicles_to_strips
+from pedestrian_model.vci.wall_force import add_walls
+
+#: Where ``lay_out`` leaves the grid and the strips at which domains begin.
+_GRID = len(Grid._fields)
+_GHOST = 0.25  # the work of a ghost, relative to a pedestrian's (benchmarks/bench_crowd.py)
+
+
+class DomainMemory:
+    """What one domain works in, and nobody else.
+
+    Attributes:
+        arrays: the rows (ROWS + 1, capacity): one more, so that they can be seen shifted; the
+            buffer of the pair loops; the segments (4, 16).
+    """
+
+    arrays: Arrays
+
+    def __init__(self) -> None:
+        self._buffer = aligned(10 * STRIDE)
+        self._segments = np.zeros((4, 16), dtype=np.int64)
+        self._capacity = -1
+
+    def reserve(self, workspace: Workspace) -> None:
+        """Have room for as many pedestrians as the workspace."""
+        if workspace.capacity > self._capacity:
+            self._capacity = workspace.capacity
+            columns = workspace.arrays[0].shape[1]
+            rows = aligned((ROWS + 1) * columns).reshape(ROWS + 1, columns)
+            self.arrays = (rows, self._buffer, self._segments)
+
+
+def layout_memory(threads: int) -> NDArray[np.float64]:
+    """What ``lay_out`` fills: the grid, then the first strip of each domain and the end."""
+    return np.zeros(_GRID + threads + 1)
+
+
+@inlined
+def _halo(grid: Grid) -> int:
+    """How many strips above its own a tile may reach."""
+    return int(grid.reach * grid.per_y) + 1
+
+
+@kernel
+def lay_out(
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    index: NDArray[np.int64],
+    layout: NDArray[np.float64],
+    constants: NDArray[Any],
+) -> int:
+    """Sort the crowd into cells and divide the strips; ``FINE`` or the first bad index.
+
+    The domains own about equally many pedestrians each, ghosts counted a quarter: of their tiles
+    few candidates are met, and fewer in the uppermost strips. There are fewer domains (the last
+    ones own nothing) where they would consist of ghosts mostly.
+    """
+    n = position.shape[0]
+    insane = first_insane(position, velocity)
+    if insane != FINE:
+        return insane
+    grid = _lay_grid(position, constants[0].r_max, index.shape[1] - 2)
+    _sort(index, position, grid)
+    first, columns, strips, halo = index[2], grid.columns, grid.strips, _halo(grid)
+    layout[0], layout[1], layout[2], layout[3] = grid.x_0, grid.y_0, grid.per_x, grid.per_y
+    layout[4], layout[5], layout[6], layout[7] = columns, strips, grid.reach, grid.slack
+    most = layout.shape[0] - _GRID - 1
+    domains = max(1, min(most, strips // (2 * halo)))
+    strip, work = 0, 0.0
+    ghosts = n * _GHOST * halo / strips  # the work of a domain's ghosts, in pedestrians
+    whole = n + ghosts * (domains - 1)
+    for domain in range(most + 1):
+        layout[_GRID + domain] = strips
+    layout[_GRID] = 0.0
+    for domain in range(1, domains):
+        while strip < strips and work < domain * whole / domains - ghosts * (domain - 1):
+            strip += 1
+            work = float(first[strip * columns])
+        layout[_GRID + domain] = strip
+    return FINE
+
+
+@inner
+def _add_pairs(
+    rows: NDArray[np.float64],
+    index: NDArray[np.int64],
+    buffer: NDArray[np.float64],
+    segments: NDArray[np.int64],
+    grid: Grid,
+    begin_strip: int,
+    end_strip: int,
+    filled: int,
+    constants: NDArray[Any],
+) -> None:
+    """The forces of all pairs on the rows of the strips begin_strip ... end_strip - 1.
+
+    A function of its own in machine code, as ``add_near_pairs``.
+
+    Args:
+        rows: of the domain, filled as far as its tiles and those of its ghosts reach.
+        index: order and cells.
+        buffer: of the domain.
+        segments: of the domain.
+        grid: of the cells.
+        begin_strip: the domain's first strip.
+        end_strip: its last plus one.
+        filled: the last row that is filled, plus one.
+        constants: of the model.
+    """
+    c = pair_constants(constants[0])
+    order, first = index[0], index[2]
+    own = first[begin_strip * grid.columns]
+    for strip in range(max(0, begin_strip - _halo(grid)), end_strip):
+        for left in range(0, grid.columns, _TILE):
+            begin = first[strip * grid.columns + left]
+            end = first[strip * grid.columns + min(left + _TILE, grid.columns)]
+            if begin == end:
+                continue
+            count = _find_segments(rows, first, segments, begin, end, strip, grid)
+            if strip < begin_strip:
+                count = _keep_own(segments, count, own)
+            if _meet_candidates(rows, begin, end, segments, count, buffer, c) > 0:
+                for i in range(begin, end):
+                    add_coincident(rows, order, i, filled, c)
+
+
+@inlined
+def _keep_own(segments: NDArray[np.int64], count: int, own: int) -> int:
+    """Leave out the segments before row ``own``; how many are left."""
+    kept = 0
+    for k in range(count):
+        if segments[0, k] >= own:
+            segments[0, kept], segments[1, kept] = segments[0, k], segments[1, k]
+            kept += 1
+    return kept
+
+
+@inlined
+def _shifted(rows: NDArray[np.float64], by: int) -> NDArray[np.float64]:
+    """The rows seen from column ``by`` on, contiguous: (ROWS, columns), the last ones nonsense."""
+    columns = rows.shape[1]
+    return rows.reshape(-1)[by : by + ROWS * columns].reshape(ROWS, columns)
+
+
+@kernel
+def step_domain(
+    arrays: Arrays,
+    memory: Arrays,
+    layout: NDArray[np.float64],
+    domain: int,
+    after: NDArray[np.float64],
+    vehicles: NDArray[np.float64],
+    travelled: float,
+    constants: NDArray[Any],
+    dt: float,
+) -> None:
+    """The next state of one domain's pedestrians, and the way-points that they have passed.
+
+    Args:
+        arrays: those of State, Scene and Scratch, one after the other; of the scratch only the
+            sorted index is read, of the state only the way-points' index is changed.
+        memory: of ``DomainMemory``.
+        layout: by ``lay_out``.
+        domain: which.
+        after: (n, 4) the next positions and velocities; filled.
+        vehicles: (m, 7).
+        travelled: [s] for which the vehicles have driven straight on since.
+        constants: of the model.
+        dt: [s].
+    """
+    state, scene, scratch = parts(arrays)
+    rows, buffer, segments = memory
+    begin_strip, end_strip = int(layout[_GRID + domain]), int(layout[_GRID + domain + 1])
+    if begin_strip >= end_strip:
+        return
+    c, index = constants[0], scratch.sorting
+    grid = Grid(
+        layout[0],
+        layout[1],
+        layout[2],
+        layout[3],
+        int(layout[4]),
+        int(layout[5]),
+        layout[6],
+        layout[7],
+    )
+    order, first, halo = index[0], index[2], _halo(grid)
+    start, stop = first[begin_strip * grid.columns], first[end_strip * grid.columns]
+    begin = first[max(0, begin_strip - halo) * grid.columns]
+    filled = first[min(grid.strips, end_strip + halo) * grid.columns]
+    fill_some(rows, order, state.position, state.velocity, begin, filled)
+    _add_pairs(rows, index, buffer, segments, grid, begin_strip, end_strip, filled, constants)
+    mine, who, n = _shifted(rows, start), order[start:stop], stop - start
+    relied_on = any_priority(scene.priority)
+    if relied_on:
+        for k in range(n):
+            mine[PRIORITY, k] = scene.priority[who[k]]
+    add_vehicles_to_strips(
+        rows, first, grid, begin_strip, end_strip, vehicles, travelled, relied_on, constants
+    )
+    add_walls(mine, n, FX, FY, scene.walls, scene.wall_cells, c)
+    set_targets_of(
+        n,
+        mine,
+        who,
+        scene.desired_speed,
+        scene.routes,
+        state.waypoint_index,
+        scene.closed,
+        c,
+    )
+    detour(mine, n, vehicles, c)
+    _integrate(mine, n, dt, c)
+    for k in range(n):
+        i = who[k]
+        after[i, 0], after[i, 1] = mine[NX, k], mine[NY, k]
+        after[i, 2], after[i, 3] = mine[NVX, k], mine[NVY, k]
+
+
+@kernel
+def write_back(
+    position: NDArray[np.float64], velocity: NDArray[np.float64], after: NDArray[np.float64]
+) -> int:
+    """Copy the next state into the present one; ``FINE`` or the first bad index."""
+    for i in range(position.shape[0]):
+        position[i, 0], position[i, 1] = after[i, 0], after[i, 1]
+        velocity[i, 0], velocity[i, 1] = after[i, 2], after[i, 3]
+    return first_insane(position, velocity)

@@ -1,0 +1,217 @@
+"""Walls: the nearest wall point of each pedestrian, and its force into the walkable side.
+
+A wall is a directed segment, walkable on its left. Which walls can be the nearest to a place is
+looked up in a grid of cells, built once. Where two walls meet, a place is on the walkable side if
+it is on the side of the sum of their normals: either normal alone is wrong behind a sharp corner.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import inlined, kernel
+
+REACH = 2.0  # [m] no wall is felt further away: exp(-b_w s) is nothing long before
+DEPTH = 1.0  # [m] who is further behind a wall than this is let go (ours)
+JOINED = 0.01  # [m] ends of walls closer than this are one corner
+
+#: Columns of the walls: start, unit vector along, length, sum of the normals at either end.
+#: Row 0 is the grid (see ``Grid``), the walls follow.
+X_0, Y_0, T_X, T_Y, LENGTH, N0_X, N0_Y, N1_X, N1_Y, COLUMNS = range(10)
+
+_AT = 1e-9  # [m] closer to a wall's end there is no direction from it; also equal distances
+_LEAST_EXPONENT = -700.0  # exp underflows below
+
+
+class Grid(NamedTuple):
+    """Where the cells of the walls lie: row 0 of the walls.
+
+    The cells themselves are one array of int64: for each cell and for their end, where in this
+    array its members begin; then the members, rows of the walls.
+    """
+
+    x_0: float  # [m] the lower left corner
+    y_0: float
+    per_metre: float  # [1/m] cells
+    columns: float
+    strips: float
+
+
+@inlined
+def _grid(walls: NDArray[np.float64]) -> Grid:
+    return Grid(walls[0, 0], walls[0, 1], walls[0, 2], walls[0, 3], walls[0, 4])
+
+
+@inlined
+def _cell(x: float, y: float, g: Grid) -> int:
+    """The cell of a place, or -1 outside the grid."""
+    column, strip = np.floor((x - g.x_0) * g.per_metre), np.floor((y - g.y_0) * g.per_metre)
+    if 0.0 <= column < g.columns and 0.0 <= strip < g.strips:
+        return int(strip) * int(g.columns) + int(column)
+    return -1
+
+
+class _Wall(NamedTuple):
+    """One of the lines: scalars, because passing arrays about costs a count of each."""
+
+    x: float  # [m] its start
+    y: float
+    t_x: float  # the unit vector along it
+    t_y: float
+    length: float  # [m]
+    N0_x: float  # the sum of the normals at its start
+    N0_y: float
+    N1_x: float  # and at its end
+    N1_y: float
+
+
+@inlined
+def _wall(line: NDArray[np.float64]) -> _Wall:
+    # fmt: off
+    return _Wall(
+        line[0], line[1], line[2], line[3], line[4], line[5], line[6], line[7], line[8]
+    )
+    # fmt: on
+
+
+@inlined
+def _to_wall(x: float, y: float, w: _Wall) -> tuple[float, float, float, bool]:
+    """From the nearest point of a wall to (x, y): vector, its square, and if it is walkable there.
+
+    Within the wall's length, the vector is along its normal.
+    """
+    dx, dy = x - w.x, y - w.y
+    along = w.t_x * dx + w.t_y * dy
+    if 0.0 < along < w.length:
+        across = w.t_x * dy - w.t_y * dx
+        return -across * w.t_y, across * w.t_x, across * across, across >= 0.0
+    N_x, N_y = w.N0_x, w.N0_y
+    if along > 0.0:
+        dx, dy = dx - w.length * w.t_x, dy - w.length * w.t_y
+        N_x, N_y = w.N1_x, w.N1_y
+    return dx, dy, dx * dx + dy * dy, N_x * dx + N_y * dy >= -_AT
+
+
+@inlined
+def find_walls(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    n: int,
+    walls: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    s: NDArray[np.float64],
+    n_x: NDArray[np.float64],
+    n_y: NDArray[np.float64],
+) -> None:
+    """Fill the signed distance of each place from the nearest wall and the unit normal there.
+
+    The distance is negative behind the wall; the normal points into the walkable side. Out of
+    reach of any wall they are inf and zero.
+    """
+    grid = _grid(walls)
+    for k in range(n):
+        best, best_x, best_y, inside, t_x, t_y = np.inf, 0.0, 0.0, True, 0.0, 0.0
+        cell = _cell(x[k], y[k], grid)
+        for at in range(cells[cell], cells[cell + 1] if cell >= 0 else 0):
+            wall = _wall(walls[cells[at]])
+            dx, dy, square, walkable = _to_wall(x[k], y[k], wall)
+            # of two walls back to back, the one whose walkable side this is counts
+            tie = abs(square - best) <= _AT * square
+            if (square < best and not tie) or (tie and walkable and not inside):
+                best, best_x, best_y, inside = square, dx, dy, walkable
+                t_x, t_y = wall.t_x, wall.t_y
+        distance = math.sqrt(best)
+        if distance <= _AT:  # on the wall there is no direction from it: its own normal
+            distance, best_x, best_y, best = 0.0, -t_y, t_x, 1.0
+        sign = 1.0 if inside else -1.0
+        inverse = sign / math.sqrt(best)
+        s[k], n_x[k], n_y[k] = sign * distance, best_x * inverse, best_y * inverse
+
+
+@kernel
+def sort_walls(
+    walls: NDArray[np.float64], closest: NDArray[np.float64], cells: NDArray[np.int64], phase: int
+) -> None:
+    """One of the three passes that sort the walls into the cells of the grid.
+
+    A wall belongs to a cell if it may be the nearest to any place there: with h half the cell's
+    diagonal, if it is no further from the centre than the closest one plus 2 h, or than
+    ``REACH`` + h. Pass 0 finds the closest distance of each cell; pass 1 counts the walls of cell
+    i in ``cells[i + 1]``; pass 2 puts the members where ``cells[i]`` says and moves that on.
+    """
+    g = _grid(walls)
+    side = 1.0 / g.per_metre
+    h = side * math.sqrt(0.5)
+    for j in range(1, walls.shape[0]):
+        wall = _wall(walls[j])
+        end_x, end_y = wall.x + wall.length * wall.t_x, wall.y + wall.length * wall.t_y
+        left = _index(min(wall.x, end_x) - REACH - side, g.x_0, g.per_metre, g.columns)
+        right = _index(max(wall.x, end_x) + REACH + side, g.x_0, g.per_metre, g.columns)
+        low = _index(min(wall.y, end_y) - REACH - side, g.y_0, g.per_metre, g.strips)
+        high = _index(max(wall.y, end_y) + REACH + side, g.y_0, g.per_metre, g.strips)
+        for strip in range(low, high + 1):
+            for column in range(left, right + 1):
+                x, y = g.x_0 + (column + 0.5) * side, g.y_0 + (strip + 0.5) * side
+                distance = math.sqrt(_to_wall(x, y, wall)[2])
+                cell = strip * int(g.columns) + column
+                if phase == 0:
+                    closest[cell] = min(closest[cell], distance)
+                elif distance <= min(closest[cell] + 2.0 * h, REACH + h) * (1.0 + 1e-9):
+                    if phase == 1:
+                        cells[cell + 1] += 1
+                    else:
+                        cells[cells[cell]] = j
+                        cells[cell] += 1
+
+
+@inlined
+def _index(x: float, x_0: float, per_metre: float, count: float) -> int:
+    """The column (or strip) of a coordinate, the nearest there is."""
+    return int(min(max(np.floor((x - x_0) * per_metre), 0.0), count - 1.0))
+
+
+@inlined
+def _follower(j: int, walls: NDArray[np.float64], cells: NDArray[np.int64]) -> int:
+    """The wall that goes on where wall j ends, along the same walkable ground; 0 if none does."""
+    wall = _wall(walls[j])
+    x, y = wall.x + wall.length * wall.t_x, wall.y + wall.length * wall.t_y
+    cell = _cell(x, y, _grid(walls))
+    found, sharpest, closest = 0, -np.inf, np.inf
+    for at in range(cells[cell], cells[cell + 1]):
+        other = _wall(walls[cells[at]])
+        apart = math.sqrt((other.x - x) ** 2 + (other.y - y) ** 2)
+        if cells[at] == j or apart > JOINED or apart > closest + _AT:
+            continue
+        # Where many meet, the sharpest turn to the left bounds the same walkable ground (rises
+        # with the angle, from -2 to 2); straight back is the tip of a thin wall, the last choice.
+        dot = wall.t_x * other.t_x + wall.t_y * other.t_y
+        left = wall.t_x * other.t_y - wall.t_y * other.t_x >= 0.0 and dot > _AT - 1.0
+        turn = 1.0 - dot if left else dot - 1.0
+        if apart < closest - _AT or turn > sharpest:
+            found, sharpest, closest = cells[at], turn, min(apart, closest)
+    return found
+
+
+@kernel
+def join_walls(walls: NDArray[np.float64], cells: NDArray[np.int64]) -> None:
+    """Fill the sums of the normals where the end of one wall is the start of another."""
+    for j in range(1, walls.shape[0]):
+        i = _follower(j, walls, cells)
+        if i > 0:
+            n_x, n_y = -walls[j, T_Y] - walls[i, T_Y], walls[j, T_X] + walls[i, T_X]
+            walls[j, N1_X], walls[j, N1_Y] = n_x, n_y
+            walls[i, N0_X], walls[i, N0_Y] = n_x, n_y
+
+
+@kernel
+def nearest_walls(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    walls: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    out: NDArray[np.float64],
+) -> None:
+    """Fill ``out`` (3, n): signed distance and unit normal into the walkable side, x and y."""
+    find_walls(x, y, x.shape[0], walls, cells, out[0], out[1], out[2])
