@@ -2,8 +2,8 @@
 
 Distance, direction and the navigational force are shared by the two of a pair; only the
 anisotropy of the repulsion differs. ``pair`` has no branch, no call and no libm function, so that
-the loops round it (``all_pairs.py`` for a small crowd, ``cell_list.py`` for a large one) become vector
-instructions under strict IEEE arithmetic.
+the loops round it (``all_pairs.py`` for a small crowd, ``cell_list.py`` for a large one) become
+vector instructions under strict IEEE arithmetic.
 """
 
 import math
