@@ -128,41 +128,32 @@ def mean_of(values: list[float], name: str) -> str:
     sample = np.array(values)
     seed = seed_of(["clairvoyant", name])
     between = mean_interval(sample, confidence=0.95, resamples=2000, seed=seed)
-    return f"{sample.mean():7.2f} [{between.low:6.2f}, {between.high:6.2f}]"
+    return f"{sample.mean():.1f} [{between.low:.1f}, {between.high:.1f}]"
 
 
 def show(found: list[Found]) -> None:
-    """The tables."""
-    print(f"{'driven by':26}{'completion [s]':24}{'below d_safe [s]':24}")
+    """Print the tables as Markdown."""
+    print("| driven by | completion [s] | somebody nearer than d_safe [s] |\n" + "|---" * 3 + "|")
     for name in CONTROLLERS:
         times, below = zip(*(each.driven[name] for each in found), strict=True)
-        print(f"{name:26}{mean_of(list(times), name)} {mean_of(list(below), name + ' below')}")
+        print(f"| `{name}` | {mean_of(list(times), name)} | {mean_of(list(below), f'{name} b')} |")
+    titles = ["who knows the future, recorded before", *(f"{price} [s]" for price in PRICES)]
+    titles += [f"of what `pid-tuned` can gain, `{name}`" for name in CONTROLLERS[1:]]
+    print(f"\n| {' | '.join(titles)} |")
+    print("|---" * len(titles) + "|")
+    mean = {name: np.mean([each.driven[name][0] for each in found]) for name in CONTROLLERS}
+    base = mean["pid-tuned"]
     for recording in RECORDINGS:
-        print(f"\nknowing the future of the crowd where it is '{recording}'")
+        texts, times = [recording], {}
         for price in PRICES:
             motions = [each.bound[recording, price] for each in found]
-            name = f"{recording} {price}"
-            times = mean_of([m.completion_time for m in motions], name)
-            below = mean_of([m.time_below for m in motions], name + " below")
-            contacts = sum(m.contact_time > 0.0 for m in motions)
-            note = f"  contact cannot be avoided: {contacts}" if contacts else ""
-            print(f"{price:26}{times} {below}{note}")
-    show_gains(found)
-
-
-def show_gains(found: list[Found]) -> None:
-    """How much of what can be gained on pid-tuned each MPC gains."""
-    base = np.mean([each.driven["pid-tuned"][0] for each in found])
-    print(
-        "\nwhat can be gained on pid-tuned by avoiding contact only, and who gains how much of it"
-    )
-    for recording in RECORDINGS:
-        least = np.mean([each.bound[recording, "contact avoided"][0] for each in found])
-        mean = {name: np.mean([each.driven[name][0] for each in found]) for name in CONTROLLERS}
-        shares = ", ".join(
-            f"{name} {(base - mean[name]) / (base - least):.0%}" for name in CONTROLLERS[1:]
-        )
-        print(f"{recording:26}{base - least:7.2f} s: {shares}")
+            times[price] = [motion.completion_time for motion in motions]
+            contacts = sum(motion.contact_time > 0.0 for motion in motions)
+            note = f" ({contacts} with contact)" if contacts else ""
+            texts.append(mean_of(times[price], f"{recording} {price}") + note)
+        gain = base - np.mean(times["contact avoided"])
+        texts += [f"{(base - mean[name]) / gain:.0%}" for name in CONTROLLERS[1:]]
+        print(f"| {' | '.join(texts)} |")
 
 
 @in_house_style

@@ -202,28 +202,22 @@ def _by_seed(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def show(rows: pd.DataFrame) -> None:
-    """All tables, as Markdown."""
+    """Print all tables as Markdown."""
     recordings = list(dict.fromkeys(rows[rows.motion == FRONT].recording))
     drivers = list(dict.fromkeys(rows[rows.motion == DRIVEN].recording))
-    groups = groups_of(rows)
-    for group in groups:
-        print(f"\n{group.name}: {len(group.base)} crowds\n")
-        titles = ("", "time [s]", "delay saved", "people-seconds", "PET < 1 s", "more of them")
-        print("| " + " | ".join(titles) + " |\n" + "|---" * len(titles) + "|")
-        for name in drivers:
-            _row(group, f"`{name}`", group.means(name, DRIVEN))
-        for recording in recordings:
-            fastest, spared = group.ends(recording)
-            _row(group, f"{recording}: time alone", fastest)
-            _row(group, f"{recording}: {NO_WORSE}", group.means(recording, NO_WORSE))
-            _row(group, f"{recording}: as few as can be", spared)
-    titles = ("scene", "recording", "same share", f"+{MARGIN}", f"+{MARGIN} for certain",
-              f"{100 * ENOUGH:.0f} % saved", "no crowd worse off", NO_WORSE)  # fmt: skip
-    print("\n| " + " | ".join(titles) + " |\n" + "|---" * len(titles) + "|")
-    for group in groups:
+    *scenes, pooled = groups_of(rows)
+    _table("driven by", "time [s]", "delay saved", "PET < 1 s", "more of them")
+    for name in drivers:
+        means = pooled.means(name, DRIVEN)
+        mean, saved = means.mean(), pooled.saved(means).percent
+        more = pooled.more(means).difference
+        _line(f"`{name}`", f"{mean.time:.1f}", saved, f"{mean.share:.3f}", more)
+    _table("scene", "recording", "same share", f"+{MARGIN}", f"+{MARGIN} with its interval",
+           f"{100 * ENOUGH:.0f} % saved: more met", "no crowd worse off", NO_WORSE)  # fmt: skip
+    for group in (pooled, *scenes):
         for recording in recordings:
             least, most = (group.saved(means).value for means in group.in_each(recording))
-            told = (
+            _line(
                 group.name,
                 recording,
                 group.saved_at(recording, 0.0).percent,
@@ -233,12 +227,18 @@ def show(rows: pd.DataFrame) -> None:
                 f"{100 * least:.0f} to {100 * most:.0f} %",
                 group.saved(group.means(recording, NO_WORSE)).percent,
             )
-            print("| " + " | ".join(told) + " |")
-
     beyond = faster_than_front(rows)
     faster = beyond[beyond > 1e-6]
     print(f"\n{faster.size} of {beyond.size} drives are faster than their own recording's front, "
-          f"by {faster.max(initial=0.0):.2f} s at most")  # fmt: skip
+          f"by {faster.max(initial=0.0):.2f} s at most.")  # fmt: skip
+
+
+def _table(*titles: str) -> None:
+    print("\n| " + " | ".join(titles) + " |\n" + "|---" * len(titles) + "|")
+
+
+def _line(*texts: str) -> None:
+    print("| " + " | ".join(texts) + " |")
 
 
 def faster_than_front(rows: pd.DataFrame) -> np.ndarray:
@@ -252,17 +252,3 @@ def faster_than_front(rows: pd.DataFrame) -> np.ndarray:
                 drive = driven.loc[recording]
                 found.append(np.interp(-drive.share, -front[:, 1], front[:, 0]) - drive.time)
     return np.array(found)
-
-
-def _row(group: Group, name: str, means: pd.DataFrame) -> None:
-    mean = means.mean()
-    contact = f" ({np.count_nonzero(means.contact)} contacts)" if mean.contact else ""
-    told = (
-        name + contact,
-        f"{mean.time:.1f}",
-        group.saved(means).percent,
-        f"{mean.met:.1f}",
-        f"{mean.share:.3f}",
-        group.more(means).difference,
-    )
-    print("| " + " | ".join(told) + " |")

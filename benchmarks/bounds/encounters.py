@@ -104,15 +104,16 @@ def main() -> None:
         save_figure(picture(options.first), options.figure)
         return
     seeds = range(options.first, options.first + options.seeds)
-    print("density    people  slowed  pid-tuned [s]  clairvoyant [s]  gain: median [s]  >= 1 s")
+    print("| density | people | slowed | `pid-tuned` [s] | clairvoyant [s] | gain, median [s] "
+          "| gain of at least 1 s |\n" + "|---" * 7 + "|")  # fmt: skip
     with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
         for name, people in DENSITIES.items():
             found = pool.map(examine, [Task(seed, people) for seed in seeds], 1)
             slowed, time, bound = (np.array(column, float) for column in zip(*found, strict=True))
             gain = time - bound
             print(
-                f"{name:10} {people:6} {slowed.mean():7.1%} {time.mean():14.2f} "
-                f"{bound.mean():16.2f} {np.median(gain):17.2f} {np.mean(gain >= 1.0):7.1%}",
+                f"| {name} | {people} | {slowed.mean():.0%} | {time.mean():.2f} | "
+                f"{bound.mean():.2f} | {np.median(gain):.2f} | {np.mean(gain >= 1.0):.0%} |",
                 flush=True,
             )
 

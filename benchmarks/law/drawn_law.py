@@ -98,7 +98,7 @@ def main() -> None:
         made = drive_all(config, drawn, folder, options.jobs)
         print(f"{seed}: {words}\n\n{table(made)}\n", flush=True)
         everywhere += made
-    print(f"All networks\n\n{table(everywhere)}")
+    print(f"---\n{table(everywhere)}")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,11 @@
-"""What each dependency costs: python benchmarks/speed/install_cost.py [--write docs/install.md].
+"""What each dependency costs: python benchmarks/speed/install_cost.py.
 
 From the environment that runs it: the size of what is installed, of what only this dependency
 brings along, and the processor time of importing it alone, the median of three fresh processes.
-``--write`` puts the tables between their marks in a page.
 """
 
 from __future__ import annotations
 
-import argparse
 import re
 import subprocess
 import sys
@@ -123,10 +121,7 @@ def extras_table(project: dict[str, Any], there: set[str]) -> list[str]:
 
 
 def main() -> None:
-    """Print the tables, or write them into a page."""
-    parser = argparse.ArgumentParser(description="What each dependency of giveway costs.")
-    parser.add_argument("--write", type=Path, help="a page with marks for the tables")
-    arguments = parser.parse_args()
+    """Print the table of the extras and that of the dependencies."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     names = [name_of(Requirement(text).name) for text in project["dependencies"]]
     base = {name: needs(name) for name in names}
@@ -139,15 +134,7 @@ def main() -> None:
         f"Together {len(there)} packages of {sum(map(size, there)):.0f} MB.",
     ]
     extras = ["| extra | packages | adds, MB |", "|---|---|---|", *extras_table(project, there)]
-    for mark, text in (("dependencies", lines), ("extras", extras)):
-        if arguments.write is None:
-            print("\n".join(text), "\n")
-            continue
-        page = arguments.write.read_text(encoding="utf-8")
-        pattern = rf"(<!-- {mark} -->\n).*?(<!-- end of {mark} -->)"
-        body = "\n".join(text)
-        page = re.sub(pattern, lambda m, body=body: f"{m[1]}{body}\n{m[2]}", page, flags=re.DOTALL)
-        arguments.write.write_text(page, encoding="utf-8")
+    print("\n".join([*extras, "---", *lines]))
 
 
 if __name__ == "__main__":

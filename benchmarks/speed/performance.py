@@ -1,10 +1,8 @@
-"""Every figure of docs/performance.md: python benchmarks/speed/performance.py [--write] [FILE ...].
+"""Ratios of times next to the kept ones: python benchmarks/speed/performance.py --quick.
 
-Those that are named run, or all. Without a choice, they run in turn and print. ``--write`` puts
-what they print into docs/performance.md, each between the marks that name it, with the machine and
-the versions: on an otherwise idle machine. ``--quick`` takes a few ratios in short runs and shows
-them next to the kept ones (kept_ratios.json); ``--keep`` keeps them. The exit code never depends on
-a time.
+``--quick`` takes a few ratios in short runs and shows them next to the kept ones
+(kept_ratios.json); ``--keep`` keeps them. The exit code never depends on a time. ``--machine``
+prints with what docs/performance.md is made, ``python benchmarks/evidence performance``.
 """
 
 from __future__ import annotations
@@ -21,24 +19,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-PAGE = HERE.parents[1] / "docs" / "performance.md"
 KEPT = HERE / "kept_ratios.json"
 TOLERANCE = 1.6  # times the kept ratio, either way: another machine, and a busy one
 PACKAGES = ("numpy", "numba", "llvmlite", "osqp", "libsumo", "fmpy", "pandas")
-#: What the page shows, the default controller first.
-COMMANDS = (
-    "bench_loop.py",
-    "bench_scenario.py",
-    "bench_crowd.py",
-    "bench_crowd_threads.py",
-    "bench_models.py",
-    "bench_qp.py",
-    "bench_fmu.py",
-    "bench_controller.py",
-    "bench_study.py --runs 60 --crowds 60 --memory 1000",
-    "bench_start.py --cold",
-    "bench_metrics.py",
-)
 #: Short runs, and where their ratios stand in what they print.
 QUICK = {
     "bench_loop.py --pairs 3": r"^(?P<name>[\w-]+), 30 .*\n.*moves and steps.*: (?P<ratio>[\d.]+)",
@@ -76,32 +59,6 @@ def machine() -> str:
     )
 
 
-def filled(page: str, name: str, text: str) -> str:
-    """The page with ``text`` between the marks of that name.
-
-    Raises:
-        ValueError: the page has no such marks.
-    """
-    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
-    before, mark, rest = page.partition(begin)
-    _, other, after = rest.partition(end)
-    if not (mark and other):
-        raise ValueError(f"docs/performance.md: no marks '{begin.strip()}' and '{end}'")
-    return f"{before}{begin}{text}\n{end}{after}"
-
-
-def write(commands: tuple[str, ...]) -> None:
-    """Fill the page, part by part: what a benchmark that fails leaves undone is as it was."""
-    page = filled(PAGE.read_text(encoding="utf-8"), "machine", machine())
-    for command in commands:
-        print(command, flush=True)
-        script = command.split()[0]
-        page = filled(
-            page, script, f"```\n$ python benchmarks/speed/{command}\n{printed(command)}\n```"
-        )
-        PAGE.write_text(page, encoding="utf-8")
-
-
 def ratios() -> dict[str, float]:
     """The ratios of the short runs, by benchmark and name."""
     found = {}
@@ -124,24 +81,19 @@ def compared(now: dict[str, float], kept: dict[str, float]) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    choice = parser.add_mutually_exclusive_group()
-    choice.add_argument("--write", action="store_true", help="into docs/performance.md")
+    choice = parser.add_mutually_exclusive_group(required=True)
     choice.add_argument("--quick", action="store_true", help="a few ratios next to the kept ones")
     choice.add_argument("--keep", action="store_true", help="keep these ratios")
-    parser.add_argument("only", nargs="*", help="benchmarks, by their files; all, unless given")
+    choice.add_argument("--machine", action="store_true", help="processor and versions")
     options = parser.parse_args()
-    commands = tuple(c for c in COMMANDS if not options.only or c.split()[0] in options.only)
-    if options.write:
-        write(commands)
-    elif options.quick or options.keep:
-        kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
-        now = ratios()
-        print("\n".join(compared(now, kept)))
-        if options.keep:
-            KEPT.write_text(json.dumps(now, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    else:
-        for command in commands:
-            print(f"== {command}\n{printed(command)}", flush=True)
+    if options.machine:
+        print(machine())
+        return
+    kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+    now = ratios()
+    print("\n".join(compared(now, kept)))
+    if options.keep:
+        KEPT.write_text(json.dumps(now, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
