@@ -37,6 +37,11 @@ def file_digest(path: Path) -> str:
 
 @functools.cache
 def _room_digest(room: Path) -> str:
+    if not room.exists():
+        raise FileNotFoundError(
+            f"{room}: no such room; expected a folder or file of the repository: name it in "
+            "benchmarks/evidence/pages.py"
+        )
     whole = hashlib.sha256()
     for path in sorted(room.rglob("*")) if room.is_dir() else [room]:
         if path.suffix == ".py":

@@ -5,27 +5,16 @@ from pathlib import Path
 
 import performance
 import pytest
+from pages import PAGES
 
 HOUSE = Path(__file__).parents[3]
 
 
-def test_the_page_has_a_place_for_each_command():
-    page = performance.PAGE.read_text(encoding="utf-8")
-    for name in ("machine", *(command.split()[0] for command in performance.COMMANDS)):
-        page = performance.filled(page, name, f"what {name} prints")
-        assert f"<!-- {name} -->\nwhat {name} prints\n<!-- end of {name} -->" in page
-
-
-def test_a_page_without_the_place_is_refused():
-    with pytest.raises(ValueError, match="no marks '<!-- machine -->'"):
-        performance.filled("nothing", "machine", "text")
-
-
-def test_each_command_is_a_benchmark_and_each_benchmark_is_in_it():
-    scripts = {command.split()[0] for command in performance.COMMANDS}
-    assert scripts == {path.name for path in (HOUSE / "benchmarks" / "speed").glob("bench_*.py")}
-    assert {command.split()[0] for command in performance.QUICK} <= scripts
-    assert performance.COMMANDS[0] == "bench_loop.py"
+def test_each_benchmark_has_a_block_of_the_page():
+    scripts = [block.name for block in PAGES["performance"].blocks if block.name != "machine"]
+    benchmarks = HOUSE / "benchmarks" / "speed"
+    assert sorted(scripts) == sorted(path.name for path in benchmarks.glob("bench_*.py"))
+    assert {command.split()[0] for command in performance.QUICK} <= set(scripts)
 
 
 def test_a_short_run_tells_its_ratios_and_a_failure_is_not_hidden():
