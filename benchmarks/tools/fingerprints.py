@@ -1,11 +1,11 @@
 """The sha256 of each column of ten fixed runs: a change that only moves code changes none of them.
 
-Run: python benchmarks/fingerprints.py --write before.json
-     python benchmarks/fingerprints.py --compare before.json [--only NAME]
+Run: python benchmarks/tools/fingerprints.py --write before.json
+     python benchmarks/tools/fingerprints.py --compare before.json [--only NAME]
 
 Each run is a process of its own, and only public names are used, so that two states of the
-repository can be compared: ``PYTHONPATH=OTHER_CHECKOUT python benchmarks/fingerprints.py ...``.
-``timing.csv`` is left out: it holds computing times. A column that is new is named and is no
+repository can be compared:
+``PYTHONPATH=OTHER_CHECKOUT python benchmarks/tools/fingerprints.py ...``. ``timing.csv`` is left out: it holds computing times. A column that is new is named and is no
 difference.
 """
 
