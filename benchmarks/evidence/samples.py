@@ -68,7 +68,7 @@ LIGHTS = Study(
             "scenario": ROADS,
             "plans": {
                 "told": {},
-                "not told": {"perception": {"signal_plans": False}},
+                "not told": {"rules": {"signal_advice": False}},
             },
         },
         "comparison": {"factor": "plans", "baseline": "not told"},

@@ -5,8 +5,8 @@ Run: python benchmarks/tools/fingerprints.py --write before.json
 
 Each run is a process of its own, and only public names are used, so that two states of the
 repository can be compared:
-``PYTHONPATH=OTHER_CHECKOUT python benchmarks/tools/fingerprints.py ...``. ``timing.csv`` is left out: it holds computing times. A column that is new is named and is no
-difference.
+``PYTHONPATH=OTHER_CHECKOUT python benchmarks/tools/fingerprints.py ...``. ``timing.csv``
+is left out: it holds computing times. A column that is new is named and is no difference.
 """
 
 from __future__ import annotations
