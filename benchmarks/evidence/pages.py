@@ -285,7 +285,7 @@ PAGES: dict[str, Page] = {
                     Command(
                         "law/road_campaign.py --seeds 3 --out {out} --jobs {jobs}",
                         "seeds 1 to 3",
-                        "--seeds 1 --place on-ramp --out {out} --jobs {jobs}",
+                        "--seeds 1 --place ramp --out {out} --jobs {jobs}",
                     ),
                     printed,
                 ),

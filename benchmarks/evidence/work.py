@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from giveway.studies.definition import changed
-from giveway.studies.options import StudyOptions
 from giveway.studies.study import run_study
+from giveway.studies.study_options import StudyOptions
 from giveway.studies.varying import study_of
 
 BENCHMARKS = Path(__file__).resolve().parents[1]
