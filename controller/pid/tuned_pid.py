@@ -17,7 +17,7 @@ class TunedPidParameters:
     """The loop's gains, given by what they make of the plant, and the actuator's limits.
 
     The gains place both poles of M v' + alpha v = u at bandwidth and damping, so they scale with
-    the vehicle. benchmarks/tune_pid.py finds the defaults.
+    the vehicle. benchmarks/tuning/tune_pid.py finds the defaults.
     """
 
     bandwidth: float = 2.5  # omega_0 [rad/s] of the closed loop s^2 + 2 zeta omega_0 s + omega_0^2

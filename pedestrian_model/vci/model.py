@@ -18,7 +18,7 @@ from pedestrian_model.vehicles import Vehicles
 if TYPE_CHECKING:
     from pedestrian_model.vci.threads import CrowdThreads
 
-#: From so many pedestrians on, neighbours are found by a cell list (benchmarks/bench_crowd.py).
+#: Crowd size from which on neighbours are found by a cell list (benchmarks/speed/bench_crowd.py).
 CELL_LIST_FROM = 100
 #: From so many on, several threads step a crowd: with fewer, they would wait for each other more.
 THREADS_FROM = 1000

@@ -51,7 +51,7 @@ from pedestrian_model.vci.wall_force import add_walls
 
 #: Where ``lay_out`` leaves the grid and the strips at which domains begin.
 _GRID = len(Grid._fields)
-_GHOST = 0.25  # the work of a ghost, relative to a pedestrian's (benchmarks/bench_crowd.py)
+_GHOST = 0.25  # the work of a ghost, relative to a pedestrian's (benchmarks/speed/bench_crowd.py)
 
 
 class DomainMemory:

@@ -26,7 +26,7 @@ from controller.paper_mpc.speed_problem import (
     SpeedProblem,
 )
 
-sys.path[:0] = [str(Path(__file__).parents[2] / "benchmarks"), str(Path(__file__).parent)]
+sys.path[:0] = [str(Path(__file__).parents[2] / "benchmarks" / "speed"), str(Path(__file__).parent)]
 from paper_qp import quadratic_program  # noqa: E402 - files beside this one and in benchmarks/
 
 if TYPE_CHECKING:

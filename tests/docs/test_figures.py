@@ -55,29 +55,3 @@ def test_a_record_says_how_to_make_it_again(name: str) -> None:
     assert picture(name).suffix in {".png", ".gif"}
     for file, told in record["data"].items():
         assert re.fullmatch(r"[0-9a-f]{64}", told), file
-
-
-TABLES = tomllib.loads((ROOT / "docs" / "tables.toml").read_text(encoding="utf-8"))
-
-
-def test_every_table_between_marks_has_a_record() -> None:
-    marked = {
-        (page.name, name)
-        for page in (ROOT / "docs").glob("*.md")
-        for name in re.findall(r"<!-- end of (.+?) -->", page.read_text(encoding="utf-8"))
-    }
-    recorded = [(page, record["table"]) for page, records in TABLES.items() for record in records]
-    assert sorted(recorded) == sorted(marked)
-
-
-@pytest.mark.parametrize("page", TABLES)
-def test_a_table_is_written_into_its_page_by_a_program_that_is_there(page: str) -> None:
-    for record in TABLES[page]:
-        *studies, last = record["commands"]
-        script = ROOT / last.split()[1]
-        assert script.is_file()
-        assert last.startswith("python benchmarks/")
-        assert "--write" in last
-        assert f"docs/{page}" in script.read_text(encoding="utf-8")
-        assert all(study.startswith("giveway study ") for study in studies)
-        assert ("seeds" in record) == bool(studies)

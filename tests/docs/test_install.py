@@ -25,11 +25,11 @@ print(result.ending, len(result.ego))
 
 
 def test_every_dependency_has_its_cost() -> None:
-    table = PAGE.partition("<!-- dependencies -->")[2].partition("<!-- end of")[0]
+    table = PAGE.partition("<!-- evidence: dependencies -->")[2].partition("<!-- end")[0]
     named = re.findall(r"^\| ([a-z0-9-]+) \| [\d.]+ \|", table, re.MULTILINE)
     asked = [Requirement(text).name for text in PROJECT["dependencies"]]
     assert sorted(named) == sorted(asked)
-    assert all(row.count("|") == 6 and not row.endswith("|  |") for row in table.splitlines()[3:-2])
+    assert all(row.count("|") == 6 and not row.endswith("|  |") for row in table.splitlines()[4:-2])
 
 
 def test_every_extra_is_explained() -> None:

@@ -49,10 +49,6 @@ def printed() -> dict[str, list[str]]:
     for name, record in records.items():
         for words in commands_in("\n".join(record["commands"])):
             found[f"records.toml, {name}: {' '.join(words)}"] = words
-    tables = tomllib.loads((ROOT / "docs" / "tables.toml").read_text("utf-8"))
-    for page, made in tables.items():
-        for words in commands_in("\n".join(line for one in made for line in one["commands"])):
-            found[f"tables.toml, {page}: {' '.join(words)}"] = words
     return found
 
 

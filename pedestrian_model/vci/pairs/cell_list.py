@@ -46,7 +46,7 @@ from pedestrian_model.vci.pairs.pair_force import (
     pair_constants,
 )
 
-# Sizes relative to the interaction radius, found by benchmarks/bench_crowd.py.
+# Sizes relative to the interaction radius, found by benchmarks/speed/bench_crowd.py.
 _STRIPS = 4.0  # strips per interaction radius
 _COLUMNS = 16.0  # columns per interaction radius
 _TILE = 6  # columns per tile

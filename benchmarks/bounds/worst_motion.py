@@ -1,0 +1,164 @@
+"""How people really move near a car.
+
+Run: python benchmarks/bounds/worst_motion.py FOLDER --dataset citr
+
+Percentiles of the accelerations, of what these come to over some time, of turning, and of how fast
+an acceleration sets in, of recorded people about a vehicle. They are what ``[safety] people`` rests
+on; docs/safety.md says what the columns mean.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import savgol_filter
+
+from giveway.validation import dataset_of, read_clips
+from giveway.validation.clips import Clip
+from giveway.validation.protocol import Protocol, distance_to_bodies, vehicle_rows
+
+WINDOWS = (0.0, 0.3, 0.5, 0.8)  # [s] of the smoothing; 0: differences of the data's own velocities
+ORDER = 3  # of the polynomials
+NEAR = 5.0  # [m] from a centre to a vehicle's body
+MOVING = 0.3  # [m/s] of the vehicle at least
+TURNING = 0.5  # [m/s] who is slower has no heading
+AHEAD = (0.5, 1.0, 1.5)  # [s] over which people depart from a straight line
+CALM, BRISK = 0.3, 1.0  # [m/s^2] between which an acceleration sets in
+PERCENTILES = (50.0, 95.0, 99.0, 99.9, 100.0)
+Array = NDArray[np.float64]
+
+
+class Track(NamedTuple):
+    """One person's uninterrupted motion, smoothed."""
+
+    position: Array  # (T, 2) [m]
+    velocity: Array  # (T, 2) [m/s]
+    acceleration: Array  # (T, 2) [m/s^2]
+    near: NDArray[np.bool_]  # (T,) a moving vehicle is near
+    towards: Array  # (T, 2) unit vectors to the nearest vehicle's tracked point
+
+
+def tracks(clips: tuple[Clip, ...], window: float) -> Iterator[Track]:
+    """Every person in every clip with a vehicle, once filters have settled."""
+    for clip in clips:
+        if not clip.poses.shape[1]:
+            continue
+        protocol = Protocol.of(clip.dataset)
+        rows = vehicle_rows(clip, protocol)
+        distance = distance_to_bodies(clip.position, rows)
+        to_each = clip.poses[:, None, :, :2] - clip.position[:, :, None]
+        nearest = np.where(np.isnan(to_each), np.inf, to_each)
+        which = np.hypot(nearest[..., 0], nearest[..., 1]).argmin(axis=2)
+        frames = np.arange(clip.frames)[:, None]
+        people = np.arange(len(clip.ids))
+        to = to_each[frames, people, which]
+        moving = np.abs(clip.poses[frames, which, 3]) > MOVING
+        near = (distance < NEAR) & moving
+        for i in people:
+            yield from _smoothed(clip, i, near[:, i], to[:, i], protocol, window)
+
+
+def _smoothed(
+    clip: Clip, i: int, near: NDArray[np.bool_], to: Array, protocol: Protocol, window: float
+) -> Iterator[Track]:
+    frames = np.flatnonzero(clip.seen[:, i])[protocol.skip :]
+    dt = protocol.time_step
+    for run in np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1):
+        width = max(2 * round(window / dt / 2.0) + 1, ORDER + 2)
+        if len(run) < max(width, round(2.0 / dt)):
+            continue
+        position = clip.position[run, i]
+        if window > 0.0:
+            smooth = [
+                savgol_filter(position, width, ORDER, deriv=d, delta=dt, axis=0) for d in range(3)
+            ]
+            edge = slice(width // 2, len(run) - width // 2)
+        else:
+            velocity = clip.velocity[run, i]
+            smooth = [position, velocity, np.gradient(velocity, dt, axis=0)]
+            edge = slice(1, len(run) - 1)
+        length = np.maximum(np.hypot(to[run, 0], to[run, 1]), 1e-9)[:, None]
+        yield Track(*(each[edge] for each in (*smooth, near[run], to[run] / length)))
+
+
+def departures(found: list[Track], ahead: float, dt: float) -> Array:
+    """[m/s^2] the constant acceleration that leaves a straight line as far within ``ahead``."""
+    steps = round(ahead / dt)
+    ahead = steps * dt
+    parts = []
+    for track in found:
+        off = track.position[steps:] - track.position[:-steps] - ahead * track.velocity[:-steps]
+        size = 2.0 * np.hypot(off[:, 0], off[:, 1]) / ahead**2
+        parts.append(size[track.near[:-steps]])
+    return np.concatenate(parts)
+
+
+def onsets(found: list[Track], dt: float) -> Array:
+    """[s] from the last instant of calm walking to the first of a brisk acceleration."""
+    times: list[float] = []
+    for track in found:
+        size = np.hypot(track.acceleration[:, 0], track.acceleration[:, 1])
+        begins = np.flatnonzero((size[1:] >= BRISK) & (size[:-1] < BRISK)) + 1
+        for k in begins:
+            calm = np.flatnonzero(size[:k] < CALM)
+            if len(calm) and track.near[k]:
+                times.append(dt * (k - calm[-1]))
+    return np.array(times)
+
+
+def show(name: str, values: Array, percentiles: tuple[float, ...] = PERCENTILES) -> None:
+    """One row."""
+    if not len(values):
+        print(f"{name:44}{'nobody':>9}")
+        return
+    numbers = " ".join(f"{value:8.2f}" for value in np.percentile(values, percentiles))
+    print(f"{name:44}{len(values):9} {numbers}")
+
+
+def report(clips: tuple[Clip, ...], window: float) -> None:
+    """The rows of one smoothing."""
+    found = list(tracks(clips, window))
+    dt = Protocol.of(clips[0].dataset).time_step
+    size = [np.hypot(*track.acceleration[track.near].T) for track in found]
+    component = [
+        np.einsum("ij,ij->i", track.acceleration, track.towards)[track.near] for track in found
+    ]
+    people = sum(bool(track.near.any()) for track in found)
+    words = f"{window:g} s" if window else "none (the data's velocities)"
+    print(f"\nsmoothing {words}: {people} people within {NEAR:g} m of a moving vehicle")
+    heads = " ".join(f"{f'{p:g} %':>8}" for p in PERCENTILES)
+    print(f"{'':44}{'frames':>9} {heads}")
+    show("acceleration [m/s^2]", np.concatenate(size))
+    show("... towards the vehicle", np.concatenate(component))
+    for ahead in AHEAD:
+        show(f"... that departs as far within {ahead:g} s", departures(found, ahead, dt))
+    turns = []
+    for track in found:
+        v, a = track.velocity, track.acceleration
+        speed = np.hypot(v[:, 0], v[:, 1])
+        fast = track.near & (speed > TURNING)
+        cross = v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]
+        turns.append(np.degrees(np.abs(cross[fast]) / speed[fast] ** 2))
+    show("turning [deg/s]", np.concatenate(turns))
+    show("speed [m/s]", np.concatenate([np.hypot(*t.velocity[t.near].T) for t in found]))
+    show("onset of an acceleration of 1 m/s^2 [s]", onsets(found, dt), (1.0, 5.0, 50.0, 95.0, 99.0))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--dataset", required=True, help="citr, dut, or a description (TOML)")
+    options = parser.parse_args()
+    clips = read_clips(options.folder, dataset_of(options.dataset))
+    for window in WINDOWS:
+        report(clips, window)
+    print("\nThe last row has the percentiles 1, 5, 50, 95 and 99.")
+
+
+if __name__ == "__main__":
+    main()

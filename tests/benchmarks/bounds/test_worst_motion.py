@@ -1,0 +1,58 @@
+"""What recorded people do near a car: known motions come out as they are, however smoothed."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from giveway.validation.clips import read_clips
+from giveway.validation.dataset import CITR
+from tests.support.clips import RATE
+
+FILE = Path(__file__).parents[3] / "benchmarks" / "bounds" / "worst_motion.py"
+SPEC = importlib.util.spec_from_file_location("worst_motion", FILE)
+worst = importlib.util.module_from_spec(SPEC)
+sys.modules["worst_motion"] = worst
+SPEC.loader.exec_module(worst)
+
+FRAMES = 120
+
+
+@pytest.fixture
+def clips(tmp_path, write_clip):
+    """One person accelerates by 0.5 m/s^2 towards a cart that passes 3 m away, one far from it."""
+    time = np.arange(FRAMES)[:, None] / RATE
+    speed = np.array([[0.0, 0.5 * t] for t in time[:, 0]])
+    near = np.array([0.0, -6.0]) + np.column_stack([0.0 * time[:, 0], 0.25 * time[:, 0] ** 2])
+    far = near - (0.0, 40.0)
+    cart = np.column_stack([-2.0 + time, 0.0 * time, 0.0 * time, np.ones(FRAMES)])
+    position, velocity = np.stack([near, far], axis=1), np.stack([speed, speed], axis=1)
+    write_clip(tmp_path, "made", position, velocity, cart)
+    return read_clips(tmp_path, CITR)
+
+
+@pytest.mark.parametrize("window", [0.0, 0.3, 0.5, 0.8])
+def test_a_constant_acceleration_is_found_as_it_is(clips, window) -> None:
+    found = list(worst.tracks(clips, window))
+    assert [bool(track.near.any()) for track in found] == [True, False]
+    near = found[0]
+    assert near.acceleration[near.near] == pytest.approx(
+        np.tile([0.0, 0.5], (near.near.sum(), 1)), abs=1e-6
+    )
+    assert np.einsum("ij,ij->i", near.towards, near.towards) == pytest.approx(1.0)
+    assert (near.towards[:, 1] > 0.0).all()
+    off = worst.departures(found, 0.5, 1.0 / RATE)
+    assert len(off)
+    assert off == pytest.approx(0.5, abs=1e-6)
+
+
+def test_the_onset_is_the_time_from_calm_to_brisk() -> None:
+    ramp = np.clip(2.0 * (np.arange(100) * 0.1 - 4.0), 0.0, 3.0)
+    still = np.zeros((100, 2))
+    near = np.ones(100, dtype=bool)
+    track = worst.Track(still, still, np.column_stack([ramp, 0.0 * ramp]), near, still)
+    assert worst.onsets([track], 0.1) == pytest.approx([0.4])
+    nobody = track._replace(near=~near)
+    assert len(worst.onsets([nobody], 0.1)) == 0
