@@ -166,7 +166,7 @@ PAGES: dict[str, Page] = {
             "controllers",
             "docs/controllers.md",
             (
-                Block("attitudes", samples.ATTITUDES, means(*BRIEF)),
+                Block("styles", samples.ATTITUDES, means(*BRIEF)),
                 Block("differences", samples.CONTROLLERS, comparisons.differences),
                 Block("saved", samples.CONTROLLERS, comparisons.saved),
                 Block("margins", samples.CONTROLLERS, comparisons.margins),

@@ -32,7 +32,7 @@ CONTROLLERS = Study(
     "controllers", 50, twin=True, changes={"only": {"scene": SCENES, "controller": RIVALS}}
 )
 ON_ROADS = Study("controllers", 50, changes={"only": {"scene": ROADS, "controller": RIVALS}})
-ATTITUDES = Study("attitudes", 50, twin=True)
+ATTITUDES = Study("styles", 50, twin=True)
 ABLATION = Study(
     "ablation",
     60,
