@@ -235,7 +235,7 @@ def test_a_cell_that_cannot_be_run_is_found_before_anything_runs(text, said):
 
 
 def test_an_unknown_study_names_the_known_ones():
-    known = "ablation, styles, beliefs, controllers, law, models, paper, readings"
+    known = "ablation, beliefs, controllers, law, models, paper, readings, styles"
     with pytest.raises(ConfigError, match=rf"expected a \.toml file or one of {known}"):
         find_study("papper")
 
