@@ -19,7 +19,7 @@ Maker = Callable[[Path], list[str]]
 DRIVING = (
     "controller", "fmus", "pedestrian_model", "sumo_scenarios",
     "giveway/config", "giveway/cosimulation", "giveway/crowd", "giveway/ego", "giveway/geometry",
-    "giveway/metrics", "giveway/recording", "giveway/records", "giveway/studies/bundled",
+    "giveway/metrics", "giveway/journal", "giveway/run_data", "giveway/studies/bundled",
     "giveway/studies/statistics", "giveway/sumo", "giveway/walkways",
 )  # fmt: skip
 """Rooms that decide how an ego drives and how that is measured."""

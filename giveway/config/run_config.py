@@ -5,7 +5,7 @@ The TOML file, the command line's flags and the Python API are all derived from 
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     BeforeValidator,
@@ -16,7 +16,6 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from controller import DECLARED, Defaults
 from giveway.config.option import LANE, Section, expectation, option
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
 from giveway.config.tables.basics import (
@@ -42,6 +41,9 @@ from giveway.config.tables.regulation import RegulationConfig
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.plug_ins.finding import is_fmu, shown
 from giveway.plug_ins.options import read_options
+
+if TYPE_CHECKING:
+    from controller import Defaults
 
 PAPER_STEP = 0.05
 """[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
@@ -214,6 +216,8 @@ class RunConfig(Section):
         What somebody else's declares stands in the configuration already, see
         :func:`giveway.config.loading.load`: to read a configuration imports nobody's code.
         """
+        from controller import DECLARED, Defaults  # here: numba comes with it
+
         return DECLARED.get(self.controller, Defaults())
 
     @property

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from controller import Defaults
 from giveway.config.plug_in_names import BUNDLED
 from giveway.config.run_config import RunConfig
 from giveway.config.tables.rules import OF_PRIORITY
@@ -52,6 +51,8 @@ def _declared(name: Any) -> Settings:
         kind = load(find(name))
     except ControlError:
         return {}  # the check before the run says what is wrong with it
+    from controller import Defaults
+
     declared = getattr(kind, "defaults", Defaults())
     if not isinstance(declared, Defaults):
         raise ControlError(
