@@ -175,6 +175,8 @@ class RuleSet:
             crowd: Pedestrians as the ego sees them.
             leader: Vehicle ahead.
         """
+        if not self._demands:
+            return
         situation = self.situation
         situation.station, situation.speed = station, speed
         situation.crowd, situation.leader = crowd, leader

@@ -103,7 +103,7 @@ def test_later_rules_know_where_the_leader_waits_at_red() -> None:
 
 def test_what_was_demanded_is_forgotten_at_the_next_step() -> None:
     rules = asked(Demand(40.0, "yield", speed=3.0))
-    rules._demands = ()
+    rules._demands = (lambda situation: None,)
     rules.look(11.0, 8.0, NOBODY, AHEAD)
     assert (rules.stop, rules.speed) == (math.inf, math.inf)
 

@@ -14,7 +14,7 @@ import sumo_scenarios
 from giveway.errors import ConfigError
 from pedestrian_model import PLAIN_MODELS
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[3] / "docs"
 NORTH = {
     "name": "north",
     "from": [[18.0, -16.0], [36.0, -16.0]],
