@@ -40,17 +40,14 @@ def _det(a_x: float, a_y: float, b_x: float, b_y: float) -> float:
 def _add_line(
     lines: Array,
     at: int,
-    r_x: float,
-    r_y: float,
-    w_x: float,
-    w_y: float,
-    v_x: float,
-    v_y: float,
-    radius: float,
+    circle: tuple[float, float, float],
+    relative_velocity: tuple[float, float],
+    velocity: tuple[float, float],
     share: float,
     dt: float,
 ) -> None:
-    """The half-plane that avoids a circle ``radius`` at r, seen at the relative velocity w."""
+    """Write the half-plane that avoids a circle (x, y, radius), relative to oneself."""
+    (r_x, r_y, radius), (w_x, w_y), (v_x, v_y) = circle, relative_velocity, velocity
     apart, both = r_x * r_x + r_y * r_y, radius * radius
     meets = apart <= both
     per = 1.0 / dt if meets else 1.0 / TAU
@@ -95,24 +92,29 @@ def _nearest(found: Array, count: int, most: int, distance: float, which: int) -
 @inner
 def orca_velocity(
     i: int,
-    position: Array,
-    velocity: Array,
+    people: tuple[Array, Array],
     preferred: tuple[float, float],
-    fastest: float,
-    radius: float,
-    vehicles: Array,
-    travelled: float,
-    wall: tuple[float, float, float],
-    dt: float,
-    lines: Array,
-    projected: Array,
-    found: Array,
+    limits: tuple[float, float],
+    obstacles: tuple[Array, tuple[float, float, float]],
+    times: tuple[float, float],
+    scratch: tuple[Array, Array, Array],
 ) -> tuple[float, float]:
-    """The velocity [m/s] that pedestrian i takes.
+    """Return the velocity [m/s] that pedestrian i takes.
 
-    ``travelled`` [s]: since the vehicles were where they are said to be. ``wall``: distance [m] and
-    normal of the nearest. ``lines``, ``projected`` (LINES, 4) and ``found`` (LINES, 2) are scratch.
+    Args:
+        i: Row of the pedestrian.
+        people: Positions [m] and velocities [m/s] of all, (n, 2) each.
+        preferred: Velocity [m/s] that the pedestrian prefers.
+        limits: Largest speed [m/s] and radius of a body [m].
+        obstacles: Vehicles (m, 7), and the nearest wall: distance [m] and normal.
+        times: Time [s] since the vehicles were where they are said to be, and the step [s].
+        scratch: Lines and projected lines, (LINES, 4) each, and neighbours found, (LINES, 2).
     """
+    position, velocity = people
+    fastest, radius = limits
+    vehicles, wall = obstacles
+    travelled, dt = times
+    lines, projected, found = scratch
     x, y = position[i, 0], position[i, 1]
     v_x, v_y = velocity[i, 0], velocity[i, 1]
     n = 0
@@ -137,7 +139,7 @@ def orca_velocity(
             ahead = (j + 0.5) * part - vehicle[REAR] + travelled * vehicle[SPEED]
             r_x, r_y = vehicle[X] + ahead * c - x, vehicle[Y] + ahead * s - y
             w_x, w_y = v_x - vehicle[SPEED] * c, v_y - vehicle[SPEED] * s
-            _add_line(lines, n, r_x, r_y, w_x, w_y, v_x, v_y, circle, 1.0, dt)
+            _add_line(lines, n, (r_x, r_y, circle), (w_x, w_y), (v_x, v_y), 1.0, dt)
             n += 1
     count = 0
     for j in range(position.shape[0]):
@@ -150,7 +152,7 @@ def orca_velocity(
         if r_x == 0.0 and r_y == 0.0:  # two in one place part by their order
             r_x = math.copysign(1e-9, j - i)
         w_x, w_y = v_x - velocity[j, 0], v_y - velocity[j, 1]
-        _add_line(lines, n, r_x, r_y, w_x, w_y, v_x, v_y, 2.0 * radius, 0.5, dt)
+        _add_line(lines, n, (r_x, r_y, 2.0 * radius), (w_x, w_y), (v_x, v_y), 0.5, dt)
         n += 1
     p_x, p_y = preferred
     pace = math.sqrt(p_x * p_x + p_y * p_y)
@@ -158,7 +160,7 @@ def orca_velocity(
         p_x, p_y = p_x * fastest / pace, p_y * fastest / pace
     failed, o_x, o_y = _closest(lines, n, fastest, p_x, p_y, False)
     if failed < n:
-        return _least_broken(lines, n, hard, failed, fastest, o_x, o_y, projected)
+        return _least_broken(lines, n, (hard, failed), fastest, (o_x, o_y), projected)
     return o_x, o_y
 
 
@@ -206,14 +208,13 @@ def _closest(
 def _least_broken(
     lines: Array,
     n: int,
-    hard: int,
-    first: int,
+    hard_and_failed: tuple[int, int],
     fastest: float,
-    o_x: float,
-    o_y: float,
+    best: tuple[float, float],
     projected: Array,
 ) -> tuple[float, float]:
-    """The velocity that is least far outside of the half-planes; the ``hard`` ones hold."""
+    """Return the velocity that is least far outside of the half-planes; the hard ones hold."""
+    (hard, first), (o_x, o_y) = hard_and_failed, best
     deepest = 0.0
     for i in range(first, n):
         q_x, q_y, d_x, d_y = lines[i, 0], lines[i, 1], lines[i, 2], lines[i, 3]

@@ -136,17 +136,10 @@ class PlainModel:
             self._kind,
             crowd.state,
             (crowd.desired_speed, *crowd.fixed_arrays[2:]),
-            closed,
-            surroundings.walls is not None,
-            lines,
-            cells,
-            vehicles.array,
+            (closed, surroundings.walls is not None, lines, cells, vehicles.array),
             self._limits,
-            self.time_step / self._substeps,
-            self._substeps,
-            self._next[:n],
-            self._walls[:, :n],
-            self._scratch,
+            (self.time_step / self._substeps, self._substeps),
+            (self._next[:n], self._walls[:, :n], self._scratch),
         )
         if bad != FINE:
             raise divergence(bad, crowd, vehicles)
@@ -157,22 +150,18 @@ def _advance(
     kind: int,
     state: tuple[Any, ...],
     wishes: tuple[Any, ...],
-    closed: NDArray[np.bool_],
-    walled: bool,
-    lines: Array,
-    cells: NDArray[np.int64],
-    vehicles: Array,
+    scene: tuple[NDArray[np.bool_], bool, Array, NDArray[np.int64], Array],
     limits: tuple[float, ...],
-    dt: float,
-    steps: int,
-    after: Array,
-    walls: Array,
-    scratch: tuple[Array, Array, Array],
+    timing: tuple[float, int],
+    memory: tuple[Array, Array, tuple[Array, Array, Array]],
 ) -> int:
     """Advance the state in place by ``steps`` steps of dt; ``FINE`` or the first bad index."""
     position, velocity, waypoint_index = state
     desired_speed, routes, start = wishes[0], wishes[1:], wishes[4]
+    closed, walled, lines, cells, vehicles = scene
     radius, a_max, v_max, r_waypoint = limits
+    dt, steps = timing
+    after, walls, scratch = memory
     ahead = AHEAD if kind == _FORCES else 0.0
     n = position.shape[0]
     bad = first_insane(position, velocity)
@@ -209,16 +198,12 @@ def _advance(
                 wall = (walls[0, i], walls[1, i], walls[2, i]) if walled else (np.inf, 0.0, 0.0)
                 o_x, o_y = orca_velocity(
                     i,
-                    position,
-                    velocity,
+                    (position, velocity),
                     (velocity[i, 0] + dt * a_x, velocity[i, 1] + dt * a_y),
-                    fastest,
-                    radius,
-                    vehicles,
-                    step * dt,
-                    wall,
-                    dt,
-                    *scratch,
+                    (fastest, radius),
+                    (vehicles, wall),
+                    (step * dt, dt),
+                    scratch,
                 )
                 a_x, a_y = (o_x - velocity[i, 0]) / dt, (o_y - velocity[i, 1]) / dt
             elif kind != _STRAIGHT:

@@ -83,16 +83,11 @@ def _shift(buffer: NDArray[np.float64], m: int, count: int, c: PairConstants) ->
         apart = r_2 >= COINCIDENT_2
         coincident += (k < count) & (not apart)
         f = pair(
-            dx,
-            dy,
-            r,
-            r - c.two_R,
-            wx,
-            wy,
-            buffer[BUX + k],
-            buffer[BUY + k],
-            buffer[AHEAD + BUX + k],
-            buffer[AHEAD + BUY + k],
+            (dx, dy),
+            (r, r - c.two_R),
+            (wx, wy),
+            (buffer[BUX + k], buffer[BUY + k]),
+            (buffer[AHEAD + BUX + k], buffer[AHEAD + BUY + k]),
             (r_2 <= c.r_max_2) & apart & (k < count),
             c,
         )

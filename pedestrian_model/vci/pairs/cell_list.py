@@ -142,16 +142,11 @@ def _meet(
         apart = r_2 >= COINCIDENT_2
         coincident += (k < stop - start) & (not apart)
         f = pair(
-            dx,
-            dy,
-            r,
-            r - c.two_R,
-            vx - from_start[BVX + k],
-            vy - from_start[BVY + k],
-            ux,
-            uy,
-            from_start[BUX + k],
-            from_start[BUY + k],
+            (dx, dy),
+            (r, r - c.two_R),
+            (vx - from_start[BVX + k], vy - from_start[BVY + k]),
+            (ux, uy),
+            (from_start[BUX + k], from_start[BUY + k]),
             (r_2 <= c.r_max_2) & apart & (k < stop - start),
             c,
         )

@@ -58,39 +58,31 @@ def pair_constants(c: Any) -> PairConstants:
 
 @inlined
 def pair(
-    dx: float,
-    dy: float,
-    length: float,
-    d: float,
-    wx: float,
-    wy: float,
-    ux_i: float,
-    uy_i: float,
-    ux_j: float,
-    uy_j: float,
+    offset: tuple[float, float],
+    distances: tuple[float, float],
+    relative_velocity: tuple[float, float],
+    direction_i: tuple[float, float],
+    direction_j: tuple[float, float],
     counts: bool,
     c: PairConstants,
 ) -> tuple[float, float, float, float]:
     """The forces of a pair (i, j) on each other: x, y on i, then x, y on j [N].
 
     Args:
-        dx: [m] with dy a vector of ``length`` from i to j; its direction is n.
-        dy: see dx.
-        length: see dx.
-        d: [m] from skin to skin.
-        wx: [m/s] with wy the relative velocity v_i - v_j.
-        wy: see wx.
-        ux_i: with uy_i the direction of v_i, zero if it stands; so for j.
-        uy_i: see ux_i.
-        ux_j: see ux_i.
-        uy_j: see ux_i.
+        offset: Vector [m] from i to j; its direction is n.
+        distances: Length of that vector, and distance from skin to skin [m].
+        relative_velocity: v_i - v_j [m/s].
+        direction_i: Direction of v_i; zero if i stands.
+        direction_j: Direction of v_j; zero if j stands.
         counts: False makes all forces zero.
-        c: the constants.
+        c: Constants of the pair loops.
 
     The angle phi of Ae = exp(-l phi) is never formed: with the cross and dot products of w and n,
     phi is folded into [0, pi/4] and turned by pi/8; exp(-l atan t) is then a polynomial in
     |t| <= tan(pi/8), times a constant of the quarter.
     """
+    (dx, dy), (length, d), (wx, wy) = offset, distances, relative_velocity
+    (ux_i, uy_i), (ux_j, uy_j) = direction_i, direction_j
     q_rep = c.d_rep - d
     f_r = q_rep + math.sqrt(fma(q_rep, q_rep, c.s_rep_2))
     f_c = c.k_col * max(0.0, -d)
@@ -148,16 +140,11 @@ def add_coincident(
             if order[i] > order[j]:
                 n_x, n_y = -n_x, -n_y
             f = pair(
-                n_x,
-                n_y,
-                1.0,
-                math.sqrt(r_2) - c.two_R,
-                rows[VX, i] - rows[VX, j],
-                rows[VY, i] - rows[VY, j],
-                rows[UX, i],
-                rows[UY, i],
-                rows[UX, j],
-                rows[UY, j],
+                (n_x, n_y),
+                (1.0, math.sqrt(r_2) - c.two_R),
+                (rows[VX, i] - rows[VX, j], rows[VY, i] - rows[VY, j]),
+                (rows[UX, i], rows[UY, i]),
+                (rows[UX, j], rows[UY, j]),
                 True,
                 c,
             )

@@ -22,16 +22,12 @@ def answers(position, velocity, preferred, vehicles=NO_CAR):
         [
             orca_velocity(
                 i,
-                position,
-                velocity,
+                (position, velocity),
                 tuple(preferred[i]),
-                2.5,
-                RADIUS,
-                vehicles,
-                0.0,
-                OPEN,
-                DT,
-                *SCRATCH,
+                (2.5, RADIUS),
+                (vehicles, OPEN),
+                (0.0, DT),
+                SCRATCH,
             )
             for i in range(len(position))
         ]
