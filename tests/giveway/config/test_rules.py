@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
-from giveway.cli.flags import set_rules
+from giveway.cli.flags import set_plug_ins
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import Layer, build_config, dump_toml
 from giveway.config.option import Section
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.errors import ConfigError
+from giveway.plug_ins.sockets import RULE
 
 NAMES = tuple(RulesConfig.model_fields)
 
@@ -70,7 +71,7 @@ def test_rules_of_other_packages_are_named_with_their_options() -> None:
 
 def test_the_words_of_the_rule_flag() -> None:
     words = ["zone.limit=8.3", "zone.edge=a", "plain", "mine:Rule", "my.mod:Rule.limit=2"]
-    assert set_rules(words) == {
+    assert set_plug_ins(words, RULE) == {
         "zone": {"limit": 8.3, "edge": "a"},
         "plain": True,
         "mine:Rule": True,
@@ -78,7 +79,7 @@ def test_the_words_of_the_rule_flag() -> None:
     }
     for bad in (["zone.a=1", "zone.a=2"], ["limit=3"]):
         with pytest.raises(ConfigError, match="--rule "):
-            set_rules(bad)
+            set_plug_ins(bad, RULE)
 
 
 def test_the_table_is_like_the_others() -> None:
