@@ -14,6 +14,7 @@ from giveway.journal.recorder import Recorder
 from giveway.measures import unreached
 from giveway.metrics import delays
 from giveway.metrics.plugged_in import measured
+from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.results import law, mismatch, vehicle_contacts
 from giveway.results.effect import Effect, who_gave_way
 from giveway.results.ego_result import EgoResult, results_of_egos
@@ -131,12 +132,17 @@ def with_twin(
     )
 
 
-def judged(result: RunResult) -> RunResult:
+def judged(result: RunResult, heartbeat: Heartbeat) -> RunResult:
     """Add remarks on egos that did not keep to the law, with a twin's evidence, and metrics.
 
     The metrics of other packages measure the drive here, when it is whole.
+
+    Args:
+        result: Result of the run.
+        heartbeat: Heartbeat that says so, should a metric end the process.
     """
     if result.config.metrics.plugged_in:
+        heartbeat.beat(Phase.MEASURING)
         egos = (replace(ego, measured=measured(ego.config, ego)) for ego in result.egos)
         result = replace(result, egos=tuple(egos))
     judged = ((ego.id, ego.ledger) for ego in result.egos if ego.ledger is not None)

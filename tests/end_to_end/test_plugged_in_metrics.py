@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import tomllib
 from typing import TYPE_CHECKING, Any
 
@@ -209,6 +211,31 @@ def test_a_study_has_the_columns_in_its_runs(
     assert described["fast_near_time"]["unit"] == "s"
     assert described["own"]["type"] == "integer"
     assert (StudyFolder.open(tmp_path / "study").runs["fast_near_time"][~slow] == 0.0).all()
+
+
+def test_a_metric_that_ends_the_process_is_named(
+    installed: Callable[..., Path],  # noqa: F811
+    tmp_path: Path,
+) -> None:
+    installed("own", own(body="import os; os._exit(7)"))
+    words = ["run", "street", "--time-limit", "1", "--metric", "own:Own", "--no-pictures"]
+    command = [sys.executable, "-m", "giveway", *words, "--out", str(tmp_path / "run")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode != 0
+    assert "in the metric 'own:Own'" in done.stderr
+    table = pd.read_csv(tmp_path / "run" / "summary.csv")  # recovered, without its column
+    assert "own" not in table.columns
+    assert table.loc[0, "simulated_time"] == 1.0
+
+
+def test_a_twin_s_run_is_measured_with_its_delays(
+    installed: Callable[..., Path],  # noqa: F811
+) -> None:
+    body = "return Columns(float(drive.summary['people_delay']))"
+    installed("own", own(kind="float", body=body))
+    own_metric = {"metrics": {"own:Own": True}, "twin": True}
+    summary = giveway.run(RUN | own_metric | {"time_limit": 3.0}).summary
+    assert summary["own"] == summary["people_delay"]
 
 
 def test_a_factor_may_not_have_a_column_s_name(near: None, tmp_path: Path) -> None:

@@ -60,11 +60,12 @@ class Named(NamedTuple):
 
 
 _PLACES = (
-    (CONTROLLER, "in the controller at"),
-    (SENSOR, "in the controller at"),
-    (MODEL, "in the crowd's step from"),
+    (CONTROLLER, "in the controller at", "in the controller {} at"),
+    (SENSOR, "in the controller at", "in the sensor {} at"),
+    (MODEL, "in the crowd's step from", "in the pedestrian model {} at"),
+    (METRIC, "while the run's numbers were being worked out", "in the metric {}"),
 )
-"""As a heartbeat tells them."""
+"""Places as a heartbeat tells them, and in words that name the code."""
 
 
 def foreign_code(config: RunConfig) -> list[Named]:
@@ -112,11 +113,11 @@ def named_in(failure: str, config: RunConfig) -> str:
         config: of the run.
     """
     code = foreign_code(config)
-    for socket, place in _PLACES:
+    for socket, place, named in _PLACES:
         names = dict.fromkeys(shown(one.name) for one in code if one.socket is socket)
         if names:
             these = " or ".join(f"'{name}'" for name in names)
-            failure = failure.replace(place, f"in the {socket.what} {these} at")
+            failure = failure.replace(place, named.format(these))
     return failure
 
 
