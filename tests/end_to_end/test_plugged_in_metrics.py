@@ -211,6 +211,10 @@ def test_a_study_has_the_columns_in_its_runs(
     assert described["fast_near_time"]["unit"] == "s"
     assert described["own"]["type"] == "integer"
     assert (StudyFolder.open(tmp_path / "study").runs["fast_near_time"][~slow] == 0.0).all()
+    command = [sys.executable, "-m", "giveway", "report", str(tmp_path / "study")]
+    command += ["--trust", "own:Own"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=200, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_a_metric_that_ends_the_process_is_named(
