@@ -140,6 +140,11 @@ def _declared(config: RunConfig) -> list[_Declared]:
     owners = dict(_TAKEN)
     for name, settings in config.metrics.plugged_in.items():
         kind, options = load_class(name, METRIC, settings)
+        if not callable(getattr(kind, METRIC.method, None)):
+            raise MetricError(
+                f"{METRIC.setting} = '{name}': {shown(kind)} has no method {METRIC.method}; "
+                "expected a class with one (docs/plugins.md)"
+            )
         metric = _Declared(name, kind, options, _columns(name, kind))
         for column in metric.columns:
             if column.name in owners:

@@ -169,7 +169,8 @@ def test_numbers_of_numpy_become_python_s(
         (own(kind="str"), "expected Columns, a dataclass whose attributes are all Annotated"),
         (own(kind="list[int]"), "expected Columns, a dataclass"),
         (own(dataclass=""), "expected Columns, a dataclass"),
-        ("class Own:\n    pass", "expected Columns, a dataclass"),
+        ("class Own:\n    measure = print", "expected Columns, a dataclass"),
+        (own().replace("def measure", "def measures"), "has no method measure"),
     ],
 )
 def test_unusable_columns_are_refused_before_the_run(
@@ -230,6 +231,17 @@ def test_a_metric_that_ends_the_process_is_named(
     table = pd.read_csv(tmp_path / "run" / "summary.csv")  # recovered, without its column
     assert "own" not in table.columns
     assert table.loc[0, "simulated_time"] == 1.0
+
+
+def test_the_screen_shows_what_was_measured(near: None, tmp_path: Path) -> None:
+    words = ["run", "street", "--time-limit", "8", "--no-pictures", "--out", str(tmp_path / "run")]
+    words += ["--metric", "fast-and-near.speed=2", "--metric", "fast-and-near.distance=30"]
+    command = [sys.executable, "-m", "giveway", *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    people = pd.read_csv(tmp_path / "run" / "summary.csv").loc[0, "fast_near_people"]
+    rows = [line.replace("│", " ").split() for line in done.stdout.splitlines()]
+    assert ["fast_near_people", str(people)] in rows
+    assert any(row[:2] == ["fast_near_time", "(s)"] and float(row[2]) > 0.0 for row in rows)
 
 
 def test_a_twin_s_run_is_measured_with_its_delays(
