@@ -41,7 +41,8 @@ BLOCK = re.compile(
     r"(?:^<!-- (not run) -->\n+)?^( *)```(\w*)[^\n]*\n(.*?)^\2```", re.DOTALL | re.MULTILINE
 )
 PLACEHOLDER = re.compile(r"^[A-Z][A-Z_]{3,}$|\bHOST\b|\.\.\.|…")
-PLUG_INS = {"careful", "shy", "patient"}  # of examples
+PLUG_INS = {"careful", "shy", "patient", "school-zone", "fast-and-near"}  # Names of examples
+NAMING = {"--controller", "--crowd-model", "--rule", "--metric", "controller", "model", "rule"}
 FEW = 5  # runs per cell of a study that is not slow
 
 
@@ -106,8 +107,7 @@ def why_not(command: Printed, folder: Path, readme: Path, *, slow: bool) -> str:
         return "slow: --all"
     ours = {path.name for path in ROOT.iterdir()} - {"results"}
     for before, word in pairwise(words):
-        plugged_in = before in {"--controller", "--crowd-model", "controller", "model"}
-        if plugged_in and (word in PLUG_INS or ":" in word):
+        if before in NAMING and (word.partition(".")[0] in PLUG_INS or ":" in word):
             return f"{word} is a plug-in of the reader's"
         named = re.search(r"/|\.(toml|fmu|sumocfg|py|csv)$", word) and not word.startswith("-")
         if not named or before in {"--out", "-o", "--draft"} or Path(word).parts[0] in ours:

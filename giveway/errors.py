@@ -50,6 +50,10 @@ class RuleError(GivewayError):
     """A rule of the road of another package cannot be made, or demanded something unusable."""
 
 
+class MetricError(GivewayError):
+    """A metric of another package declares unusable columns, or returned something unusable."""
+
+
 class SensorError(GivewayError):
     """A sensor cannot be made, or its answer cannot be used."""
 

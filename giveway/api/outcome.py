@@ -13,6 +13,8 @@ from giveway.ego.vehicle import model_margin
 from giveway.journal.recorder import Recorder
 from giveway.measures import unreached
 from giveway.metrics import delays
+from giveway.metrics.plugged_in import measured
+from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.results import law, mismatch, vehicle_contacts
 from giveway.results.effect import Effect, who_gave_way
 from giveway.results.ego_result import EgoResult, results_of_egos
@@ -130,13 +132,25 @@ def with_twin(
     )
 
 
-def judged(result: RunResult) -> RunResult:
-    """Add remarks on egos that did not keep to the law, with a twin's evidence."""
+def judged(result: RunResult, heartbeat: Heartbeat) -> RunResult:
+    """Add remarks on egos that did not keep to the law, with a twin's evidence, and metrics.
+
+    The metrics of other packages measure the drive here, when it is whole.
+
+    Args:
+        result: Result of the run.
+        heartbeat: Heartbeat that says so, should a metric end the process.
+    """
+    if result.config.metrics.plugged_in:
+        heartbeat.beat(Phase.MEASURING)
+        egos = (replace(ego, measured=measured(ego.config, ego)) for ego in result.egos)
+        result = replace(result, egos=tuple(egos))
     judged = ((ego.id, ego.ledger) for ego in result.egos if ego.ledger is not None)
     against = [
         text for text in (law.remark(name, found.violations) for name, found in judged) if text
     ]
-    remarks = (*result.remarks, *against)
+    faults = [fault for ego in result.egos for fault in ego.measured.faults]
+    remarks = (*result.remarks, *against, *faults)
     return replace(result, remarks=remarks, facts=result.facts | {"remarks": list(remarks)})
 
 

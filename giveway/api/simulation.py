@@ -69,7 +69,7 @@ def simulate(
         elapsed = perf_counter() - began
         result = outcome(parts, checked.scenario, recorder, loop, ending, error, elapsed)
         if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
-            return judged(result)
+            return judged(result, recorder.journal.heartbeat)
         _tell(watcher, "People go on to where they want")
         gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt), checked.scenario)
         tracks = {ego.id: ego.track for ego in result.egos}
@@ -80,7 +80,8 @@ def simulate(
         _tell(watcher, f"Twin: the same again, nobody feels the ego (the run took {elapsed:.0f} s)")
         make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
         twin, error = _guarded(make, checked.scenario)
-    return judged(with_twin(result, loop.followed, twin, error, began + elapsed))
+    result = with_twin(result, loop.followed, twin, error, began + elapsed)
+    return judged(result, recorder.journal.heartbeat)
 
 
 def _tell(watcher: Watcher | None, doing: str) -> None:

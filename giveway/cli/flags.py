@@ -14,7 +14,7 @@ from giveway.cli.help import show_all_options
 from giveway.config.files.layers import Location, Option, options
 from giveway.config.files.toml import toml_value
 from giveway.errors import ConfigError
-from giveway.plug_ins.sockets import CONTROLLER, RULE, SOCKETS, Socket
+from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES, Socket
 
 if typing.TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -33,6 +33,7 @@ _PANELS = {
     "traffic": "Traffic",
     "sumo": "SUMO",
     "record": "Recording",
+    "metrics": "Recording",
 }
 
 _HelpAll = Annotated[
@@ -46,15 +47,16 @@ _HelpAll = Annotated[
 ]
 
 
-_Rule = Annotated[
-    list[str] | None,
-    typer.Option(
-        RULE.flag,
-        metavar="NAME[.KEY=VALUE]",
-        help="A rule of the road that is not giveway's own, and its options; as often as needed.",
-        rich_help_panel="Rules",
-    ),
-]
+def _name_flag(socket: Socket) -> Any:
+    return Annotated[
+        list[str] | None,
+        typer.Option(
+            socket.flag,
+            metavar="NAME[.KEY=VALUE]",
+            help=f"A {socket.what} that is not giveway's own, and its options; as often as needed.",
+            rich_help_panel=_PANELS[socket.options],
+        ),
+    ]
 
 
 def _set_flag(socket: Socket) -> Any:
@@ -104,9 +106,9 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
             own_options = set_options(arguments.pop(socket.options) or (), socket)
             if own_options:
                 settings[socket.options] = own_options
-        rules = set_rules(arguments.pop("rule") or ())
-        if rules:
-            settings[RULE.options] = rules
+        for socket in TABLES:
+            if named := set_plug_ins(arguments.pop(socket.what) or (), socket):
+                settings[socket.options] = named
         for name, option in locations.items():
             value = arguments.pop(name)
             if value is not None:
@@ -123,7 +125,10 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
         inspect.Parameter(socket.options, keyword, default=None, annotation=_set_flag(socket))
         for socket in SOCKETS
     ]
-    flags.append(inspect.Parameter("rule", keyword, default=None, annotation=_Rule))
+    flags += [
+        inspect.Parameter(socket.what, keyword, default=None, annotation=_name_flag(socket))
+        for socket in TABLES
+    ]
     flags.append(inspect.Parameter("help_all", keyword, default=False, annotation=_HelpAll))
     call.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [parameter.replace(kind=keyword) for parameter in own] + flags
@@ -133,24 +138,25 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     return call
 
 
-def set_rules(words: Sequence[str]) -> dict[str, Any]:
-    """The rules of other packages, from words like ``school_zone`` or ``school_zone.limit=8``.
+def set_plug_ins(words: Sequence[str], socket: Socket) -> dict[str, Any]:
+    """The plug-ins that a flag names, from words like ``school_zone`` or ``school_zone.limit=8``.
 
     Raises:
-        ConfigError: a word names no rule, or an option stands twice.
+        ConfigError: a word names no plug-in, or an option stands twice.
     """
-    rules: dict[str, Any] = {}
+    found: dict[str, Any] = {}
     for word in words:
         name, _, own = word.partition("=")
-        rule, _, key = name.rpartition(".") if "=" in word else (name, "", "")
-        if not rule:
-            raise ConfigError(f"{RULE.flag} {word}: expected a rule, or NAME.KEY=VALUE")
-        known = rules.setdefault(rule, {})
+        plug_in, _, key = name.rpartition(".") if "=" in word else (name, "", "")
+        if not plug_in:
+            msg = f"{socket.flag} {word}: expected a {socket.what}, or NAME.KEY=VALUE"
+            raise ConfigError(msg)
+        known = found.setdefault(plug_in, {})
         if key in known:
-            raise ConfigError(f"{RULE.flag} {word}: '{key}' stands twice; keep one")
+            raise ConfigError(f"{socket.flag} {word}: '{key}' stands twice; keep one")
         if key:
-            known |= set_options([f"{key}={own}"], RULE)
-    return {name: own or True for name, own in rules.items()}
+            known |= set_options([f"{key}={own}"], socket)
+    return {name: own or True for name, own in found.items()}
 
 
 def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, Any]:

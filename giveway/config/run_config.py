@@ -36,6 +36,7 @@ from giveway.config.tables.controllers import (
 )
 from giveway.config.tables.crowd import CrowdConfig
 from giveway.config.tables.measures import MeasureConfig, read_measures
+from giveway.config.tables.metrics import MetricsConfig
 from giveway.config.tables.perception import PerceptionConfig
 from giveway.config.tables.regulation import RegulationConfig
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
@@ -148,6 +149,7 @@ class RunConfig(Section):
     traffic: TrafficConfig = TrafficConfig()
     sumo: SumoConfig = SumoConfig()
     record: RecordConfig = RecordConfig()
+    metrics: MetricsConfig = MetricsConfig()
     egos: tuple[dict[str, Any], ...] = Field(
         default=(),
         description="one table per ego; what it leaves out is as in the run's own tables",

@@ -11,6 +11,7 @@ from giveway.crowd.zone import Zone
 from giveway.ego.vehicle import require_vehicles
 from giveway.errors import ConfigError
 from giveway.measures import require_pedpy
+from giveway.metrics.plugged_in import metric_columns
 from giveway.scenario_files import ScenarioFiles, read_scenario
 from sumo_scenarios import Scenario
 
@@ -44,7 +45,8 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     Raises:
         ScenarioError: a file of the scenario is missing or cannot be read.
         ConfigError: the zone is none, two egos have the same id, or people would tremble.
-        ControlError: a controller or model is not installed.
+        ControlError: a controller, model or metric is not installed.
+        MetricError: the columns of a metric cannot be used.
         VehicleError: a vehicle FMU cannot be read, or its profile does not fit.
     """
     if config.measure:
@@ -57,6 +59,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     time_step = control_step(config, files)
     require_vehicles(egos, time_step)
     require_code(config, time_step)
+    metric_columns(config)  # which have to be sound
     require_steady_preset(config.crowd.preset, time_step, "[crowd] preset")
     for ego in egos:
         if ego.perception.preset:

@@ -65,6 +65,17 @@ RULE = Socket(
     "--rule",
     "demand",
 )
+METRIC = Socket(
+    "metric",
+    "[metrics] name",
+    ("metrics",),
+    "metrics",
+    "metrics",
+    "giveway.metrics",
+    "--metric",
+    "--metric",
+    "measure",
+)
 SENSOR = Socket(
     "sensor",
     "[perception] sensor",
@@ -77,4 +88,6 @@ SENSOR = Socket(
     "observe",
 )
 SOCKETS = (CONTROLLER, MODEL, SENSOR)
-"""The sockets that one key names; those of rules are the keys of a table."""
+"""The sockets that one key names."""
+TABLES = (RULE, METRIC)
+"""The sockets of which a table names any number: its keys are the names."""

@@ -26,6 +26,7 @@ from giveway.metrics import (
 )
 from giveway.metrics.law import Drive, Ledger, Undisturbed, ledger
 from giveway.metrics.pedestrians import pedestrian_columns, table_of
+from giveway.metrics.plugged_in import NOTHING_MEASURED, Measured
 from giveway.results.effect import Effect
 from giveway.results.law import LawRows, others_of, people_from
 from giveway.run_data.outputs import Output
@@ -54,6 +55,7 @@ class EgoResult:
         law: what its drive is judged by; None: the law of the road has no say on its way.
         outputs: what the profile of its FMU wants to have recorded.
         effect: the run's people beside those of its twin; None: there is no twin.
+        measured: what metrics of other packages say of it; nothing of a run that was recovered.
         hasty: indices of those who set out from a sidewalk more suddenly than its layer assumes.
     """
 
@@ -70,6 +72,7 @@ class EgoResult:
     outputs: tuple[Output, ...] = ()
     law: LawRows | None = None
     effect: Effect | None = None
+    measured: Measured = NOTHING_MEASURED
     hasty: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     @property
@@ -181,6 +184,7 @@ class EgoResult:
             row |= self.ledger.summary.as_dict()
         if self.effect is not None:
             row |= self.effect.summary(self.id).as_dict()
+        row |= self.measured.values
         return row
 
 

@@ -279,6 +279,7 @@ class RunTables:
         if self.effect is not None:
             summary = (*summary, *DELAY_SUMMARY_FIELDS)
             pedestrians = (*pedestrians, *DELAY_FIELDS)
+        summary = (*summary, *(own for ego in self.egos[:1] for own in ego.measured.columns))
         outputs = {output.name: output.column for ego in self.egos for output in ego.outputs}
         if len(self.signal_track.time):
             optional |= {"signals": SIGNAL_COLUMNS}

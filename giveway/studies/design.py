@@ -12,7 +12,7 @@ from giveway.config.renamed import RENAMED, advice
 from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
-from giveway.plug_ins.sockets import RULE
+from giveway.plug_ins.sockets import TABLES
 from giveway.studies.definition import StudyDefinition
 from giveway.studies.table_columns import (
     COMPARISON_COLUMNS,
@@ -41,6 +41,8 @@ _RESERVED = frozenset(
     for column in columns
 }  # columns of the tables
 
+_NAMED = frozenset(socket.options for socket in TABLES)
+"""The tables whose keys are the names of plug-ins."""
 _NOTHING = "none"  # an empty text or list, as a label
 
 
@@ -229,10 +231,10 @@ def _named_factor(
 
 
 def _plugged_location(table: str, key: str) -> tuple[str, ...]:
-    """Return the location of a plug-in's option; a rule's options are below the rule's name."""
-    rule, _, own = key.rpartition(".")
-    is_option = table == RULE.options and rule and ":" not in own
-    return (table, rule, own) if is_option else (table, key)
+    """Return the location of a plug-in's option; those of a rule or metric are below its name."""
+    name, _, own = key.rpartition(".")
+    is_option = table in _NAMED and name and ":" not in own
+    return (table, name, own) if is_option else (table, key)
 
 
 def _option_factor(name: str, values: list[Any], place: str, definition: StudyDefinition) -> Factor:
@@ -240,7 +242,7 @@ def _option_factor(name: str, values: list[Any], place: str, definition: StudyDe
     if name == "seed":
         raise ConfigError(f"{place}: seeds are not a factor; set replications and first_seed")
     table, dot, key = name.partition(".")
-    plugged_in = bool(dot) and (table in PLUGGED or (table == RULE.options and name not in known))
+    plugged_in = bool(dot) and (table in PLUGGED or (table in _NAMED and name not in known))
     gone = RENAMED.get(tuple(name.split(".")))
     if gone is not None:
         raise ConfigError(f"{place}: no longer exists; {advice(gone, as_flag=False)}")

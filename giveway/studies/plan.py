@@ -1,12 +1,13 @@
 """Planning a study: settings, key and order of every run, before any of them is made."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from giveway.config import RunConfig
 from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError
+from giveway.metrics.plugged_in import metric_columns
 from giveway.results.provenance import scenario_inputs
 from giveway.scenario_files.declared_ids import declares_people
 from giveway.studies.definition import StudyDefinition
@@ -103,7 +104,19 @@ def plan(definition: StudyDefinition, origin: str) -> Plan:
     definition = _with_comparison(definition, designed, origin)
     _require_metric(definition, origin)
     cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
+    _require_own_names(designed, cells, origin)
     return Plan(definition, designed, cells)
+
+
+def _require_own_names(designed: Design, cells: Iterable[PlannedCell], origin: str) -> None:
+    """Make sure that no factor has the name of a metric's column."""
+    names = {factor.name for factor in designed.factors}
+    for column in (column for planned in cells for column in metric_columns(planned.config)):
+        if column.name in names:
+            raise ConfigError(
+                f"{origin}: factor '{column.name}': a metric of [metrics] has a column of this "
+                "name; give the factor another one"
+            )
 
 
 def _with_comparison(definition: StudyDefinition, designed: Design, origin: str) -> StudyDefinition:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from giveway.config import RunConfig
+from giveway.run_data.columns import Column
 
 Scalar = str | bool | int | float
 
@@ -80,6 +81,7 @@ class RunRecord:
         remarks: notes on what is unusual about the run.
         failure: one line: why it failed or crashed, and where; empty if it did not.
         computing: Execution of the run.
+        columns: Columns of the rows that metrics of other packages have added.
     """
 
     run: str
@@ -89,6 +91,7 @@ class RunRecord:
     remarks: tuple[str, ...] = ()
     failure: str = ""
     computing: Computing = field(default_factory=Computing)
+    columns: tuple[Column, ...] = ()
 
     @property
     def failed(self) -> bool:
@@ -104,7 +107,10 @@ class RunRecord:
 
     def to_json(self) -> str:
         """Return the record as one line of JSON, in which nan becomes null."""
-        return json.dumps(_plain(asdict(self)), ensure_ascii=False, allow_nan=False)
+        values = asdict(self)
+        if not self.columns:
+            del values["columns"]
+        return json.dumps(_plain(values), ensure_ascii=False, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> RunRecord:
@@ -126,7 +132,9 @@ class RunRecord:
             computing = Computing(**{k: _number(v) for k, v in values.pop("computing").items()})
             rows = tuple({k: _number(v) for k, v in row.items()} for row in values.pop("rows"))
             remarks = tuple(values.pop("remarks"))
-            return cls(rows=rows, remarks=remarks, computing=computing, **values)
+            columns = tuple(Column(**column) for column in values.pop("columns", ()))
+            values |= {"rows": rows, "remarks": remarks, "columns": columns}
+            return cls(computing=computing, **values)
         except (TypeError, KeyError, AttributeError) as error:
             raise ValueError(f"not a run's record: {error}") from error
 

@@ -108,6 +108,8 @@ def _shown(result: RunResult) -> Iterator[tuple[str, str, str]]:
         always = name in {"encounters", "yielding_rate"}
         if any(always or summary[name] > 0.0 for summary in judged):
             yield label, name, unit
+    for own in (column for ego in result.egos[:1] for column in ego.measured.columns):
+        yield own.name + (f" ({own.unit})" if own.unit else ""), own.name, ""
 
 
 def _title(result: RunResult) -> str:

@@ -10,7 +10,16 @@ from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import find, is_fmu, load_class, shown
 from giveway.plug_ins.options import plain
-from giveway.plug_ins.sockets import CONTROLLER, MODEL, RULE, SENSOR, SOCKETS, Socket
+from giveway.plug_ins.sockets import (
+    CONTROLLER,
+    METRIC,
+    MODEL,
+    RULE,
+    SENSOR,
+    SOCKETS,
+    TABLES,
+    Socket,
+)
 
 if TYPE_CHECKING:
     from giveway.config.run_config import EgoRunConfig, RunConfig
@@ -21,7 +30,7 @@ class Named(NamedTuple):
 
     Attributes:
         socket: that it is for.
-        whose: the ego's id, or "the crowd".
+        whose: the ego's id, "the crowd", or "the run".
         name: as the user wrote it; perhaps a path to an FMU.
         options: as the user has set them.
         ego: whose controller it is; None: it is none.
@@ -51,15 +60,16 @@ class Named(NamedTuple):
 
 
 _PLACES = (
-    (CONTROLLER, "in the controller at"),
-    (SENSOR, "in the controller at"),
-    (MODEL, "in the crowd's step from"),
+    (CONTROLLER, "in the controller at", "in the controller {} at"),
+    (SENSOR, "in the controller at", "in the sensor {} at"),
+    (MODEL, "in the crowd's step from", "in the pedestrian model {} at"),
+    (METRIC, "while the run's numbers were being worked out", "in the metric {}"),
 )
-"""As a heartbeat tells them."""
+"""Places as a heartbeat tells them, and in words that name the code."""
 
 
 def foreign_code(config: RunConfig) -> list[Named]:
-    """All plug-ins of a run: of its egos, their sensors, and its crowd."""
+    """All plug-ins of a run: of its egos, their sensors, its crowd, and its metrics."""
     named = [
         Named(CONTROLLER, ego.ego_id, ego.controller, ego.controller_options, ego)
         for ego in config.each_ego()
@@ -75,11 +85,12 @@ def foreign_code(config: RunConfig) -> list[Named]:
     ]
     if config.crowd.plugged_in:
         named.append(Named(MODEL, "the crowd", config.crowd.model, config.model_options))
-    return named
+    metrics = config.metrics.plugged_in.items()
+    return named + [Named(METRIC, "the run", name, own) for name, own in metrics]
 
 
 def code_hashes(
-    config: RunConfig, sockets: Collection[Socket] = (*SOCKETS, RULE)
+    config: RunConfig, sockets: Collection[Socket] = (*SOCKETS, *TABLES)
 ) -> dict[str, str]:
     """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
 
@@ -102,11 +113,11 @@ def named_in(failure: str, config: RunConfig) -> str:
         config: of the run.
     """
     code = foreign_code(config)
-    for socket, place in _PLACES:
+    for socket, place, named in _PLACES:
         names = dict.fromkeys(shown(one.name) for one in code if one.socket is socket)
         if names:
             these = " or ".join(f"'{name}'" for name in names)
-            failure = failure.replace(place, f"in the {socket.what} {these} at")
+            failure = failure.replace(place, named.format(these))
     return failure
 
 
@@ -137,7 +148,7 @@ def provenance(config: RunConfig) -> dict[str, dict[str, dict[str, Any]]]:
         else:
             _, options = _loaded(one)
             described = find(one.name, one.socket).described() | {"options": plain(options)}
-        whose = f"{one.name} of {one.whose}" if one.socket is RULE else one.whose
+        whose = f"{one.name} of {one.whose}" if one.socket in TABLES else one.whose
         told.setdefault(one.socket.manifest, {})[whose] = described
     return told
 
@@ -146,6 +157,6 @@ def _loaded(one: Named) -> tuple[Any, Any]:
     try:
         return load_class(one.name, one.socket, one.options)
     except ConfigError as error:
-        whose = one.whose if one.socket is MODEL else f"ego '{one.whose}'"
+        whose = one.whose if one.socket in {MODEL, METRIC} else f"ego '{one.whose}'"
         error.args = (f"{whose}: {error}",)
         raise

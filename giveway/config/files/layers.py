@@ -19,7 +19,7 @@ from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import same_name
-from giveway.plug_ins.sockets import CONTROLLER, SOCKETS
+from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES
 
 Location = tuple[str, ...]
 
@@ -258,11 +258,10 @@ def dump_toml(config: RunConfig) -> str:
     for table in PLUGGED:
         if own := getattr(config, table):
             document.add(table, tomlkit.item(own))
-    rules: Any = document.get("rules")
-    for name, own in config.rules.plugged_in.items():
-        if rules is None:
-            rules = document.setdefault("rules", tomlkit.table())
-        rules.add(name, tomlkit.item(dict(own) or True))
+    for table in (socket.options for socket in TABLES):
+        for name, own in getattr(config, table).plugged_in.items():
+            named: Any = document.setdefault(table, tomlkit.table())
+            named.add(name, tomlkit.item(dict(own) or True))
     crowd: Any = document["crowd"]
     for where, key, entries in (
         (crowd, "flow", [flow.settings() for flow in config.crowd.flow]),

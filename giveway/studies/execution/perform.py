@@ -63,6 +63,7 @@ def perform(
         ending=str(result.ending),
         rows=rows,
         remarks=tuple(result.remarks),
+        columns=result.egos[0].measured.columns if result.egos else (),
         computing=replace(
             _since(began), control_median=median, control_max=longest, twin=twin_time(result)
         ),

@@ -48,13 +48,23 @@ FAILURE_COLUMNS = (
 )
 
 
-def runs_columns(design: Design) -> tuple[Column, ...]:
-    """The columns of ``runs.csv``."""
+def runs_columns(design: Design, measured: Iterable[Column] = ()) -> tuple[Column, ...]:
+    """The columns of ``runs.csv``.
+
+    Args:
+        design: Design of the study.
+        measured: Columns of metrics of other packages.
+    """
     factors = tuple(
         Column(f.name, _type_of(f.levels), f.unit, f"level of the factor {f.name}")
         for f in design.factors
     )
-    return (*_HEAD, *factors, *_EGO, *_NUMBERS)
+    return (*_HEAD, *factors, *_EGO, *_NUMBERS, *measured)
+
+
+def measured_columns(records: Iterable[RunRecord]) -> tuple[Column, ...]:
+    """The columns that metrics of other packages have added to the records, each once."""
+    return tuple({own.name: own for record in records for own in record.columns}.values())
 
 
 def _type_of(levels: Iterable[Level]) -> Any:
@@ -73,14 +83,17 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
         records: Records with the cell and the seed of each.
         design: Design of the study.
     """
+    records = list(records)
+    measured = measured_columns(record for _, _, record in records)
+    numbers = [column.name for column in (*_NUMBERS, *measured)]
     rows: list[dict[str, Any]] = []
     for cell, seed, record in records:
         head = {"run": run_id(cell.number, seed), "cell": cell.number, "seed": seed}
         head |= {name: level.value for name, level in cell.levels.items()}
         for row in record.rows or ({"ending": record.ending},):
-            known = {field.name: row[field.name] for field in _NUMBERS if field.name in row}
+            known = {name: row[name] for name in numbers if name in row}
             rows.append(head | {"ego": row.get("ego", ""), "ending": row["ending"]} | known)
-    columns = runs_columns(design)
+    columns = runs_columns(design, measured)
     frame = pd.DataFrame(rows, columns=[column.name for column in columns])
     frame = frame.sort_values(["cell", "seed", "ego"], kind="stable", ignore_index=True)
     return _typed(frame, columns)

@@ -12,6 +12,7 @@ from typing import Any
 import pandas as pd
 
 from giveway.errors import ResultsError
+from giveway.run_data.columns import Column
 from giveway.studies.definition import StudyDefinition, parse_definition
 from giveway.studies.design import Cell, Design, design
 from giveway.studies.folder.folder_contents import (
@@ -26,6 +27,7 @@ from giveway.studies.folder.frames import (
     computing_frame,
     execution_frame,
     failures_frame,
+    measured_columns,
     runs_columns,
     runs_frame,
 )
@@ -120,6 +122,11 @@ class StudyFolder:
                 if record is not None:
                     found.append((cell, seed, record))
         return found
+
+    @property
+    def runs_columns(self) -> tuple[Column, ...]:
+        """The columns of :attr:`runs`."""
+        return runs_columns(self.design, measured_columns(record for *_, record in self.records))
 
     @cached_property
     def runs(self) -> pd.DataFrame:

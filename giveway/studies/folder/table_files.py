@@ -16,7 +16,6 @@ from giveway.studies.folder.frames import (
     EXECUTION_COLUMNS,
     FAILURE_COLUMNS,
     as_written,
-    runs_columns,
 )
 from giveway.studies.folder.sealing import fingerprint, sealed
 from giveway.studies.folder.study_folder import StudyFolder
@@ -83,13 +82,13 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
 
 def _columns(study: StudyFolder, name: str) -> Sequence[Column]:
     if name == "runs":
-        return runs_columns(study.design)
+        return study.runs_columns
     if name == "execution":
         return EXECUTION_COLUMNS
     if name == "failures":
         return FAILURE_COLUMNS
     frame: pd.DataFrame = getattr(study, name)
-    known = {column.name: column for column in runs_columns(study.design)}
+    known = {column.name: column for column in study.runs_columns}
     described = {column.name: column for column in _DESCRIBED.get(name, _COUNTED)}
     return [
         described.get(column)

@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
-from giveway.cli.flags import set_rules
+from giveway.cli.flags import set_plug_ins
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import Layer, build_config, dump_toml
 from giveway.config.option import Section
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.errors import ConfigError
+from giveway.plug_ins.sockets import METRIC, RULE
 
 NAMES = tuple(RulesConfig.model_fields)
 
@@ -70,7 +71,7 @@ def test_rules_of_other_packages_are_named_with_their_options() -> None:
 
 def test_the_words_of_the_rule_flag() -> None:
     words = ["zone.limit=8.3", "zone.edge=a", "plain", "mine:Rule", "my.mod:Rule.limit=2"]
-    assert set_rules(words) == {
+    assert set_plug_ins(words, RULE) == {
         "zone": {"limit": 8.3, "edge": "a"},
         "plain": True,
         "mine:Rule": True,
@@ -78,7 +79,24 @@ def test_the_words_of_the_rule_flag() -> None:
     }
     for bad in (["zone.a=1", "zone.a=2"], ["limit=3"]):
         with pytest.raises(ConfigError, match="--rule "):
-            set_rules(bad)
+            set_plug_ins(bad, RULE)
+
+
+def test_the_words_of_the_metric_flag_and_the_table_are_alike() -> None:
+    named = set_plug_ins(["mine:Metric.limit=2", "mine:Other"], METRIC)
+    config = built({"metrics": named | {"mine:Off": False}, "egos": ({}, {"rules": {}})})
+    assert [dict(ego.metrics.plugged_in) for ego in config.each_ego()] == [
+        {"mine:Metric": {"limit": 2}, "mine:Other": {}}
+    ] * 2
+    assert tomllib.loads(dump_toml(config))["metrics"] == named
+    assert "metrics" not in dump_toml(RunConfig())
+    with pytest.raises(ConfigError, match="--metric limit=3: expected a metric"):
+        set_plug_ins(["limit=3"], METRIC)
+
+
+def test_a_metric_is_none_of_one_ego() -> None:
+    with pytest.raises(ConfigError, match="unknown key 'metrics'"):
+        built({"egos": ({"metrics": {"mine:Metric": True}},)})
 
 
 def test_the_table_is_like_the_others() -> None:

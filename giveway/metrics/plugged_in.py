@@ -1,0 +1,188 @@
+"""Metrics of other packages: what they declare, and what they measure of one ego's drive."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+from numbers import Integral, Real
+from typing import Any, Protocol
+
+import numpy as np
+
+from giveway.config import RunConfig
+from giveway.errors import MetricError
+from giveway.metrics.delays import DELAY_SUMMARY_FIELDS
+from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.pedestrians import WALK_SUMMARY_FIELDS
+from giveway.metrics.summary import SUMMARY_FIELDS
+from giveway.plug_ins.faults import described, shown
+from giveway.plug_ins.finding import load_class
+from giveway.plug_ins.sockets import METRIC
+from giveway.run_data.columns import SUMMARY_HEAD, Column, columns_of
+
+_OURS = (*SUMMARY_HEAD, *SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS, *WALK_SUMMARY_FIELDS)
+_TAKEN = {"run": "giveway", "cell": "giveway"} | {column.name: "giveway" for column in _OURS}
+"""Owner of each column that the tables of runs and studies have already."""
+_EXPECTED = {
+    "number": "a finite number, or nan if there is none",
+    "integer": "a whole number",
+    "boolean": "True or False",
+}
+
+
+class Metric(Protocol):
+    """A metric of another package.
+
+    Attributes:
+        Columns: Dataclass of ``Annotated[float | int | bool, Quantity(unit, meaning)]``, one
+            attribute for each column.
+    """
+
+    Columns: type
+
+    def measure(self, drive: Any) -> Any:
+        """Return an instance of ``Columns``.
+
+        Args:
+            drive: :class:`~giveway.results.ego_result.EgoResult` of one ego; not to be changed.
+        """
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the metrics of other packages have measured of one drive.
+
+    Attributes:
+        columns: Columns that they add to the summary.
+        values: Value of each column by its name; nan if its metric failed.
+        faults: Faults of metrics, a sentence each.
+    """
+
+    columns: tuple[Column, ...] = ()
+    values: dict[str, float] = field(default_factory=dict)
+    faults: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Declared:
+    """A metric as its package declares it, with the options of the run."""
+
+    name: str
+    kind: Any
+    options: Any
+    columns: tuple[Column, ...]
+
+    def values(self, drive: Any) -> dict[str, float]:
+        """Return the value of each column.
+
+        Raises:
+            MetricError: the metric raised, or its answer cannot be used.
+        """
+        try:
+            metric = self.kind() if self.options is None else self.kind(self.options)
+            answer = metric.measure(drive)
+        except (Exception, SystemExit) as error:
+            raise MetricError(f"raised {described(error)}") from error
+        if not isinstance(answer, self.kind.Columns):
+            raise MetricError(f"returned {shown(answer)}: expected an instance of its Columns")
+        attributes = dataclasses.fields(self.kind.Columns)
+        return {
+            column.name: _checked(column, getattr(answer, attribute.name))
+            for column, attribute in zip(self.columns, attributes, strict=True)
+        }
+
+
+NOTHING_MEASURED = Measured()
+"""Result without metrics of other packages."""
+
+
+def metric_columns(config: RunConfig) -> tuple[Column, ...]:
+    """Return the columns that metrics of other packages add to the summary of a run.
+
+    Args:
+        config: Configuration of the run.
+
+    Raises:
+        ConfigError: the options of a metric cannot be used.
+        ControlError: a metric is not installed, or cannot be imported.
+        MetricError: a metric declares no columns, or one that another metric or giveway has.
+    """
+    return tuple(column for metric in _declared(config) for column in metric.columns)
+
+
+def measured(config: RunConfig, drive: Any) -> Measured:
+    """Return what the metrics of a run measure of one ego's drive.
+
+    A metric that fails costs its own columns and nothing else: the run has been driven, and its
+    other numbers are as good as without the metric.
+
+    Args:
+        config: Configuration of the run.
+        drive: :class:`~giveway.results.ego_result.EgoResult` of the ego.
+    """
+    columns: list[Column] = []
+    values: dict[str, float] = {}
+    faults: list[str] = []
+    for metric in _declared(config):
+        columns += metric.columns
+        try:
+            values |= metric.values(drive)
+        except MetricError as error:
+            values |= dict.fromkeys((column.name for column in metric.columns), math.nan)
+            faults.append(f"metric '{metric.name}' of '{drive.id}' {error}; its columns are empty")
+    return Measured(tuple(columns), values, tuple(faults))
+
+
+def _declared(config: RunConfig) -> list[_Declared]:
+    """Return the metrics of a run, each with its columns, in the order of the configuration."""
+    found: list[_Declared] = []
+    owners = dict(_TAKEN)
+    for name, settings in config.metrics.plugged_in.items():
+        kind, options = load_class(name, METRIC, settings)
+        if not callable(getattr(kind, METRIC.method, None)):
+            raise MetricError(
+                f"{METRIC.setting} = '{name}': {shown(kind)} has no method {METRIC.method}; "
+                "expected a class with one (docs/plugins.md)"
+            )
+        metric = _Declared(name, kind, options, _columns(name, kind))
+        for column in metric.columns:
+            if column.name in owners:
+                raise MetricError(
+                    f"{METRIC.setting} = '{name}': column '{column.name}': "
+                    f"{owners[column.name]} has a column of this name already; choose another name"
+                )
+            owners[column.name] = f"'{name}'"
+        found.append(metric)
+    return found
+
+
+def _columns(name: str, kind: Any) -> tuple[Column, ...]:
+    """Return the columns that the class of a metric declares."""
+    table = getattr(kind, "Columns", None)
+    try:
+        if not (isinstance(table, type) and dataclasses.is_dataclass(table)):
+            raise TypeError(f"Columns = {shown(table)}")
+        columns = columns_of(table)
+        if not columns or any(column.type not in _EXPECTED for column in columns):
+            raise TypeError("no column, or one that holds no number")
+    except Exception as error:
+        raise MetricError(
+            f"{METRIC.setting} = '{name}': {described(error).partition(' (')[0]}: expected "
+            "Columns, a dataclass whose attributes are all Annotated[float, int or bool, "
+            "Quantity(unit, meaning)] (docs/plugins.md)"
+        ) from error
+    return columns
+
+
+def _checked(column: Column, value: Any) -> float:
+    """Return the value of a column in Python's own type."""
+    is_truth = isinstance(value, bool | np.bool_)
+    if column.type == "boolean" and is_truth:
+        return bool(value)
+    if column.type == "integer" and isinstance(value, Integral) and not is_truth:
+        return int(value)
+    is_number = column.type == "number" and isinstance(value, Real) and not is_truth
+    if is_number and not math.isinf(number := float(value)):
+        return number
+    raise MetricError(f"returned {column.name} = {shown(value)}: expected {_EXPECTED[column.type]}")
