@@ -13,6 +13,16 @@ from controller.errors import (
 )
 from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials, Verdict
 from controller.model import LongitudinalModel
+from controller.observation import (
+    EgoState,
+    Limits,
+    Observation,
+    PathAhead,
+    People,
+    RoadAhead,
+    SeenPeople,
+    Traffic,
+)
 from controller.paper_mpc.mpc import Mpc
 from controller.paper_mpc.solution import MpcSolution
 from controller.parameters import PRINTED_PID, MpcParameters, PidParameters
@@ -34,7 +44,7 @@ from controller.planning import (
 from controller.plug_ins.conformance import Finding, check_controller
 from controller.plug_ins.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
 from controller.plug_ins.plugged_in import PluggedIn
-from controller.protocol import Controller, Decision, Observation, PathAhead, People
+from controller.protocol import Controller, Decision
 from controller.qp.least_squares import Outcome
 from controller.safety.layer import SafeForce, SafetyLayer, SafetyParameters, largest_safe_force
 from controller.safety.stopping import towards_kerb
@@ -51,10 +61,12 @@ __all__ = [
     "ControllerError",
     "Decision",
     "Defaults",
+    "EgoState",
     "Finding",
     "Force",
     "Foresight",
     "Heats",
+    "Limits",
     "LongitudinalModel",
     "Manoeuvre",
     "ManoeuvreParameters",
@@ -77,15 +89,18 @@ __all__ = [
     "PluggedIn",
     "Prospect",
     "ReferenceParameters",
+    "RoadAhead",
     "SafeForce",
     "SafetyLayer",
     "SafetyParameters",
+    "SeenPeople",
     "Setup",
     "SolverSetupError",
     "Speed",
     "SpeedController",
     "SpeedReference",
     "StyleName",
+    "Traffic",
     "Trials",
     "TunedPid",
     "TunedPidParameters",

@@ -1,10 +1,11 @@
 """The MPC where it has a plan, else the PID (Yang & Özgüner 2019, algorithm 1); or a PID alone."""
 
 from controller.defaults import STANDSTILL
+from controller.observation import Observation
 from controller.paper_mpc.mpc import Mpc
 from controller.pid.pid import Pid
 from controller.pid.tuned_pid import TunedPid
-from controller.protocol import Decision, Observation
+from controller.protocol import Decision
 
 
 class SpeedController:
@@ -36,7 +37,8 @@ class SpeedController:
 
     def control(self, observation: Observation) -> Decision:
         """Decide on the force at t_k."""
-        speed, gap, limit = observation.speed, observation.gap, observation.speed_limit
+        ego, ahead, limit = observation.ego, observation.ahead, observation.limits.speed_limit
+        speed, gap = ego.speed, ahead.gap
         if self.mpc is None:
             decision = self._by_pid(speed, gap, limit, "selected", "", 0)
         else:
@@ -45,7 +47,7 @@ class SpeedController:
             previous = 0.0 if speed <= STANDSTILL else self._previous_force
             reference = min(self.mpc.parameters.reference_speed, limit)
             solution = self.mpc.solve(
-                observation.position, speed, previous, observation.obstacle_positions, reference
+                ego.position, speed, previous, ahead.obstacle_positions, reference
             )
             if solution.found:
                 self.pid.track(speed, gap, limit)

@@ -10,6 +10,7 @@ from controller.defaults import STANDSTILL
 from controller.errors import ParameterError
 from controller.foresight import Foresight, Manoeuvre
 from controller.model import LongitudinalModel
+from controller.observation import Observation
 from controller.planning.following import (
     UNSOLVED,
     follow,
@@ -19,7 +20,7 @@ from controller.planning.following import (
 from controller.planning.parameters import PlannerParameters
 from controller.planning.search import Search
 from controller.planning.smoothing import SmoothingProblem
-from controller.protocol import Decision, Observation
+from controller.protocol import Decision
 from controller.qp.exact_solver import ExactSolver
 from controller.qp.least_squares import Outcome
 
@@ -215,21 +216,20 @@ class PlanningController:
 
     def control(self, observation: Observation) -> Decision:
         """Decide on the force at t_k."""
-        speed = observation.speed
+        ego, ahead, limits = observation.ego, observation.ahead, observation.limits
+        speed = ego.speed
         previous = 0.0 if speed <= STANDSTILL else self._previous_force
-        reference = min(self.planner.parameters.reference_speed, observation.speed_limit)
-        allowed = observation.obstacle_positions - (
-            observation.position + observation.safe_distance
-        )
+        reference = min(self.planner.parameters.reference_speed, limits.speed_limit)
+        allowed = ahead.obstacle_positions - (ego.position + limits.safe_distance)
         plan = self.planner.plan(
             speed,
             previous,
             reference,
             allowed,
-            observation.foresight,
-            observation.lane_speeds,
-            observation.gap,
-            observation.to_clear,
+            observation.pedestrians.foresight,
+            limits.lane_speeds,
+            ahead.gap,
+            ahead.to_clear,
         )
         force = plan.force
         if speed <= STANDSTILL and force < 0.0:

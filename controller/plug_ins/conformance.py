@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from controller.errors import PlugInError
+from controller.observation import Observation
 from controller.plug_ins.plug_in import Setup
 from controller.plug_ins.plugged_in import PluggedIn
-from controller.protocol import Observation
 
 if TYPE_CHECKING:
     from controller._jit import Array
@@ -121,21 +121,21 @@ def _corner_cases(setup: Setup, horizon: int) -> Iterator[tuple[str, Observation
     usual = scene(5, horizon, setup)
     none = np.full(len(usual.obstacle_positions), inf)
     nobody = _People(np.zeros((0, 2)), np.zeros((0, 2)))
-    free = usual._replace(
+    free = usual.replaced(
         gap=inf, person_gap=inf, leader_gap=inf, leader_speed=0.0, obstacle_positions=none
     )
     yield "nothing in front", free
-    yield "nobody at all", free._replace(people=nobody, person_ids=np.zeros(0, dtype=np.int64))
+    yield "nobody at all", free.replaced(people=nobody, person_ids=np.zeros(0, dtype=np.int64))
     yield (
         "no people, vehicles or lanes known",
-        free._replace(people=None, person_ids=None, vehicles=None, lane_speeds=None, path=None),
+        free.replaced(people=None, person_ids=None, vehicles=None, lane_speeds=None, path=None),
     )
-    yield "standing", usual._replace(speed=0.0)
-    yield "rolling back a little", usual._replace(speed=-1e-9)
-    yield "in front at once", usual._replace(gap=0.0, person_gap=0.0, leader_gap=0.0)
-    yield "overlapping", usual._replace(gap=-0.5, person_gap=-0.5, leader_gap=-0.5)
-    yield "a limit of 0", usual._replace(speed_limit=0.0, stop_gap=0.0)
-    yield "no limit", usual._replace(speed_limit=inf)
+    yield "standing", usual.replaced(speed=0.0)
+    yield "rolling back a little", usual.replaced(speed=-1e-9)
+    yield "in front at once", usual.replaced(gap=0.0, person_gap=0.0, leader_gap=0.0)
+    yield "overlapping", usual.replaced(gap=-0.5, person_gap=-0.5, leader_gap=-0.5)
+    yield "a limit of 0", usual.replaced(speed_limit=0.0, stop_gap=0.0)
+    yield "no limit", usual.replaced(speed_limit=inf)
 
 
 def check_controller(
@@ -205,7 +205,7 @@ class _Battery:
         for step in range(_STEPS):
             seen = scene(step, self._horizon, self._setup, turned=turned, order=order)
             last = forces[step - 1] if step else 0.0
-            forces[step] = controller.control(seen._replace(force=last)).force
+            forces[step] = controller.control(seen.replaced(force=last)).force
             if spoil:
                 _spoil(seen)
             if other is not None:

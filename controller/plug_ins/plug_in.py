@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable
 
-from controller.protocol import Observation
+from controller.observation import Observation
 
 
 class Setup(NamedTuple):

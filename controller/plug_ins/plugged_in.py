@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller.errors import PlugInError
+from controller.observation import Observation, People
 from controller.plug_ins.plug_in import Acceleration, Force, PlugIn, Setup, Speed
-from controller.protocol import Decision, Observation, People
+from controller.protocol import Decision
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -170,10 +171,10 @@ class _SeenPeople(NamedTuple):
 
 
 def _read_only(observation: Observation) -> Observation:
-    """The observation with arrays that raise where they are written: they are the run's own."""
+    """A copy of the observation, whose arrays raise where they are written: they are the run's."""
     people, vehicles, ids = observation.people, observation.vehicles, observation.person_ids
     lanes = observation.lane_speeds
-    return observation._replace(
+    return observation.replaced(
         obstacle_positions=_fixed(observation.obstacle_positions),
         people=None if people is None else _people(people),
         vehicles=None if vehicles is None else _fixed(vehicles),

@@ -19,9 +19,9 @@ from math import inf, sqrt
 
 import numpy as np
 
+from controller.observation import Observation
 from controller.parameters import require_not_negative, require_positive
 from controller.plug_ins.plug_in import Acceleration, Setup
-from controller.protocol import Observation
 from controller.reference_drivers.people_ahead import people_ahead
 
 _G = 9.81  # [m/s^2]

@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller._jit import Array
+from controller.observation import Observation
 from controller.parameters import require_not_negative, require_positive
 from controller.plug_ins.plug_in import Acceleration, Setup
-from controller.protocol import Observation
 from controller.reference_drivers.people_ahead import people_ahead
 
 _AT_LINE = 0.5  # [m] before a stop line it stands

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller._jit import Array
-from controller.protocol import Observation
+from controller.observation import Observation
 
 SIGHT, SPACING = 40.0, 0.5  # [m] of the way ahead that is looked at, and between its points
 STATIONS = np.arange(0.0, SIGHT, SPACING)

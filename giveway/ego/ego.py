@@ -7,16 +7,13 @@ import numpy as np
 
 from controller import Decision, Observation
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
-from giveway.ego.foresight.building import foresight_of
-from giveway.ego.foresight.relevance import Nearby, Relevance
-from giveway.ego.percept import NOBODY, Seen
+from giveway.ego.people_in_front import PeopleInFront
+from giveway.ego.percept import Perceived
 from giveway.ego.perception.corridor import Corridor
-from giveway.ego.perception.kerbs import NO_KERBS, Kerbs
+from giveway.ego.perception.kerbs import Kerbs
 from giveway.ego.perception.leader import NO_LEADER, NOBODY_BESIDE
 from giveway.ego.perception.path_ahead import PathView
-from giveway.ego.perception.protocol import Ids, OwnState, Percept
-from giveway.ego.perception.sensing import Perception
-from giveway.ego.perception.sudden_starts import SettingOut
+from giveway.ego.perception.protocol import Ids, OwnState
 from giveway.ego.perception.truth import Truth
 from giveway.ego.rules.following import Following
 from giveway.ego.rules.protocol import Told
@@ -32,36 +29,32 @@ from giveway.geometry.slope import Slope
 from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.rows import STOP_SPEED
 from giveway.run_data.tracks import EgoRow
-from pedestrian_model import Crowd, Surroundings
+from pedestrian_model import Surroundings
 
-_STRAIGHT = 1.0  # [s] for which other vehicles are predicted straight on; then the road may bend
-_LIKELY = 0.75  # of what positions are off at most, as plans count with it: the layer with all
+_STRAIGHT = 1.0  # time [s] for which other vehicles are predicted straight on; roads may bend then
 
 
 class Ego:
     """A vehicle on the road.
 
     Args:
-        waiting: the ego before its departure; its FMU has been started.
-        path: of the ego.
-        departure: station [m] of the front bumper where the FMU's position is 0.
-        shape: of its body.
+        waiting: Ego before its departure; its FMU has been started.
+        path: Path of the ego.
+        departure: Station of the front bumper [m] where the FMU's position is 0.
+        shape: Length and width of its body [m].
         rules: Rules of the road that hold for it.
-        goal: the FMU's position [m] at which it is done.
-        time_step: [s].
+        goal: Position of the FMU [m] at which the drive is over.
+        time_step: Length of a control step [s].
         kerbs: Kerbs beside its path, or None if nobody asks for them.
-        slope: of the path; None: it is level.
+        slope: Slope of the path; None if it is level.
 
     Attributes:
-        front: station of the front bumper [m].
-        pose: where the front bumper's centre is, and the direction of the body.
+        front: Station of the front bumper [m].
+        pose: Centre of the front bumper [m] and heading of the body [rad].
         systems: SUMO's ids of the signal systems whose states it is told.
-        beside: of the background vehicles' rows, see
+        beside: Marks of the last vehicles, see
             :func:`~giveway.ego.perception.leader.vehicles_in_front`.
     """
-
-    front: float
-    pose: Pose
 
     def __init__(
         self,
@@ -76,14 +69,14 @@ class Ego:
         slope: Slope | None = None,
     ) -> None:
         config = waiting.config
-        self._controller, self._predictor = waiting.controller, waiting.predictor
-        self.config, self.id, self.shape = config, waiting.id, shape
+        regulation, controller = config.regulation, waiting.controller
+        self.config, self.id, self.shape, self._controller = config, waiting.id, shape, controller
         self.path, self.departure, self.rules = path, departure, rules
         self._slope, self._time_step = slope, time_step
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal, self.vehicle = goal, waiting.vehicle
-        half_width = config.regulation.corridor_half_width
+        half_width = regulation.corridor_half_width
         self.corridor = Corridor(
             path,
             half_width=shape.width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
@@ -91,38 +84,33 @@ class Ego:
             time_step=time_step,
             walking_speed_limit=waiting.walking_speed_limit,
             body_length=shape.length,
-            straight=round(_STRAIGHT / time_step) if waiting.controller.foresees else None,
+            straight=round(_STRAIGHT / time_step) if controller.foresees else None,
         )
-        span = waiting.horizon * time_step
-        self._relevance = Relevance(waiting, span, shape.length + self.corridor.half_width)
-        self._nearby = Nearby(waiting, path, shape, span, self.corridor.half_width, time_step)
-        self._view = PathView(path)
-        self._chosen: Crowd | None = None  # memory for those who matter
-        self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
+        self._origin = -shape.length / 2 if regulation.gap_from == "centre" else 0.0
+        self._kept = self._origin + regulation.safe_distance  # to who is in front of the bumper [m]
         safety = waiting.safety
-        perception = Perception(config, waiting.worst.acceleration, time_step)
-        self._perception = None if perception.exact else perception
-        self._own = OwnState(Pose(0.0, 0.0, 0.0), 0.0, 0, shape)
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._kerbs = kerbs if self._guard is not None else None
+        self._people = PeopleInFront(waiting, self.corridor, shape, self._kerbs)
         self.systems = rules.systems | (frozenset() if kerbs is None else kerbs.systems)
-        self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
-        self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
         self._force, self._eases_off, self.beside = 0.0, False, NOBODY_BESIDE
         self._heed_vehicles = config.heeds("following")
+        self._own, self._seen = OwnState(Pose(0.0, 0.0, 0.0), 0.0, 0, shape), Perceived()
+        self._view = PathView(path)
+        self._observation = Observation(path=self._view, safe_distance=regulation.safe_distance)
         self._locate()
         self._following = Following(
-            config.regulation.safe_distance,
+            regulation.safe_distance,
             self._origin,
-            config.regulation.comfortable_deceleration,
-            plans=waiting.controller.foresees,
+            regulation.comfortable_deceleration,
+            plans=controller.foresees,
             tuned=config.defaults.smooths,
         )
 
     @property
     def foresees(self) -> bool:
         """Whether it predicts the crowd under each of its manoeuvres."""
-        return self._foresight is not None
+        return self._people.foresight is not None
 
     @property
     def arrived(self) -> bool:
@@ -164,96 +152,56 @@ class Ego:
         truth: Truth,
         surroundings: Surroundings,
         person_ids: Ids,
-    ) -> Seen:
-        """Find what is in front, now and over the horizon.
+    ) -> Perceived:
+        """Find what is in front, now and over the horizon; the next look overwrites it.
 
         Args:
-            row: the ego's row among the vehicles.
-            poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
+            row: Row of the ego among the vehicles.
+            poses: (N, m, 7) poses of all vehicles at steps 0 ... N-1.
             truth: World as it is, which the sensor looks at; all else works on the percept.
-            surroundings: the walls and lights that they heed.
+            surroundings: Walls and lights that pedestrians heed.
             person_ids: Number of each pedestrian of the truth, (n,).
         """
-        front, speed, corridor = self.front, self.vehicle.speed, self.corridor
-        percept, perception = Percept(truth.people, person_ids), self._perception
-        if perception is not None:
-            own = self._own
-            own.pose, own.speed, own.row = self.pose, speed, row
-            percept = perception.observe(truth, person_ids, own)
-        crowd, numbers, _, errors = percept
-        kerbs, hasty = NO_KERBS, NOBODY
-        if self._kerbs is not None:
-            kerbs = self._kerbs.of(crowd.position, crowd.velocity, front)
-            hasty = self._setting_out.beyond(numbers, crowd.velocity, kerbs)
-        pedestrian, reachable = corridor.closest_now(crowd.position, front)
-        closest = pedestrian
-        if perception is not None:
-            closest, _ = corridor.closest_now(truth.people.position, front)
-        ahead = corridor.empty
-        predictor, predicted, relevant, foresight = self._predictor, None, None, None
-        if reachable and predictor is not None:
-            foresight = self._foresight
-            if foresight is None:
-                relevant = self._relevance.of(crowd, self.pose.x, self.pose.y, speed)
-            else:
-                relevant = self._nearby.of(crowd, front, speed)
-            pedestrians = crowd
-            if relevant is not None:
-                self._chosen = pedestrians = crowd.select(relevant, self._chosen)
-            if foresight is not None:
-                behind = self._kerbs.kept(pedestrians, kerbs, relevant) if self._kerbs else kerbs
-                off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
-                who = numbers if relevant is None else numbers[relevant]
-                foresight.look(pedestrians, surroundings, poses, row, front, off, behind, who)
-            else:
-                predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
-                ahead = corridor.closest_predicted(predicted, front, speed)
+        own, seen, front = self._own, self._seen, self.front
+        own.pose, own.speed, own.row = self.pose, self.vehicle.speed, row
+        seen.poses, seen.row, seen.to_clear = poses, row, self.rules.to_clear(front)
+        self._people.look(seen, truth, person_ids, surroundings, own, front)
+        self._heed(seen, front, own.speed)
+        return seen
+
+    def _heed(self, seen: Perceived, front: float, speed: float) -> None:
+        """Fill in the vehicle in front and what the rules of the road demand."""
         rules, leader, vehicles = self.rules, NO_LEADER, None
-        to_clear = rules.to_clear(front)
-        if self._heed_vehicles and poses.shape[1] > 1:
-            leader, vehicles = corridor.closest_vehicle(poses, row, front, speed, self.beside)
-        rules.look(front, speed, crowd, leader)
+        if self._heed_vehicles and seen.poses.shape[1] > 1:
+            leader, vehicles = self.corridor.closest_vehicle(
+                seen.poses, seen.row, front, speed, self.beside
+            )
+        rules.look(front, speed, seen.percept.people, leader)
         if rules.leader is not NO_LEADER:
             leader = min(leader, rules.leader)
             merging = rules.leader.station + rules.leader.speed * self._times
             vehicles = merging if vehicles is None else np.minimum(vehicles, merging)
         if vehicles is not None:
-            spared = self._following.given_up(leader, vehicles, front, speed, to_clear)
-            ahead = np.minimum(ahead, vehicles + spared)
+            spared = self._following.given_up(leader, vehicles, front, speed, seen.to_clear)
+            seen.ahead = np.minimum(seen.ahead, vehicles + spared)
         if rules.latest < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = rules.latest + self._origin
-            ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
-        return Seen(
-            pedestrian,
-            leader,
-            rules.stop,
-            rules.cause,
-            ahead,
-            predicted,
-            relevant,
-            closest,
-            percept,
-            foresight,
-            poses,
-            row,
-            to_clear,
-            kerbs,
-            hasty,
-        )
+            seen.ahead = np.minimum(seen.ahead, allowed + self.config.regulation.safe_distance)
+        seen.leader, seen.stop, seen.stops_for = leader, rules.stop, rules.cause
 
-    def decide(self, step: int, time: float, seen: Seen) -> Decision:
+    def decide(self, step: int, time: float, seen: Perceived) -> Decision:
         """The force for the step from t_k on; kept for :meth:`advance`.
 
         Args:
-            step: k, for messages.
-            time: t_k on SUMO's clock [s].
-            seen: what the ego reacts to.
+            step: Number k of the step, for messages.
+            time: SUMO's clock t_k [s].
+            seen: What the ego reacts to.
 
         Raises:
             ControlError: the controller gave no finite force.
         """
         controller = self._controller
-        decision = controller.control(self._observation(time, seen))
+        decision = controller.control(self._observed(time, seen))
         if not math.isfinite(decision.force):
             raise ControlError(
                 f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
@@ -271,12 +219,11 @@ class Ego:
         self._force = decision.force
         return decision
 
-    def _observation(self, time: float, seen: Seen) -> Observation:
-        """What the controller is shown."""
-        front, vehicle, leader = self.front, self.vehicle, seen.leader
-        safe_distance = self.config.regulation.safe_distance
-        origin, stop = front + self._origin, seen.stop + self._origin + safe_distance
-        rules = self.rules
+    def _observed(self, time: float, seen: Perceived) -> Observation:
+        """What the controller is shown; the next call overwrites it."""
+        front, vehicle, leader, rules = self.front, self.vehicle, seen.leader, self.rules
+        origin, stop = front + self._origin, seen.stop + self._origin
+        stop += self.config.regulation.safe_distance
         vehicle_ahead, limit = math.inf, rules.speed
         if not seen.stop == math.inf == leader.station:
             vehicle_ahead = self._following.station(leader, front, seen.to_clear)
@@ -285,31 +232,21 @@ class Ego:
         if self._controller.foresees:
             limit = min(limit, rules.advice)
         self._view.station = front
-        return Observation(  # by position: a third of the time that keywords take
-            origin,
-            vehicle.speed,
-            min(seen.pedestrian, vehicle_ahead, stop) - origin,
-            seen.ahead,
-            limit,
-            safe_distance,
-            seen.foresight,
-            time,
-            vehicle.acceleration,
-            self._force,
-            seen.stop - front,
-            self._view,
-            seen.percept.people,
-            seen.poses,
-            seen.row,
-            rules.lane_speeds,
-            seen.pedestrian - origin,
-            leader.station - origin,
-            leader.speed,
-            seen.percept.person_ids,
-            seen.to_clear,
-        )
+        shown, percept, numbers = self._observation, seen.percept, seen.percept.person_ids
+        shown.time = time
+        ego, ahead, limits, people = shown.ego, shown.ahead, shown.limits, shown.pedestrians
+        ego.position, ego.speed = origin, vehicle.speed
+        ego.acceleration, ego.force = vehicle.acceleration, self._force
+        ahead.gap = min(seen.pedestrian, vehicle_ahead, stop) - origin
+        ahead.obstacle_positions, ahead.to_clear = seen.ahead, seen.to_clear
+        ahead.person_gap, ahead.stop_gap = seen.pedestrian - origin, seen.stop - front
+        ahead.leader_gap, ahead.leader_speed = leader.station - origin, leader.speed
+        limits.speed_limit, limits.lane_speeds = limit, rules.lane_speeds
+        people.people, people.ids, people.foresight = percept.people, numbers, seen.foresight
+        shown.traffic.poses, shown.traffic.row = seen.poses, seen.row
+        return shown
 
-    def expected(self, seen: Seen) -> Array | None:
+    def expected(self, seen: Perceived) -> Array | None:
         """(N, n, 2) [m] positions that the decision expects at steps 1 ... N; reused later."""
         return seen.predicted if seen.foresight is None else seen.foresight.best
 
@@ -335,10 +272,12 @@ class Ego:
         grade = self._slope.grade(self.front, self.shape.length)
         return (*record, ROAD_GRADE), (*values, grade)
 
-    def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
+    def row(self, time: float, seen: Perceived, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""
-        front = self.front
+        front, cause = self.front, ""
         origin = front + self._origin
+        if self.vehicle.speed < STOP_SPEED:
+            cause = waits_for(front, self._kept, seen, decision, self._eases_off)
         return EgoRow(
             time=time,
             position=self.vehicle.position,
@@ -356,11 +295,5 @@ class Ego:
             reference_speed=decision.reference_speed,
             vehicle_gap=seen.leader.station - origin,
             stop_gap=seen.stop - front,
-            waits_for=self._waits_for(seen, decision),
+            waits_for=cause,
         )
-
-    def _waits_for(self, seen: Seen, decision: Decision) -> str:
-        if self.vehicle.speed >= STOP_SPEED:
-            return ""
-        kept = self._origin + self.config.regulation.safe_distance
-        return waits_for(self.front, kept, seen, decision, self._eases_off)

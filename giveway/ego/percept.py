@@ -1,36 +1,55 @@
 """What an ego reacts to at one instant."""
 
-from typing import NamedTuple
+from dataclasses import dataclass, field
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.foresight.crowd_foresight import CrowdForesight
 from giveway.ego.perception.kerbs import NO_KERBS
-from giveway.ego.perception.leader import Leader
+from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.perception.protocol import Percept
 from giveway.geometry.kernel import Array
+from pedestrian_model import Crowd
 
 NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 
 
-class Seen(NamedTuple):
-    """What the ego reacts to at one instant."""
+@dataclass(slots=True)
+class Perceived:
+    """What an ego reacts to at one instant; one object per ego is refilled in place.
 
-    pedestrian: float  # station [m] of the closest pedestrian in front; inf: none
-    leader: Leader
-    stop: float  # station [m] where the front bumper has to stop; inf: nowhere
-    stops_for: str  # what asks for that: "light", "stop" or "yield"; empty: nothing
-    ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
-    predicted: Array | None  # (N, n, 2) [m] positions at steps 1 ... N, until the next look
-    relevant: NDArray[np.bool_] | None  # (n,) of the percept who has been predicted; None: all
-    closest: float  # station [m] as ``pedestrian``, but of the true positions: for the tables
-    percept: Percept  # what the ego perceives of the pedestrians
-    foresight: (
-        CrowdForesight | None
-    )  # for a controller that foresees, if a pedestrian may come in front
-    poses: Array  # (N, m, 7) of all vehicles at steps 0 ... N-1
-    row: int  # the ego's among them
-    to_clear: float = 0.0  # [m] to be driven on to leave the crossings and junctions that it is on
-    kerbs: Array = NO_KERBS  # (n, 3) of those on sidewalks
-    hasty: NDArray[np.int64] = NOBODY  # numbers of who set out for the road too suddenly just now
+    Attributes:
+        percept: Pedestrians as the ego perceives them.
+        pedestrian: Station [m] of the closest perceived pedestrian in front; inf: nobody.
+        closest: Station [m] of the closest pedestrian of the truth in front, for the tables.
+        leader: Vehicle in front.
+        stop: Station [m] where the front bumper has to stop; inf: nowhere.
+        stops_for: Cause of the stop, "light", "stop" or "yield"; empty without one.
+        ahead: (N,) stations [m] of the closest obstacle at steps 1 ... N.
+        predicted: (N, n, 2) positions [m] at steps 1 ... N, or None; the next look reuses them.
+        relevant: (n,) marks of the perceived people who are predicted; None if all are.
+        foresight: Prediction for a controller that foresees, if a person may come in front.
+        poses: (N, m, 7) poses of all vehicles at steps 0 ... N-1.
+        row: Row of the ego among them.
+        to_clear: Distance [m] to drive on to leave the crossings and junctions that it is on.
+        kerbs: (n, 3) kerbs of the people on sidewalks.
+        hasty: Numbers of the people who set out for the road too suddenly just now.
+    """
+
+    percept: Percept = field(default_factory=lambda: Percept(Crowd.empty(), NOBODY))
+    pedestrian: float = inf
+    closest: float = inf
+    leader: Leader = NO_LEADER
+    stop: float = inf
+    stops_for: str = ""
+    ahead: Array = field(default_factory=lambda: np.empty(0))
+    predicted: Array | None = None
+    relevant: NDArray[np.bool_] | None = None
+    foresight: CrowdForesight | None = None
+    poses: Array = field(default_factory=lambda: np.empty((1, 1, 7)))
+    row: int = 0
+    to_clear: float = 0.0
+    kerbs: Array = field(default_factory=lambda: NO_KERBS)
+    hasty: NDArray[np.int64] = field(default_factory=lambda: NOBODY)

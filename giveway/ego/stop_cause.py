@@ -1,21 +1,23 @@
-"""What an ego that stands stands for."""
+"""Why a stationary ego is waiting."""
 
 from controller import Decision
-from giveway.ego.percept import Seen
+from giveway.ego.percept import Perceived
 
-_NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
+_NEAR = 3.0  # distance [m] beyond the one kept, within which an obstacle is what it waits for
 _FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 
 
-def waits_for(front: float, kept: float, seen: Seen, decision: Decision, eases_off: bool) -> str:
-    """What an ego that stands stands for; empty when it drives off.
+def waits_for(
+    front: float, kept: float, seen: Perceived, decision: Decision, eases_off: bool
+) -> str:
+    """Why a stationary ego is waiting; empty when it drives off.
 
     Args:
-        front: station of its front bumper [m].
-        kept: distance [m] from there that it keeps to who is in front.
-        seen: what it reacts to.
-        decision: its controller's.
-        eases_off: it brakes less than a step before.
+        front: Station of its front bumper [m].
+        kept: Distance [m] that the bumper keeps to whatever is in front.
+        seen: What the ego reacts to.
+        decision: Decision of its controller.
+        eases_off: Whether it brakes less than a step before.
     """
     place, cause = min(
         (seen.pedestrian - front - kept, "person"),

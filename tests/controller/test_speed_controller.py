@@ -152,11 +152,11 @@ def test_a_crossing_is_driven_to_its_end():
 
 def test_a_speed_limit_becomes_the_reference_of_whoever_drives():
     mpc = Mpc(MODEL, MpcParameters())
-    limited = SpeedController(mpc, Pid()).control(see(3.0)._replace(speed_limit=3.2))
+    limited = SpeedController(mpc, Pid()).control(see(3.0).replaced(speed_limit=3.2))
     aimed = Mpc(MODEL, MpcParameters(reference_speed=3.2)).solve(3.0, 3.0, 0.0, NOBODY)
     assert limited.force == pytest.approx(aimed.force, abs=1e-3)
     assert limited.reference_speed == 3.2
-    pid = SpeedController(None, Pid()).control(see(3.0)._replace(speed_limit=3.2))
+    pid = SpeedController(None, Pid()).control(see(3.0).replaced(speed_limit=3.2))
     assert pid.reference_speed == 3.2
     assert pid.force == pytest.approx(
         Pid(PidParameters(reference_speed=3.2)).control(3.0, math.inf)

@@ -126,7 +126,7 @@ def test_what_it_raises_is_told_with_kind_text_and_place():
 @pytest.mark.parametrize("name", ["obstacle_positions", "vehicles", "lane_speeds", "person_ids"])
 def test_the_runs_arrays_cannot_be_written(name):
     own = np.ones((4, 1, 7)) if name == "vehicles" else np.ones(4)
-    observation = Observation(0.0, 3.0, np.inf, np.ones(4))._replace(**{name: own})
+    observation = Observation(0.0, 3.0, np.inf, np.ones(4)).replaced(**{name: own})
 
     def write(seen: Observation) -> float:
         getattr(seen, name)[:] = 7.0

@@ -33,7 +33,7 @@ def drive(speed, person=None, steps=200, appears=0.0, **gaps):
         )
         seen = {name: place - x for name, place in gaps.items()}
         observation = Observation(x, v, np.inf, np.empty(0), path=Straight(x), people=people)
-        answer = driver.control(observation._replace(speed_limit=speed, **seen))
+        answer = driver.control(observation.replaced(speed_limit=speed, **seen))
         rows.append((k * 0.05, x, v, answer.value, answer.reason))
         after = max(0.0, v + 0.05 * answer.value)
         x, v = x + 0.025 * (v + after), after

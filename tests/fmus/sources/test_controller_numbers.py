@@ -148,7 +148,7 @@ def real_run(request: pytest.FixtureRequest) -> list[tuple[Observation, Decision
     control = SpeedController.control
 
     def note(self: SpeedController, observation: Observation) -> Decision:
-        own = observation._replace(obstacle_positions=observation.obstacle_positions.copy())
+        own = observation.replaced(obstacle_positions=observation.obstacle_positions.copy())
         decision = control(self, observation)
         record.append((own, decision))
         return decision

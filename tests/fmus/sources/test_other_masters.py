@@ -117,7 +117,7 @@ def test_connected_in_libcosim_the_loop_lags_one_step(
     gaps = [STANDING]  # the gap is no output of the vehicle: a host computes it
 
     def by_regulator(position: float, speed: float) -> float:
-        now = seen(position, speed, STANDING)._replace(gap=gaps[-1])
+        now = seen(position, speed, STANDING).replaced(gap=gaps[-1])
         return regulator.control(now).force
 
     for position, speed, _ in drive(by_regulator, 200, lag=True)[1:]:

@@ -1,29 +1,23 @@
 """What an ego that stands, or nearly stands, is said to wait for."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from controller import Decision
-from giveway.ego.percept import Seen
-from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.perception.protocol import Percept
+from giveway.ego.percept import Perceived
+from giveway.ego.perception.leader import Leader
 from giveway.ego.stop_cause import waits_for
-from pedestrian_model import Crowd
 
 FRONT, KEPT = 40.0, 8.0  # [m]
-NOBODY = Percept(Crowd.empty(), np.arange(0))
-ROOM = np.full(3, math.inf)
-FREE = Seen(
-    math.inf, NO_LEADER, math.inf, "", ROOM, None, None, math.inf, NOBODY, None,
-    np.empty((1, 1, 7)), 0,
-)  # fmt: skip
+FREE = Perceived(ahead=np.full(3, math.inf))
 
 
 def cause(force=-900.0, acting="mpc", reason="clear", eases_off=False, **seen):
     decision = Decision(force, acting, reason, "solved", 1, 4.0, None)
-    return waits_for(FRONT, KEPT, FREE._replace(**seen), decision, eases_off)
+    return waits_for(FRONT, KEPT, replace(FREE, **seen), decision, eases_off)
 
 
 @pytest.mark.parametrize(("force", "eases_off"), [(-900.0, True), (300.0, False)])
