@@ -15,7 +15,7 @@ _STANDS = 0.005  # [m/s] a reference that falls this low ends: the brake holds
 
 @dataclass(frozen=True, slots=True)
 class ReferenceParameters:
-    """Where to stop and how hard to brake; chosen by the study in docs/pid.md."""
+    """The parameters of stopping and braking, chosen by the study in docs/pid.md."""
 
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
@@ -45,10 +45,10 @@ class ReferenceParameters:
 
 
 def stoppable(room: float, rate: float, lag: float) -> float:
-    """What may be had so that ``rate`` takes it away within ``room``, beginning after ``lag``.
+    """Return the largest value that ``rate`` brings to 0 within ``room``, after ``lag``.
 
-    The positive x of x lag + x^2 / (2 rate) = room (Gipps 1981, his safe speed): the braking curve
-    sqrt(2 rate room) far away, the line room / lag, of finite slope, near the end.
+    It is the positive x of x lag + x^2 / (2 rate) = room (the safe speed of Gipps 1981): far away
+    the braking curve sqrt(2 rate room), near the end the line room / lag, of finite slope.
     """
     return sqrt((rate * lag) ** 2 + 2.0 * rate * room) - rate * lag
 
@@ -107,14 +107,14 @@ class SpeedReference:
         """The reference speed [m/s] at t_k, and its acceleration [m/s^2] until t_k+1.
 
         Args:
-            speed: the vehicle's [m/s].
-            gap: to who is in front [m]; inf when nobody is.
-            limit: caps the reference speed [m/s].
+            speed: Speed of the vehicle [m/s].
+            gap: Distance to the closest person in front [m]; inf without one.
+            limit: Upper bound on the reference speed [m/s].
         """
         dt, now, before = self.time_step, self.speed, self.acceleration
         self._wanted, self._asked = self.target(gap, limit), (gap, limit)
         wanted, needed = self._wanted, self._braking(speed, gap)
-        # Stop lines and vehicles come with a curve of their own, which is to be kept to.
+        # Limits for stop lines and vehicles are braking curves already and have to be followed.
         down = needed if limit == inf else min(max(needed, _OTHERS_CURVE), self._strongest)
         away = wanted - now
         jerk = self._jerk if away >= 0.0 else min(self._sharpest, needed / self._build_up)
@@ -131,7 +131,7 @@ class SpeedReference:
         return now, a
 
     def _braking(self, speed: float, gap: float) -> float:
-        """How hard it may brake [m/s^2]: in comfort, or as hard as a stop in time takes."""
+        """Return the deceleration [m/s^2] allowed: comfortable, or what a stop in time needs."""
         if gap == inf:
             return self._down
         p = self.parameters

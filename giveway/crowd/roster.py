@@ -13,14 +13,14 @@ from giveway.config.tables.people import DISTRACTED
 from giveway.crowd.motion.disturbance import disturbance_of
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
 
-ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
+ARRIVAL_RADIUS = 0.5  # Distance [m] to the destination at which a pedestrian has arrived
 
 
 class Trait(NamedTuple):
-    """What sets somebody apart that giveway adds."""
+    """The kind and the group of a pedestrian that giveway adds."""
 
-    kind: str = ""  # as in kinds.py; empty: of none
-    group: str = ""  # the id of its first member; empty: alone
+    kind: str = ""  # as in kinds.py; empty without a kind
+    group: str = ""  # the id of its first member; empty for single people
 
 
 _NOTHING = Trait()
@@ -30,13 +30,13 @@ class Roster:
     """The crowd and the names of those in it.
 
     Attributes:
-        ids: of all that ever were in the crowd; the tables refer to them by index.
-        crowd: the state of those who are in it now.
-        present: (n,) index into ``ids`` of each of them.
-        names: the ids of each of them.
-        newcomers: indices of those who joined since somebody last emptied the list.
-        added: ids of those that giveway added; the others are the scenario's own.
-        traits: of those who have any, by their ids.
+        ids: Ids of all that ever were in the crowd; the tables refer to them by index.
+        crowd: State of those who are in the crowd now.
+        present: (n,) Index into ``ids`` of each pedestrian in the crowd.
+        names: Ids of the pedestrians in the crowd.
+        newcomers: Indices of those who joined since the list was last emptied.
+        added: Ids of those that giveway added; the others are the scenario's own.
+        traits: Traits of those who have any, by their ids.
     """
 
     def __init__(
@@ -63,13 +63,13 @@ class Roster:
 
     @property
     def ledger(self) -> dict[str, int]:
-        """Where they are; added + taken over = handed back + arrived + continued + walking."""
+        """The ledger: added + taken over = handed back + arrived + continued + walking."""
         added, walking = len(self.added), len(self.present)
         return {"added": added, **self._counts, "walking": walking}
 
     @property
     def keys(self) -> NDArray[np.int64]:
-        """(n,) a number for each of them, by the id alone: the same in every run and twin."""
+        """A number (n,) for each pedestrian by the id alone, the same in every run and twin."""
         for name in itertools.islice(self.ids, len(self._keys), None):
             digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
             self._keys.append(int.from_bytes(digest, "big") >> 1)
@@ -77,13 +77,13 @@ class Roster:
 
     @property
     def distracted(self) -> NDArray[np.bool_]:
-        """(n,) who of them is."""
+        """The pedestrians (n,) who are distracted."""
         self._learn()
         return np.array(self._distracted, dtype=np.bool_)[self.present]
 
     @property
     def groups(self) -> NDArray[np.int64]:
-        """(n,) the number of each one's group; -1: alone."""
+        """The index (n,) of each one's group; -1 for single people."""
         self._learn()
         return np.array(self._groups, dtype=np.int64)[self.present]
 
@@ -145,10 +145,10 @@ class Walking:
     """Steps a crowd.
 
     Args:
-        config: the run's.
-        model: of the crowd.
-        roster: the crowd, and who is in it.
-        log: notes how people get on; None: nobody asks for it.
+        config: Configuration of the run.
+        model: Model of the crowd.
+        roster: Crowd that is stepped, and its ids.
+        log: Log of how people get on; None if it is not needed.
     """
 
     def __init__(

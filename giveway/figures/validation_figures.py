@@ -75,8 +75,8 @@ def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title:
     """The displacement error over the horizon, one panel per group of pedestrians.
 
     Args:
-        time: (H,) [s] ahead.
-        panels: per panel, a curve per predictor.
+        time: (H,) [s] Prediction time ahead.
+        panels: Curves of each panel, one per predictor.
         title: Title of the whole figure.
     """
     figure = Figure(figsize=(4.2 * len(panels), 3.6), layout="constrained")

@@ -42,7 +42,7 @@ _FIRST_ROWS = 1024  # a table's first size; it doubles from there
 
 
 class Kind(enum.IntEnum):
-    """What a record holds."""
+    """The kind of content that a record holds."""
 
     ROWS_TABLE = 1  # payload: JSON, name and names of columns
     NAME_TABLE = 2  # payload: JSON, name
@@ -64,7 +64,7 @@ class JournalRows:
 
     Args:
         columns: Names of the columns, in order.
-        number: of the table in its journal.
+        number: Number of the table in its journal.
     """
 
     def __init__(self, columns: Sequence[str], number: int = 0) -> None:
@@ -123,7 +123,7 @@ class NameTable:
     """Strings as row entries: each gets the index of its first appearance.
 
     Args:
-        number: of the table in its journal.
+        number: Number of the table in its journal.
     """
 
     def __init__(self, number: int = 0) -> None:

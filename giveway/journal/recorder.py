@@ -49,8 +49,8 @@ class Recorder:
         """Note the names of pedestrians, in the order of their indices.
 
         Args:
-            ids: of them.
-            traits: the kind and the group of those who have any.
+            ids: Ids of the pedestrians.
+            traits: Kind and group of those who have any.
         """
         for name in ids:
             self._names["pedestrians"].index(name)
@@ -67,9 +67,9 @@ class Recorder:
         """Record what an FMU's profile wants to have recorded at the present control instant.
 
         Args:
-            ego_id: the ego that it drives.
-            record: name, unit and description of each variable.
-            values: of them.
+            ego_id: Id of the ego that the FMU drives.
+            record: Name, unit and description of each variable.
+            values: Values of the variables.
         """
         block = self._rows["outputs"].block(len(record))
         for row, (about, value) in enumerate(zip(record, values, strict=True)):

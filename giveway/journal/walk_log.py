@@ -1,7 +1,7 @@
-"""How people get on with their ways, gathered step by step in this process's memory.
+"""The log of how people progress on their ways, kept in this process's memory.
 
-The rows of a run outlive a crash in its journal; these need not: without the twin that comes after
-the run they say nothing.
+The rows of a run outlive a crash in its journal. These need not: they only serve the comparison
+with the counterfactual run (twin) that follows.
 """
 
 from collections.abc import Callable, Sequence
@@ -55,13 +55,13 @@ class WalkLog:
         self._ways.clear()
 
     def note(self, step: int, ids: Sequence[str], present: NDArray[np.int64], crowd: Crowd) -> None:
-        """Note where those who are ``present`` are at a control instant; the second time nothing.
+        """Note the positions of those ``present`` at a control instant; once per instant.
 
         Args:
-            step: the instant.
-            ids: of all that ever were in the crowd.
-            present: (n,) index into ``ids`` of those in the crowd.
-            crowd: n pedestrians.
+            step: Index of the control instant.
+            ids: Ids of all that ever were in the crowd.
+            present: (n,) Index into ``ids`` of those in the crowd.
+            crowd: Crowd of n pedestrians.
         """
         if step <= self._last:
             return
@@ -106,7 +106,7 @@ class WalkLog:
         self._arrivals += [(step, int(pedestrian)) for pedestrian in pedestrians]
 
     def awaits(self, present: NDArray[np.int64]) -> bool:
-        """Whether anybody who counts is among those ``present``."""
+        """Return whether anybody who counts is among those ``present``."""
         return bool(self._near[present].any())
 
     @property

@@ -1,4 +1,4 @@
-"""What ``giveway.run`` returns: tables, and how they show themselves."""
+"""The result of ``giveway.run``: tables and their views."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING

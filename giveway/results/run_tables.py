@@ -1,4 +1,4 @@
-"""What a run leaves behind as numbers: tracks, tables, summaries."""
+"""The numbers of a run: tracks, tables and summaries."""
 
 import math
 from dataclasses import dataclass
@@ -102,7 +102,7 @@ class RunTables:
 
     @property
     def completed(self) -> bool:
-        """Whether every ego has driven its distance."""
+        """Return whether every ego has driven its distance."""
         return self.ending is Ending.COMPLETED
 
     @cached_property
@@ -169,7 +169,7 @@ class RunTables:
 
     @cached_property
     def walks(self) -> "pd.DataFrame | None":
-        """How everybody walked in a run without an ego; None: there was one, or nobody walked."""
+        """The walks in a run without an ego; None if there was an ego or nobody walked."""
         if self.egos or not self.crowd_track.ids:
             return None
         return walks_without_ego(self.time, self.crowd_track)
@@ -195,7 +195,7 @@ class RunTables:
 
     @cached_property
     def people(self) -> "pd.DataFrame":
-        """Where people mean to walk, and how fast."""
+        """The planned ways and desired speeds of people."""
         return people_table(self.time, self.people_track, self.crowd_track.ids)
 
     @cached_property
