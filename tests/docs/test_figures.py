@@ -71,7 +71,7 @@ def test_every_table_between_marks_has_a_record() -> None:
 
 
 @pytest.mark.parametrize("page", TABLES)
-def test_a_table_is_written_into_its_page_by_a_program_that_is_there(page: str) -> None:
+def test_a_table_on_a_page_is_written_by_an_existing_program(page: str) -> None:
     for record in TABLES[page]:
         *studies, last = record["commands"]
         script = ROOT / last.split()[1]
