@@ -72,7 +72,7 @@ class Prospect(NamedTuple):
     gap: Array
     conflicts: Array
     calm: Array
-    crossers: Array = np.empty((0, 4))  # nothing is ever written into it
+    crossers: Array = np.empty((0, 4))  # shared default that is never written
 
 
 class Foresight(Protocol):

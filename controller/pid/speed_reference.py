@@ -9,8 +9,8 @@ from controller.parameters import require, require_not_negative, require_positiv
 
 ProfileName = Literal["braking-curve", "linear"]
 
-_OTHERS_CURVE = 4.0  # [m/s^2] that following a limit may take; no curve to a stop line is as steep
-_STANDS = 0.005  # [m/s] a reference that falls this low ends: the brake holds
+_OTHERS_CURVE = 4.0  # Largest deceleration [m/s^2] to follow an external limit
+_STANDS = 0.005  # Reference speed [m/s] below which the brake holds the vehicle
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +25,9 @@ class ReferenceParameters:
     approach_lag: float = 0.5  # tau [s]: near d_safe the braking curve is the line (gap-d_safe)/tau
     acceleration: float = 3.0  # a [m/s^2] of driving off
     jerk: float = 10.0  # j [m/s^3] of a change of acceleration in comfort
-    firm_deceleration: float = 3.0  # [m/s^2] that keeping d_safe may take; if not enough, d_last
-    last_distance: float = 2.0  # d_last [m]: it stops before that, however hard that is
-    creep_speed: float = 0.1  # [m/s] a lower target is a stop: nobody is followed in inches
+    firm_deceleration: float = 3.0  # [m/s^2] largest used to keep d_safe; beyond it d_last counts
+    last_distance: float = 2.0  # d_last [m]: braking is as hard as needed to keep it
+    creep_speed: float = 0.1  # [m/s] target speeds below it count as a stop
 
     def __post_init__(self) -> None:
         require_positive("reference_speed", self.reference_speed, "m/s")

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from controller._jit import Array, inner, kernel
 
-PRIMAL_TOLERANCE = 1e-10  # [m/s] and below: rounding of sums of at most N speeds
-_PIVOT = 1e-11  # relative: below it a binding row depends on the others
+PRIMAL_TOLERANCE = 1e-10  # Tolerance [m/s] of constraints: rounding of sums of N speeds
+_PIVOT = 1e-11  # Relative pivot below which a binding row depends on the others
 
 
 @inner

@@ -29,8 +29,8 @@ _SLOWEST = 1.0  # [m/s] with which it counts when it will be somewhere
 _CREEP = 0.2  # [m/s] below it the vehicle stands
 _AT_LINE = 0.5  # [m] before a stop line it stands
 _NEARLY = 0.1  # [m] the shortest way to stop in
-_URGENT = 1.2  # times the comfortable deceleration: who asks for more has cut in
-_BEGINS = 0.8  # times it: braking to a standstill begins
+_URGENT = 1.2  # Factor on comfortable deceleration beyond which a person has cut in
+_BEGINS = 0.8  # Factor on it from which braking to a standstill begins
 _TAKES_UP = 0.5  # [s] in which it takes up a speed
 
 

@@ -35,8 +35,8 @@ def place_on(position: Array, kerb: Array, along: Array) -> tuple[Array, Array]:
 
     Args:
         position: Positions of the people.
-        kerb: (2,) or (k, 2) [m] where u and w are 0.
-        along: (2,) or (k, 2) unit vectors along the crossings.
+        kerb: (2,) or (k, 2) [m] Point at which u and w are 0.
+        along: (2,) or (k, 2) Unit vectors along the crossings.
     """
     x, y = position[:, 0] - kerb[..., 0], position[:, 1] - kerb[..., 1]
     along_x, along_y = along[..., 0], along[..., 1]
@@ -64,7 +64,7 @@ def use_of(
         crowd: All pedestrians.
         rows: Rows of the people beside a crossing.
         u: Distance of each from one kerb along the crossing.
-        along: (2,) or (k, 2) unit vectors along the crossings.
+        along: (2,) or (k, 2) Unit vectors along the crossings.
         length: Length of one crossing or of each [m].
     """
     way = targets(crowd, rows) - crowd.position[rows]
@@ -86,10 +86,10 @@ def turning_in(
     Args:
         crowd: All pedestrians.
         rows: Rows of the people beside the crossing.
-        kerb: (2,) [m] where u is 0.
-        along: (2,) unit vector along the crossing.
+        kerb: (2,) [m] Point at which u is 0.
+        along: (2,) Unit vector along the crossing.
         length: Length of the crossing [m].
-        reach: (k,) [m] that each walks at most up to the kerb.
+        reach: (k,) [m] Largest walk of each up to the kerb.
     """
     last = crowd.waypoint_start[rows + 1] - 1
     position = crowd.position[rows]

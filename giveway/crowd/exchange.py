@@ -21,11 +21,11 @@ class Exchange:
     """Takes the scenario's walkers over in the zone and hands them back outside.
 
     Args:
-        session: the running simulation.
-        network: where pedestrians can walk.
-        zone: where they are ours.
-        roster: our crowd.
-        walls: whether the edges of walkways hold pedestrians back.
+        session: Running simulation.
+        network: Network of walkways.
+        zone: Zone in which pedestrians are ours.
+        roster: Crowd that walkers join.
+        walls: Whether the edges of walkways hold pedestrians back.
     """
 
     def __init__(
@@ -116,7 +116,7 @@ class Exchange:
             return
         gone = np.zeros(len(roster), dtype=np.bool_)
         for i in np.flatnonzero(outside):
-            name = roster.ids[roster.present[i]]
+            name = roster.ids[roster.person_ids[i]]
             if name not in self._walkers.held:
                 continue  # one that giveway added
             x, y = roster.crowd.position[i].tolist()

@@ -32,7 +32,7 @@ class Roster:
     Attributes:
         ids: Ids of all that ever were in the crowd; the tables refer to them by index.
         crowd: State of those who are in the crowd now.
-        present: (n,) Index into ``ids`` of each pedestrian in the crowd.
+        person_ids: (n,) Index into ``ids`` of each pedestrian in the crowd.
         names: Ids of the pedestrians in the crowd.
         newcomers: Indices of those who joined since the list was last emptied.
         added: Ids of those that giveway added; the others are the scenario's own.
@@ -47,7 +47,7 @@ class Roster:
     ) -> None:
         self.ids: list[str] = list(ids)
         self.crowd = Crowd.empty() if crowd is None else crowd
-        self.present = np.arange(len(self.ids))
+        self.person_ids = np.arange(len(self.ids))
         self.names = list(ids)
         self.added = set(ids)
         self.traits = dict(traits or {})
@@ -59,12 +59,12 @@ class Roster:
         self._counts = {"taken_over": 0, "handed_back": 0, "arrived": 0, "continued": 0}
 
     def __len__(self) -> int:
-        return len(self.present)
+        return len(self.person_ids)
 
     @property
     def ledger(self) -> dict[str, int]:
         """The ledger: added + taken over = handed back + arrived + continued + walking."""
-        added, walking = len(self.added), len(self.present)
+        added, walking = len(self.added), len(self.person_ids)
         return {"added": added, **self._counts, "walking": walking}
 
     @property
@@ -73,19 +73,19 @@ class Roster:
         for name in itertools.islice(self.ids, len(self._keys), None):
             digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
             self._keys.append(int.from_bytes(digest, "big") >> 1)
-        return np.array(self._keys, dtype=np.int64)[self.present]
+        return np.array(self._keys, dtype=np.int64)[self.person_ids]
 
     @property
     def distracted(self) -> NDArray[np.bool_]:
         """The pedestrians (n,) who are distracted."""
         self._learn()
-        return np.array(self._distracted, dtype=np.bool_)[self.present]
+        return np.array(self._distracted, dtype=np.bool_)[self.person_ids]
 
     @property
     def groups(self) -> NDArray[np.int64]:
         """The index (n,) of each one's group; -1 for single people."""
         self._learn()
-        return np.array(self._groups, dtype=np.int64)[self.present]
+        return np.array(self._groups, dtype=np.int64)[self.person_ids]
 
     def _learn(self) -> None:
         """Note the traits of those who are new."""
@@ -113,7 +113,7 @@ class Roster:
                 self._index[name] = len(self.ids)
                 self.ids.append(name)
             indices.append(self._index[name])
-        self.present = np.concatenate([self.present, np.array(indices, dtype=np.int64)])
+        self.person_ids = np.concatenate([self.person_ids, np.array(indices, dtype=np.int64)])
         self.newcomers += indices
         self.names += names
         self.crowd = self.crowd.concatenate(crowd) if len(self.crowd) else crowd
@@ -123,7 +123,7 @@ class Roster:
         names = [self.names[i] for i in np.flatnonzero(gone)]
         self.names = list(itertools.compress(self.names, (~gone).tolist()))
         self.crowd = self.crowd.select(~gone)
-        self.present = self.present[~gone]
+        self.person_ids = self.person_ids[~gone]
         return names
 
     def count(self, event: str, number: int = 1) -> None:
@@ -134,8 +134,10 @@ class Roster:
 class Log(Protocol):
     """Notes how people get on."""
 
-    def note(self, step: int, ids: Sequence[str], present: NDArray[np.int64], crowd: Crowd) -> None:
-        """Note where those who are ``present`` are at a control instant."""
+    def note(
+        self, step: int, ids: Sequence[str], person_ids: NDArray[np.int64], crowd: Crowd
+    ) -> None:
+        """Note the positions of ``person_ids`` at a control instant."""
 
     def arrive(self, step: int, pedestrians: NDArray[np.int64]) -> None:
         """Note who reached the last way-point at a control instant."""
@@ -163,29 +165,29 @@ class Walking:
         """Note where everybody is at the control instant ``step``."""
         if self._log is not None:
             roster = self._roster
-            self._log.note(step, roster.ids, roster.present, roster.crowd)
+            self._log.note(step, roster.ids, roster.person_ids, roster.crowd)
 
     def advance(self, step: int, vehicles: Vehicles, surroundings: Surroundings) -> list[str]:
         """Step the crowd from the control instant ``step``; the names of those who have arrived.
 
         Args:
-            step: the instant.
-            vehicles: that people feel.
-            surroundings: the walls and lights that they heed.
+            step: Index of the control instant.
+            vehicles: Vehicles that people react to.
+            surroundings: Walls and lights that people heed.
         """
         roster = self._roster
-        if not len(roster.present):
+        if not len(roster.person_ids):
             return []
         crowd = roster.crowd
         if self._disturbance is None:
             self._model.advance(crowd, vehicles, surroundings)
         else:
             self._disturbance.advance(
-                crowd, vehicles, surroundings, roster.present, len(roster.ids)
+                crowd, vehicles, surroundings, roster.person_ids, len(roster.ids)
             )
         if not any_arrived(roster.crowd, ARRIVAL_RADIUS):
             return []
         there = arrived(roster.crowd, ARRIVAL_RADIUS)
         if self._log is not None:
-            self._log.arrive(step + 1, roster.present[there])
+            self._log.arrive(step + 1, roster.person_ids[there])
         return roster.release(there)

@@ -18,7 +18,7 @@ _SMALLEST, _LARGEST = 0.1, 1e6  # Bounds of the radius [m]
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
 
 
-_MARGIN = 5.0  # Distance [m] that keeps people from changing hands at the edge, some steps wide
+_MARGIN = 5.0  # Hysteresis [m] at the zone's edge: people do not change hands to and fro
 
 
 class Zone:
@@ -80,7 +80,7 @@ class Zone:
         """Make sure that the zone lies in the network.
 
         Args:
-            boundary: x_min, y_min, x_max, y_max of the network [m].
+            boundary: Bounds x_min, y_min, x_max, y_max of the network [m].
 
         Raises:
             ConfigError: it lies outside.

@@ -37,7 +37,7 @@ class RecordedEgo(NamedTuple):
     track: EgoTrack
     predictions: PredictionTrack
     outputs: tuple[Output, ...] = ()
-    hasty: NDArray[np.int64] = _NOBODY  # indices of who set out for the road too suddenly
+    hasty: NDArray[np.int64] = _NOBODY  # indices of people whose start broke the assumption
 
 
 class RecordedRows:

@@ -51,10 +51,10 @@ class EgoResult:
         crowd: Records of the crowd at these instants, counted from ``first``.
         predictions: Positions of the crowd that its controller expected, if recorded.
         background: Background vehicles of the run.
-        law: what its drive is judged by; None: the law of the road has no say on its way.
-        outputs: what the profile of its FMU wants to have recorded.
-        effect: the run's people beside those of its twin; None: there is no twin.
-        hasty: indices of those who set out from a sidewalk more suddenly than its layer assumes.
+        law: Rows by which its drive is judged; None if no rule of the road applies to it.
+        outputs: Outputs that the profile of its FMU has recorded.
+        effect: Comparison of the people with those of the twin; None without a twin.
+        hasty: Indices of people whose sudden start broke its safety layer's assumption.
     """
 
     config: EgoRunConfig

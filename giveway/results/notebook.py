@@ -36,7 +36,7 @@ class Replay:
     """A page that plays a run: shown where a notebook displays it, or saved.
 
     Attributes:
-        html: the whole page; it needs no network.
+        html: Whole page, which needs no network.
     """
 
     html: str

@@ -19,7 +19,7 @@ class RunResult(RunTables):
 
         Args:
             kind: ``"top_view"`` or ``"state"``.
-            ego: which one's, counted from 0.
+            ego: Index of the ego, counted from 0.
 
         Raises:
             ResultsError: there is no such picture, or no such ego.

@@ -129,8 +129,8 @@ class CrowdTrack:
     vx: NDArray[np.float64]  # (R,) [m/s]
     vy: NDArray[np.float64]  # (R,) [m/s]
     ids: tuple[str, ...]  # one per pedestrian
-    kinds: tuple[str, ...] = ()  # likewise, as "elderly"; nothing: nobody is of any
-    groups: tuple[str, ...] = ()  # likewise, the id of its first member; nothing: there are none
+    kinds: tuple[str, ...] = ()  # kind of each, as "elderly"; empty if kinds are not used
+    groups: tuple[str, ...] = ()  # first member of each one's group; empty without groups
 
     def during(self, first: int, instants: int) -> CrowdTrack:
         """The records of ``instants`` control instants from ``first`` on, which becomes step 0."""

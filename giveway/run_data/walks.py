@@ -25,7 +25,7 @@ class WalkTrack:
         near: (n,) Whether the person came close to an ego's way; others have no records.
         ids: Ids of all n people.
         time_step: [s] between two control instants.
-        last: the last control instant that was looked at.
+        last: Last control instant that was logged.
     """
 
     step: NDArray[np.int64]

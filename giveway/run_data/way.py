@@ -20,7 +20,7 @@ class CrossingOnWay(NamedTuple):
     ends: tuple[Point, Point]  # [m] the middle of each kerb
     width: float  # [m]
     zebra: bool  # people have priority wherever no light says otherwise
-    system: str  # SUMO's id of the traffic light; empty: none
+    system: str  # SUMO's id of the traffic light; empty without one
     link: int  # index of the movement in the light's state
 
 

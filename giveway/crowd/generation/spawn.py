@@ -16,7 +16,7 @@ from giveway.geometry.path import EgoPath, Pose
 
 _ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
 
-_KINDS = 0x41D  # tells draws of who they are from others of the same seed
+_KINDS = 0x41D  # Key of the stream of kinds, apart from others of the same seed
 
 PREFIX = "ped"  # Prefix of the ids of the pedestrians that giveway adds
 
@@ -29,8 +29,8 @@ class Spawned:
     position: Array  # (n, 2) [m]
     destination: Array  # (n, 2) [m]
     desired_speed: Array  # (n,) [m/s]
-    kinds: tuple[str, ...]  # (n,) as in kinds.py; empty: of no kind
-    groups: tuple[str, ...]  # (n,) the id of the first in each one's group; empty: alone
+    kinds: tuple[str, ...]  # (n,) as in kinds.py; empty without a kind
+    groups: tuple[str, ...]  # (n,) id of the group's first member; empty for single people
 
     @property
     def traits(self) -> dict[str, Trait]:

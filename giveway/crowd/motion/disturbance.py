@@ -19,7 +19,7 @@ class Disturbance:
 
     Args:
         model: Model of the crowd; its limits of speed and acceleration still hold.
-        deviation: standard deviation on each axis [m/s^2], before it is cut off at twice that.
+        deviation: Standard deviation on each axis [m/s^2], before it is cut off at twice that.
         seed: Seed of the draws.
     """
 
@@ -33,7 +33,7 @@ class Disturbance:
         crowd: Crowd,
         vehicles: Vehicles,
         surroundings: Surroundings,
-        present: NDArray[np.integer],
+        person_ids: NDArray[np.integer],
         known: int,
     ) -> None:
         """Step the crowd in place as the model does, and push each pedestrian.
@@ -42,12 +42,12 @@ class Disturbance:
             crowd: Crowd of n pedestrians.
             vehicles: Vehicles that pedestrians react to.
             surroundings: Walls and lights that pedestrians heed.
-            present: (n,) which of all ``known`` pedestrians they are.
-            known: how many pedestrians ever were in the crowd.
+            person_ids: (n,) Index of each among all ``known`` pedestrians.
+            known: Number of pedestrians that ever were in the crowd.
         """
         before = crowd.velocity.copy()
         self._model.advance(crowd, vehicles, surroundings)
-        push = planar_noise(self._random, known)[present]
+        push = planar_noise(self._random, known)[person_ids]
         push *= self._deviation * self._model.time_step
         pushed(self._model, crowd, before, push)
 

@@ -21,7 +21,7 @@ def cruise(car, seconds, force=400.0):
     ("behaviour", "force"),
     [("position_stands", 400.0), ("speed_stands", -3000.0), ("frozen", 400.0)],
 )
-def test_a_standing_signal_of_two_is_a_fault_within_a_second(zoo, open_car, fmi, behaviour, force):
+def test_frozen_position_or_speed_is_a_fault_within_a_second(zoo, open_car, fmi, behaviour, force):
     car = open_car(zoo.car(fmi=fmi, behaviour=behaviour, at=1.0))
     car.start(speed=4.0)
     cruise(car, 1.0)
@@ -30,7 +30,7 @@ def test_a_standing_signal_of_two_is_a_fault_within_a_second(zoo, open_car, fmi,
     assert 1.0 < car.time <= 2.0
 
 
-def test_steady_speed_at_a_fixed_position_is_told_with_both(zoo, open_car):
+def test_steady_speed_at_a_fixed_position_names_time_and_way(zoo, open_car):
     path = zoo.car(behaviour="position_stands", at=0.0)
     car = open_car(path)
     car.start(speed=4.0)

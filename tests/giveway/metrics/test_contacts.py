@@ -63,7 +63,7 @@ def test_who_walks_into_a_standing_car_is_not_moved_into(ego, crowd, walking):
     assert kinds(ego(TIME, speed=0.0), track) == ["side", "side", "side"]
 
 
-def test_a_car_that_starts_into_somebody_at_its_front_moves_in(ego, crowd):
+def test_a_car_that_starts_into_somebody_ahead_moves_into_them(ego, crowd):
     """Touched while it stood; then it drives at 0.5 m/s and he does not."""
     speed = np.where(TIME < 2.0, 0.0, 0.5)
     front = np.column_stack((np.append(0.0, np.cumsum(DT * speed[:-1])), np.zeros(TIME.size)))
