@@ -1,4 +1,4 @@
-"""What each of our own controllers declares of itself, by its public name."""
+"""The declarations of our own controllers, by their public names."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

@@ -1,4 +1,4 @@
-"""What can go wrong in the controllers, one class per thing a user can do something about."""
+"""The errors of the controllers, one class per cause that a user can remove."""
 
 
 class ControllerError(Exception):

@@ -1,4 +1,4 @@
-"""What a controller may ask before it decides: how people would answer to a manoeuvre."""
+"""The predictions that a controller may ask for: how people answer to a manoeuvre."""
 
 from __future__ import annotations
 
@@ -57,11 +57,11 @@ class Trials(NamedTuple):
 
 
 class Prospect(NamedTuple):
-    """What a manoeuvre would lead to: arrays over steps 1 ... N, overwritten by the next one.
+    """The predicted outcome of a manoeuvre, over steps 1 ... N; the next one overwrites it.
 
     Attributes:
-        gap: (N,) [m] to the closest person in front; inf: nobody.
-        conflicts: (N,) persons who would be less than the conflict time from a collision.
+        gap: (N,) [m] Distance to the closest person in front; inf without one.
+        conflicts: (N,) Number of persons less than the conflict time from a collision.
         calm: (N,) [m/s] the speed up to which nobody could force an emergency stop, whatever
             people did that they can; inf: the manoeuvre's is calm.
         crossers: (n, 4) who will be on the ego's way beyond the horizon: how far ahead of its front
@@ -72,26 +72,26 @@ class Prospect(NamedTuple):
     gap: Array
     conflicts: Array
     calm: Array
-    crossers: Array = np.empty((0, 4))  # nothing is ever written into it
+    crossers: Array = np.empty((0, 4))  # shared default that is never written
 
 
 class Foresight(Protocol):
     """Predicts the crowd under any manoeuvre of the ego."""
 
     def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
-        """What a manoeuvre would lead to; valid until the next call."""
+        """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
 
     def prefer(self) -> None:
-        """The latest manoeuvre is the best so far: remember what it would lead to."""
+        """Remember the outcome of the latest manoeuvre as that of the best so far."""
 
 
 class Heats(NamedTuple):
-    """Who of the trials runs when: rows of them; of equal ones the first is the best.
+    """The batches of a branch and bound: rows of candidates; the first of equals is the best.
 
     Attributes:
-        first: run against each other.
-        content: run against the best of these where it lacks no stopping distance.
-        wanting: run against it where it does.
+        first: Candidates that are compared with each other.
+        content: Candidates evaluated next if the best of these lacks no stopping distance.
+        wanting: Candidates evaluated next if it lacks some.
     """
 
     first: list[int]
@@ -100,14 +100,14 @@ class Heats(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a race between manoeuvres came to.
+    """The result of a branch and bound over candidate manoeuvres.
 
     Attributes:
-        best: the row of the cheapest; -1: no cost is a number.
-        missing: the longest stopping distance that it lacks [m].
-        clear: nobody is in the way of the very first one, which then is the best.
-        tried: how many were compared.
-        prospect: what the best would lead to; overwritten by the next race.
+        best: Row of the cheapest candidate; -1 if no cost is finite.
+        missing: Largest stopping distance that it lacks [m].
+        clear: Whether nobody is in the way of the first candidate, which then is the best.
+        tried: Number of candidates compared.
+        prospect: Predicted outcome of the best; the next search overwrites it.
     """
 
     best: int

@@ -27,10 +27,10 @@ class LongitudinalModel:
 
     @property
     def decay(self) -> float:
-        """What a free step leaves of the speed: 1 - alpha dt / M."""
+        """The share of the speed left after a step without force: 1 - alpha dt / M."""
         return 1.0 - self.friction * self.time_step / self.mass
 
     @property
     def speed_per_force(self) -> float:
-        """What a step of unit force adds to the speed: dt / M [(m/s)/N]."""
+        """The speed gained in a step by a unit force: dt / M [(m/s)/N]."""
         return self.time_step / self.mass

@@ -28,7 +28,7 @@ _PROOFS = {
     CANNOT_STOP: "infeasible: cannot stop",
     CANNOT_HOLD_SPEED: "infeasible: cannot hold speed",
 }
-_SOLVED = Outcome.SOLVED  # whose class is slow to tell it
+_SOLVED = Outcome.SOLVED
 _STABLE = "at most 1, or forward Euler is unstable; lower friction [N.s/m] or time_step [s]"
 
 

@@ -1,4 +1,4 @@
-"""What a solve of the paper's controller gives back."""
+"""The solution of the paper's controller."""
 
 from typing import NamedTuple
 
@@ -10,13 +10,13 @@ class MpcSolution(NamedTuple):
     """A plan, or why there is none.
 
     Attributes:
-        found: whether the plan is optimal and keeps all constraints by our own arithmetic.
-        force: u(k) [N]; nan without a plan.
-        forces: (N,) the plan u(k) ... u(k+N-1) [N]; None without one.
-        speeds: (N,) the plan's speeds at k+1 ... k+N [m/s]; None without one.
-        status: the solver's outcome, with the proof where no plan can exist.
-        iterations: of the solver; 0 where the answer took no solve.
-        residual: the plan's largest constraint violation over its tolerance; nan without one.
+        found: Whether the plan is optimal and keeps all constraints by our own arithmetic.
+        force: Force u(k) [N]; nan without a plan.
+        forces: (N,) Planned forces u(k) ... u(k+N-1) [N]; None without a plan.
+        speeds: (N,) Planned speeds at k+1 ... k+N [m/s]; None without a plan.
+        status: Outcome of the solver, with the proof if no plan can exist.
+        iterations: Iterations of the solver; 0 if no solve was needed.
+        residual: Largest constraint violation over its tolerance; nan without a plan.
     """
 
     found: bool

@@ -24,7 +24,7 @@ from controller.parameters import MpcParameters
 SLACK = 1e-9  # [m/s] [m] by which all bounds are widened: a plan that touches its bounds, as those
 # that just stop do, leaves the next problem a single point, which rounding would make empty
 
-NOT_A_NUMBER = -1  # an input is not finite; only obstacles may be infinitely far
+NOT_A_NUMBER = -1  # Result if an input is not finite; only obstacles may be infinitely far
 UNDECIDED = 0  # only a solve can tell
 TOO_CLOSE = 1  # x_1(k+1), which no force changes, violates c6
 SPEED_BOUNDS_CROSS = 2  # what the force limits leave of v(k+1) misses its bounds

@@ -74,10 +74,10 @@ class Pid:
         """Another force [N] than was asked for acts; as printed, the PID does not look at it."""
 
     def track(self, speed: float, gap: float, limit: float = inf) -> None:
-        """While the MPC acts: empty the integrator, and keep e(k-1) at the current error.
+        """Empty the integrator and keep e(k-1) at the current error while the MPC acts.
 
-        So the PID takes over without a kick of its derivative, and without an integral of errors
-        that were not its own.
+        The PID then takes over without a derivative kick and without an integral of errors that
+        another controller caused.
         """
         self._integral = 0.0
         self._error = speed - self.reference_speed(gap, limit)

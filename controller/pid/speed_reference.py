@@ -9,13 +9,13 @@ from controller.parameters import require, require_not_negative, require_positiv
 
 ProfileName = Literal["braking-curve", "linear"]
 
-_OTHERS_CURVE = 4.0  # [m/s^2] that following a limit may take; no curve to a stop line is as steep
-_STANDS = 0.005  # [m/s] a reference that falls this low ends: the brake holds
+_OTHERS_CURVE = 4.0  # Largest deceleration [m/s^2] to follow an external limit
+_STANDS = 0.005  # Reference speed [m/s] below which the brake holds the vehicle
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceParameters:
-    """Where to stop and how hard to brake; chosen by the study in docs/pid.md."""
+    """The parameters of stopping and braking, chosen by the study in docs/pid.md."""
 
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
@@ -25,9 +25,9 @@ class ReferenceParameters:
     approach_lag: float = 0.5  # tau [s]: near d_safe the braking curve is the line (gap-d_safe)/tau
     acceleration: float = 3.0  # a [m/s^2] of driving off
     jerk: float = 10.0  # j [m/s^3] of a change of acceleration in comfort
-    firm_deceleration: float = 3.0  # [m/s^2] that keeping d_safe may take; if not enough, d_last
-    last_distance: float = 2.0  # d_last [m]: it stops before that, however hard that is
-    creep_speed: float = 0.1  # [m/s] a lower target is a stop: nobody is followed in inches
+    firm_deceleration: float = 3.0  # [m/s^2] largest used to keep d_safe; beyond it d_last counts
+    last_distance: float = 2.0  # d_last [m]: braking is as hard as needed to keep it
+    creep_speed: float = 0.1  # [m/s] target speeds below it count as a stop
 
     def __post_init__(self) -> None:
         require_positive("reference_speed", self.reference_speed, "m/s")
@@ -45,10 +45,10 @@ class ReferenceParameters:
 
 
 def stoppable(room: float, rate: float, lag: float) -> float:
-    """What may be had so that ``rate`` takes it away within ``room``, beginning after ``lag``.
+    """Return the largest value that ``rate`` brings to 0 within ``room``, after ``lag``.
 
-    The positive x of x lag + x^2 / (2 rate) = room (Gipps 1981, his safe speed): the braking curve
-    sqrt(2 rate room) far away, the line room / lag, of finite slope, near the end.
+    It is the positive x of x lag + x^2 / (2 rate) = room (the safe speed of Gipps 1981): far away
+    the braking curve sqrt(2 rate room), near the end the line room / lag, of finite slope.
     """
     return sqrt((rate * lag) ** 2 + 2.0 * rate * room) - rate * lag
 
@@ -107,14 +107,14 @@ class SpeedReference:
         """The reference speed [m/s] at t_k, and its acceleration [m/s^2] until t_k+1.
 
         Args:
-            speed: the vehicle's [m/s].
-            gap: to who is in front [m]; inf when nobody is.
-            limit: caps the reference speed [m/s].
+            speed: Speed of the vehicle [m/s].
+            gap: Distance to the closest person in front [m]; inf without one.
+            limit: Upper bound on the reference speed [m/s].
         """
         dt, now, before = self.time_step, self.speed, self.acceleration
         self._wanted, self._asked = self.target(gap, limit), (gap, limit)
         wanted, needed = self._wanted, self._braking(speed, gap)
-        # Stop lines and vehicles come with a curve of their own, which is to be kept to.
+        # Limits for stop lines and vehicles are braking curves already and have to be followed.
         down = needed if limit == inf else min(max(needed, _OTHERS_CURVE), self._strongest)
         away = wanted - now
         jerk = self._jerk if away >= 0.0 else min(self._sharpest, needed / self._build_up)
@@ -131,7 +131,7 @@ class SpeedReference:
         return now, a
 
     def _braking(self, speed: float, gap: float) -> float:
-        """How hard it may brake [m/s^2]: in comfort, or as hard as a stop in time takes."""
+        """Return the deceleration [m/s^2] allowed: comfortable, or what a stop in time needs."""
         if gap == inf:
             return self._down
         p = self.parameters

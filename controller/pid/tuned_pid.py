@@ -54,8 +54,8 @@ class TunedPid:
     * Where a limit of 0 wants the car to stand, it does not drive.
 
     Args:
-        parameters: loop, actuator and reference.
-        model: of the vehicle; its time step is the controller's.
+        parameters: Parameters of loop, actuator and reference.
+        model: Model of the vehicle; its time step is the controller's.
     """
 
     def __init__(
@@ -85,12 +85,12 @@ class TunedPid:
         return self.reference.target(gap, limit)
 
     def control(self, speed: float, gap: float, limit: float = inf) -> float:
-        """The force u(k) [N].
+        """Return the force u(k) [N].
 
         Args:
-            speed: v(k) [m/s].
-            gap: to the closest pedestrian in front [m]; inf when nobody is.
-            limit: caps the reference speed [m/s].
+            speed: Speed v(k) [m/s].
+            gap: Distance to the closest pedestrian in front [m]; inf without one.
+            limit: Upper bound on the reference speed [m/s].
 
         Raises:
             ParameterError: speed or gap is not a number.
@@ -120,12 +120,12 @@ class TunedPid:
     def track(
         self, speed: float, gap: float, limit: float = inf, force: float | None = None
     ) -> None:
-        """While another acts with ``force`` [N]: the own output would be the same."""
+        """Follow another controller that acts with ``force`` [N], for a takeover without a jump."""
         del gap, limit  # the reference starts at the speed, whatever is in front
         self._begin(speed, self.model.friction * speed if force is None else force)
 
     def applied(self, force: float) -> None:
-        """Another force [N] than was asked for acts: the reference goes on from what it does."""
+        """Let the reference continue from a ``force`` [N] other than the last command."""
         model, speed = self.model, self._speed
         after = model.decay * speed + model.speed_per_force * force
         self.reference.start(after, (force - model.friction * speed) / model.mass)
@@ -140,7 +140,7 @@ class TunedPid:
         self._started = True
 
     def _stand(self) -> None:
-        """At a standstill the force is a brake that holds: what it was does not bind the next."""
+        """Reset at standstill, where the brake only holds and does not limit the next force."""
         if self.reference.acceleration <= 0.0:
             self.reference.start(0.0)
             self._integral = 0.0

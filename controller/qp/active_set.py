@@ -89,7 +89,7 @@ def solve_exactly(
 
 @inner
 def violation(row: Array, low: float, high: float, direction: int, solution: Array) -> float:
-    """By how much ``solution`` misses one bound of ``row``."""
+    """Return how far ``solution`` violates one bound of ``row``; negative inside it."""
     value = 0.0
     for j in range(len(solution)):
         value += row[j] * solution[j]
@@ -100,7 +100,7 @@ def violation(row: Array, low: float, high: float, direction: int, solution: Arr
 def most_violated(
     rows: Array, lower: Array, upper: Array, side: NDArray[np.int64], solution: Array
 ) -> tuple[int, int]:
-    """The row that misses a bound by most, and which: +1 upper, -1 lower; -1 if none does."""
+    """Return the row that violates a bound most, or -1, and the bound: +1 upper, -1 lower."""
     m, N = rows.shape
     worst, found, direction = PRIMAL_TOLERANCE, -1, 0
     for i in range(m):

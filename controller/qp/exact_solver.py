@@ -28,9 +28,9 @@ class ExactSolver:
     for the same sequence of problems.
 
     Args:
-        problem: to be solved; its arrays are changed in place between solves.
-        iteration_limit: of the solver.
-        box: the range of every unknown, within which infeasibility is proved; None: the problem
+        problem: Problem to solve; its arrays are changed in place between solves.
+        iteration_limit: Iteration limit of the solver.
+        box: Range of every unknown, within which infeasibility is proved; None: the problem
             always has a solution, so that nothing is proved and an optimum is always looked for.
 
     Attributes:
@@ -109,7 +109,7 @@ class ExactSolver:
         return solve_from(*work, near) >= 0
 
     def _certified(self) -> bool:
-        """Whether the multipliers prove that the problem has no solution."""
+        """Return whether the multipliers prove that the problem has no solution."""
         if self._box is None:
             return False
         return certifies_infeasibility(*self._bounds, *self._box, self._multipliers)

@@ -26,7 +26,7 @@ class LeastSquares(Protocol):
 
 
 class Outcome(enum.StrEnum):
-    """How a solve ended; only SOLVED is ever accepted."""
+    """The outcome of a solve; only SOLVED is ever accepted."""
 
     SOLVED = "solved"
     INFEASIBLE = "infeasible: by the solver"

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from controller._jit import Array, inner, kernel
 
-PRIMAL_TOLERANCE = 1e-10  # [m/s] and below: rounding of sums of at most N speeds
-_PIVOT = 1e-11  # relative: below it a binding row depends on the others
+PRIMAL_TOLERANCE = 1e-10  # Tolerance [m/s] of constraints: rounding of sums of N speeds
+_PIVOT = 1e-11  # Relative pivot below which a binding row depends on the others
 
 
 @inner
@@ -157,7 +157,7 @@ def largest_outside(values: Array, side: NDArray[np.int64]) -> int:
 
 @inner
 def is_finite(values: Array) -> bool:
-    """Whether all of ``values`` are finite."""
+    """Return whether all of ``values`` are finite."""
     for value in values:  # noqa: SIM110 - numba compiles no generator
         if not np.isfinite(value):
             return False
@@ -168,7 +168,7 @@ def is_finite(values: Array) -> bool:
 def certifies_infeasibility(
     rows: Array, lower: Array, upper: Array, box_low: float, box_high: float, certificate: Array
 ) -> bool:
-    """Whether ``certificate`` (m,) proves that no V in the box satisfies all rows (Farkas).
+    """Return whether ``certificate`` (m,) proves that no V in the box keeps all rows (Farkas).
 
     Every feasible V has y'(rows V) <= sum of upper y+ + lower y-; if y'(rows V) is larger than
     that everywhere in the box of possible speeds, there is none.

@@ -29,8 +29,8 @@ _SLOWEST = 1.0  # [m/s] with which it counts when it will be somewhere
 _CREEP = 0.2  # [m/s] below it the vehicle stands
 _AT_LINE = 0.5  # [m] before a stop line it stands
 _NEARLY = 0.1  # [m] the shortest way to stop in
-_URGENT = 1.2  # times the comfortable deceleration: who asks for more has cut in
-_BEGINS = 0.8  # times it: braking to a standstill begins
+_URGENT = 1.2  # Factor on comfortable deceleration beyond which a person has cut in
+_BEGINS = 0.8  # Factor on it from which braking to a standstill begins
 _TAKES_UP = 0.5  # [s] in which it takes up a speed
 
 
@@ -75,8 +75,8 @@ class CarefulDriver:
     """Brakes late and hard for those who cut in, and gently for all else.
 
     Args:
-        setup: of the drive.
-        options: of the driver.
+        setup: Setup of the drive.
+        options: Options of the driver.
     """
 
     Options = CarefulOptions
@@ -120,7 +120,7 @@ class CarefulDriver:
         return (sqrt(speed * speed + 2.0 * o.comfort * left) - v) / _TAKES_UP
 
     def _is_urgent(self, room: float, speed: float) -> bool:
-        """Whether comfortable braking does not stop it before somebody within the horizon."""
+        """Return whether comfortable braking is too weak for somebody within the horizon."""
         o = self._options
         if speed < _CREEP or room / max(speed, _SLOWEST) >= o.horizon:
             return False
@@ -128,9 +128,9 @@ class CarefulDriver:
         return needed > _URGENT * o.comfort or self._braking > 0.0
 
     def _nearest(self, seen: Observation) -> float:
-        """The distance [m] along the way to the closest on it who has been perceived.
+        """Return the distance [m] along the way to the closest perceived person on it.
 
-        Who steps onto it so close that it is urgent is perceived after a while, all others at once.
+        A person who steps onto it urgently close is perceived with a delay, all others at once.
         """
         o, found = self._options, people_ahead(seen)
         if found is None:

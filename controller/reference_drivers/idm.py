@@ -75,8 +75,8 @@ class IntelligentDriver:
     """A car-following driver who accepts gaps between people.
 
     Args:
-        setup: of the drive.
-        options: of the driver.
+        setup: Setup of the drive.
+        options: Options of the driver.
     """
 
     Options = IdmOptions
@@ -127,13 +127,13 @@ class IntelligentDriver:
     def _takes_the_way(
         self, distance: Array, aside: Array, towards: Array, speed: float
     ) -> NDArray[np.bool_]:
-        """Who is on the way, or comes onto it and not after the vehicle has passed, (n,).
+        """Return (n,) who is on the way or comes onto it before the vehicle has passed.
 
         Args:
-            distance: (n,) [m] along the way.
-            aside: (n,) [m] from its middle.
-            towards: (n,) [m/s] speed towards that.
-            speed: of the vehicle [m/s].
+            distance: (n,) [m] Distance along the way.
+            aside: (n,) [m] Distance from its middle.
+            towards: (n,) [m/s] Speed towards its middle.
+            speed: Speed of the vehicle [m/s].
         """
         o, pace = self._options, max(speed, _SLOWEST)
         comes = towards > 0.0

@@ -1,4 +1,4 @@
-"""Where people are along the way ahead, and how they move across it."""
+"""The positions of people along the way ahead, and their motion across it."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from controller._jit import Array
 from controller.observation import Observation
 
-SIGHT, SPACING = 40.0, 0.5  # [m] of the way ahead that is looked at, and between its points
+SIGHT, SPACING = 40.0, 0.5  # Sight distance [m] along the way, and spacing [m] of its points
 STATIONS = np.arange(0.0, SIGHT, SPACING)
 
 
 class PeopleAhead(NamedTuple):
-    """Of each person: the distance along the way, that from its middle, the speed towards that."""
+    """The distance of each person along the way and from its middle, and the speed towards it."""
 
     distance: Array  # (n,) [m]
     aside: Array  # (n,) [m] >= 0
@@ -23,12 +23,12 @@ class PeopleAhead(NamedTuple):
 
     @property
     def in_sight(self) -> NDArray[np.bool_]:
-        """(n,) whether they are ahead and not too far."""
+        """The people (n,) who are ahead and within sight."""
         return np.asarray((self.distance > 0.0) & (self.distance < SIGHT), dtype=np.bool_)
 
 
 def people_ahead(seen: Observation) -> PeopleAhead | None:
-    """The people of an observation; None: there is nobody, or no way."""
+    """Return the people of an observation; None without people or without a way."""
     if seen.path is None or seen.people is None or not len(seen.people.position):
         return None
     way = seen.path.poses(STATIONS)

@@ -143,7 +143,7 @@ class LawRecords:
         crowd, recorder = roster.crowd, self._recorder
         new = set(roster.newcomers)
         roster.newcomers.clear()
-        for row, pedestrian in enumerate(roster.present.tolist()):
+        for row, pedestrian in enumerate(roster.person_ids.tolist()):
             if pedestrian in new:
                 begin = crowd.waypoint_start[row] + crowd.waypoint_index[row]
                 ahead = crowd.waypoints[begin : crowd.waypoint_start[row + 1]]

@@ -150,7 +150,7 @@ class Loop:
         bad = np.flatnonzero(~np.isfinite(state).all(axis=1))
         if not len(bad):
             return f"crowd at step {self._k}: {error}"
-        name = roster.ids[roster.present[bad[0]]]
+        name = roster.ids[roster.person_ids[bad[0]]]
         return (
             f"pedestrian '{name}' at step {self._k}: position and velocity "
             f"{state[bad[0]].tolist()}; expected finite numbers [m, m/s]"
@@ -273,7 +273,7 @@ class Loop:
         acting = ""
         for row, ego in enumerate(self._egos):
             look_at = perf_counter()
-            seen = ego.look(row, mirror.poses, truth, surroundings, self._roster.present)
+            seen = ego.look(row, mirror.poses, truth, surroundings, self._roster.person_ids)
             decide_at = perf_counter()
             decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()

@@ -167,7 +167,7 @@ class Mirror:
             SumoError: SUMO failed or disagrees.
         """
         places = [(ego.id, ego.check_pose(step)) for ego in egos]
-        present, crowd = roster.present, roster.crowd
+        present, crowd = roster.person_ids, roster.crowd
         self._reserve(len(roster.ids))
         angles = self._row[: len(present)]
         bad = walking_angles(crowd.position, crowd.velocity, present, self._angles, angles)

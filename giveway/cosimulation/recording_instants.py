@@ -56,7 +56,7 @@ class Instants:
             self._named = len(roster.ids)
         crowd = roster.crowd
         within = np.inf if everybody or k % self._far_steps == 0 else self._near
-        self._recorder.crowd(roster.present, crowd.position, crowd.velocity, places, within)
+        self._recorder.crowd(roster.person_ids, crowd.position, crowd.velocity, places, within)
 
     def background(
         self, k: int, time: float, background: BackgroundVehicles, places: Array

@@ -1,1 +1,1 @@
-"""Who walks: pedestrians drawn, taken over, handed back, disturbed, and as they are seen."""
+"""The crowd of a run: how pedestrians are drawn, taken over, handed back, disturbed and seen."""

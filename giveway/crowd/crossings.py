@@ -1,4 +1,4 @@
-"""Who on foot uses a crossing, or is about to: shared by people's priority and drivers' waiting.
+"""The use of crossings by pedestrians, for their priority and for the waiting of drivers.
 
 A place on a crossing is (u, w): u [m] from one kerb along its middle line to the other, w [m] to
 the left of it.
@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd, targets
 
-ASIDE = 0.5  # [m] beside its marking people are on a crossing as well
-_ONWARD = 0.5  # cosine: who wants to cross looks less than 60 degrees away from it
-_WAITING = 1.5  # [m] from where they are to wait: who is farther from it crosses
-_LOOK_AHEAD = 3  # way-points, one of which may be at a kerb
+ASIDE = 0.5  # Distance [m] beside its marking within which people count as on it
+_ONWARD = 0.5  # Smallest cosine (60 degrees) between heading and crossing of who crosses
+_WAITING = 1.5  # Distance [m] from the waiting point within which people wait
+_LOOK_AHEAD = 3  # Number of next way-points searched for one at a kerb
 _GREEN = "Gg"
 _OUT = "Oo"
 
 
 class Use(NamedTuple):
-    """How people k use a crossing each."""
+    """The use that each of k people makes of a crossing."""
 
     on: NDArray[np.bool_]  # between its kerbs
     waiting: NDArray[np.bool_]  # for its light, if it is closed; some do so a step from the kerb
@@ -34,9 +34,9 @@ def place_on(position: Array, kerb: Array, along: Array) -> tuple[Array, Array]:
     """Places u and w (k,) [m] of people at ``position`` (k, 2) [m].
 
     Args:
-        position: of each.
-        kerb: (2,) or (k, 2) [m] where u and w are 0.
-        along: (2,) or (k, 2) unit vectors along the crossings.
+        position: Positions of the people.
+        kerb: (2,) or (k, 2) [m] Point at which u and w are 0.
+        along: (2,) or (k, 2) Unit vectors along the crossings.
     """
     x, y = position[:, 0] - kerb[..., 0], position[:, 1] - kerb[..., 1]
     along_x, along_y = along[..., 0], along[..., 1]
@@ -50,7 +50,7 @@ def is_near(
     half_width: Array | float,
     reach: Array | float,
 ) -> NDArray[np.bool_]:
-    """(k,) who is on a crossing, or within ``reach`` [m] of a kerb right before or behind it."""
+    """Return (k,) whether each is on a crossing or within ``reach`` [m] before or behind it."""
     near: NDArray[np.bool_] = (np.abs(w) <= half_width) & (u >= -reach) & (u <= length + reach)
     return near
 
@@ -58,14 +58,14 @@ def is_near(
 def use_of(
     crowd: Crowd, rows: NDArray[np.intp], u: Array, along: Array, length: Array | float
 ) -> Use:
-    """How the people ``rows`` (k,) of a crowd use a crossing each, at ``u`` (k,) [m] along it.
+    """Return how the people ``rows`` (k,) use a crossing each, at ``u`` (k,) [m] along it.
 
     Args:
-        crowd: all.
-        rows: those beside a crossing.
-        u: where, from one kerb along it.
-        along: (2,) or (k, 2) unit vectors along the crossings.
-        length: of one or each [m].
+        crowd: All pedestrians.
+        rows: Rows of the people beside a crossing.
+        u: Distance of each from one kerb along the crossing.
+        along: (2,) or (k, 2) Unit vectors along the crossings.
+        length: Length of one crossing or of each [m].
     """
     way = targets(crowd, rows) - crowd.position[rows]
     far = np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
@@ -81,15 +81,15 @@ def use_of(
 def turning_in(
     crowd: Crowd, rows: NDArray[np.intp], kerb: Array, along: Array, length: float, reach: Array
 ) -> Array:
-    """(k,) who walks up to a kerb and then over the crossing: 1 from u = 0 on, -1 back, 0 nobody.
+    """Return (k,) who is going to cross: 1 from u = 0, -1 from the other kerb, 0 not at all.
 
     Args:
-        crowd: all.
-        rows: those beside the crossing.
-        kerb: (2,) [m] where u is 0.
-        along: (2,) unit vector along the crossing.
-        length: of it [m].
-        reach: (k,) [m] that each walks at most up to the kerb.
+        crowd: All pedestrians.
+        rows: Rows of the people beside the crossing.
+        kerb: (2,) [m] Point at which u is 0.
+        along: (2,) Unit vector along the crossing.
+        length: Length of the crossing [m].
+        reach: (k,) [m] Largest walk of each up to the kerb.
     """
     last = crowd.waypoint_start[rows + 1] - 1
     position = crowd.position[rows]
@@ -108,23 +108,23 @@ def turning_in(
 
 
 def have_priority(use: Use, can_enter: NDArray[np.bool_] | bool) -> NDArray[np.bool_]:
-    """(k,) who may walk on: people on a crossing, and those about to enter one that is open.
+    """Return (k,) who may walk on: people on a crossing or about to enter an open one.
 
     Args:
-        use: of a crossing each.
-        can_enter: whether it is open to them, by :func:`is_open`.
+        use: Use that each makes of a crossing.
+        can_enter: Whether the crossing is open to them, by :func:`is_open`.
     """
     finishing = use.on & (can_enter | ~use.waiting)
     return finishing | (use.entering & can_enter)
 
 
 def is_open(state: str, link: int, *, zebra: bool) -> bool:
-    """Whether people who are about to enter a crossing have priority.
+    """Return whether people who are about to enter a crossing have priority.
 
     Args:
-        state: of the light that governs it, one letter per movement (SUMO's); empty: none does.
-        link: index of its movement.
-        zebra: people have priority wherever no light says otherwise.
+        state: State of its traffic light, SUMO's letter per movement; empty without a light.
+        link: Index of the crossing's movement in ``state``.
+        zebra: Whether people have priority wherever no light says otherwise.
     """
     letter = state[link] if 0 <= link < len(state) else "O"
     return letter in _GREEN or (letter in _OUT and zebra)

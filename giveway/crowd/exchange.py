@@ -1,4 +1,4 @@
-"""Who of the scenario's walkers joins our crowd, and who goes back to SUMO."""
+"""The exchange of the scenario's walkers between our crowd and SUMO."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from giveway.sumo.session import SumoSession
 from giveway.walkways import WalkNetwork
 from pedestrian_model import Crowd, Surroundings, Walls
 
-HANDED_BACK_WITHIN = 3.0  # [m] of the middle of a lane for pedestrians, or SUMO makes them jump
+HANDED_BACK_WITHIN = 3.0  # Distance [m] to a pedestrian lane beyond which SUMO makes them jump
 _CLOSED = frozenset("rRyYus")  # states of a crossing's light at which pedestrians wait
 
 
@@ -21,11 +21,11 @@ class Exchange:
     """Takes the scenario's walkers over in the zone and hands them back outside.
 
     Args:
-        session: the running simulation.
-        network: where pedestrians can walk.
-        zone: where they are ours.
-        roster: our crowd.
-        walls: whether the edges of walkways hold pedestrians back.
+        session: Running simulation.
+        network: Network of walkways.
+        zone: Zone in which pedestrians are ours.
+        roster: Crowd that walkers join.
+        walls: Whether the edges of walkways hold pedestrians back.
     """
 
     def __init__(
@@ -53,17 +53,17 @@ class Exchange:
         )
 
     def update(self, egos: Array) -> None:
-        """Once after each SUMO step: who leaves, who joins, then the lights.
+        """Hand people back, take people over and read the lights, once after each SUMO step.
 
         Args:
-            egos: (e, 2) [m] the egos' front bumpers.
+            egos: (e, 2) [m] Positions of the egos' front bumpers.
         """
         self._hand_back(egos)
         self._take_over(egos)
         self._read_lights()  # for those who have just joined, too: some wait at a red one
 
     def _read_lights(self) -> None:
-        """A crossing whose light is not green is closed."""
+        """Open or close every crossing by the state of its traffic light."""
         if not len(self._roster):
             return
         closed = self.surroundings.closed
@@ -107,7 +107,7 @@ class Exchange:
         )
 
     def _hand_back(self, egos: Array) -> None:
-        """Those outside go back once they are on a lane; until then they walk on as ours."""
+        """Hand back those outside who are near a lane; the others walk on as ours."""
         roster = self._roster
         if self._zone.everywhere or not self._walkers.held:
             return
@@ -116,7 +116,7 @@ class Exchange:
             return
         gone = np.zeros(len(roster), dtype=np.bool_)
         for i in np.flatnonzero(outside):
-            name = roster.ids[roster.present[i]]
+            name = roster.ids[roster.person_ids[i]]
             if name not in self._walkers.held:
                 continue  # one that giveway added
             x, y = roster.crowd.position[i].tolist()
@@ -128,7 +128,7 @@ class Exchange:
             roster.count("handed_back", len(roster.release(gone)))
 
     def arrive(self, names: Sequence[str]) -> list[str]:
-        """Let walkers end their walk in SUMO's next step; those of ``names`` that are not its."""
+        """End walks in SUMO's next step and return those of ``names`` that are not SUMO's."""
         others = []
         for name in names:
             if name not in self._walkers.held:

@@ -34,13 +34,13 @@ from pedestrian_model import (
 def model_of(
     config: RunConfig, time_step: float, roster: Roster, *, threads: int = 1
 ) -> PedestrianModel:
-    """What moves the crowd of a run.
+    """Return the pedestrian model that moves the crowd of a run.
 
     Args:
-        config: the run's.
-        time_step: of the co-simulation [s].
-        roster: who is in the crowd.
-        threads: that step a large crowd by VCI.
+        config: Configuration of the run.
+        time_step: Time step of the co-simulation [s].
+        roster: Crowd that is moved.
+        threads: Number of threads that step a large crowd by VCI.
 
     Raises:
         ConfigError: the preset or an option of the model cannot be used.
@@ -59,7 +59,7 @@ def model_of(
 def _plain_model_of(
     config: RunConfig, time_step: float, roster: Roster, threads: int
 ) -> PedestrianModel:
-    """The model itself, in which all people are alike."""
+    """Return the model itself, in which all people are alike."""
     crowd = config.crowd
     parameters = parameters_of(crowd.preset)
     if crowd.plugged_in or crowd.model in JUPEDSIM_MODELS:
@@ -74,12 +74,12 @@ def _plain_model_of(
 def believed_model(
     config: EgoRunConfig, time_step: float, parameters: VciParameters
 ) -> PedestrianModel:
-    """What an ego's controller takes to move the crowd, unless that is VCI; of its own.
+    """Return the model by which an ego's controller predicts people, unless it is VCI.
 
     Args:
-        config: of the ego.
-        time_step: of its prediction [s].
-        parameters: bodies and limits that people are believed to have.
+        config: Configuration of the ego.
+        time_step: Time step of the prediction [s].
+        parameters: Bodies and limits that the ego assumes of people.
 
     Raises:
         ConfigError: an option of somebody else's model cannot be used.
@@ -97,21 +97,21 @@ def _hosted(
     config: RunConfig,
     time_step: float,
     parameters: VciParameters,
-    who: Callable[[], NDArray[np.int64]] | None = None,
+    person_keys: Callable[[], NDArray[np.int64]] | None = None,
 ) -> PluggedInModel:
     make, setup = maker(name, config), setup_of(config, time_step)
     try:
-        return PluggedInModel(f"'{name}'", lambda: make(setup), setup, parameters, who)
+        return PluggedInModel(f"'{name}'", lambda: make(setup), setup, parameters, person_keys)
     except PlugInError as error:
         raise CrowdError(str(error)) from error
 
 
 def maker(name: str, config: RunConfig) -> Callable[[ModelSetup], object]:
-    """What makes somebody else's model, with its options, or one of JuPedSim's.
+    """Return the factory of a plugged-in model, with its options, or of one of JuPedSim's.
 
     Args:
-        name: of the model.
-        config: of the run.
+        name: Name of the model.
+        config: Configuration of the run.
 
     Raises:
         ConfigError: its options cannot be used.
@@ -139,11 +139,11 @@ def require_jupedsim(name: str) -> None:
 
 
 def setup_of(config: RunConfig, time_step: float) -> ModelSetup:
-    """What a model is told of its run.
+    """Return the facts about the run that a model is given.
 
     Args:
-        config: the run's.
-        time_step: of the co-simulation [s].
+        config: Configuration of the run.
+        time_step: Time step of the co-simulation [s].
     """
     parameters = parameters_of(config.crowd.preset)
     return ModelSetup(

@@ -1,4 +1,4 @@
-"""Who on foot has priority now, and relies on it: people on zebras and on their green.
+"""The priority of pedestrians on zebras and at their green light.
 
 Whoever is on a crossing that is theirs has priority, and whoever is about to enter one that is open
 to them. Priority fades over the first metre behind the crossing, so that no force sets in at once.
@@ -13,17 +13,17 @@ from giveway.crowd.crossings import ASIDE, have_priority, is_near, is_open, plac
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from pedestrian_model import Crowd
 
-_FADE = 1.0  # [m] behind a crossing
-_CELL = 16.0  # [m] of the grid in which crossings are found
-_MOST_CELLS = 2**20  # of a larger network's grid the cells are larger
+_FADE = 1.0  # Distance [m] behind a crossing over which priority fades
+_CELL = 16.0  # Cell size [m] of the grid in which crossings are found
+_MOST_CELLS = 2**20  # Limit on the cells of the grid; larger networks get larger cells
 
 
 class PriorityOnFoot:
-    """Tells a crowd who has priority.
+    """Marks in a crowd which pedestrians have priority.
 
     Args:
-        crossings: of the network.
-        light_state: the state of a traffic light by its id.
+        crossings: Crossings of the network.
+        light_state: Function that returns the state of a traffic light by its id.
         kerb_distance: [m] from the kerb, from which on somebody who heads for a crossing is about
             to enter it.
     """
@@ -102,7 +102,7 @@ class PriorityOnFoot:
         np.maximum.at(crowd.priority, rows, np.where(own, 1.0, fading))
 
     def _pairs(self, crowd: Crowd) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
-        """People and crossings that share a cell: indices (k,) of both."""
+        """Return the indices (k,) of people and of crossings that share a cell."""
         column = np.floor((crowd.position[:, 0] - self._origin[0]) / self._side)
         strip = np.floor((crowd.position[:, 1] - self._origin[1]) / self._side)
         inside = (column >= 0) & (column < self._columns) & (strip >= 0) & (strip < self._strips)
@@ -117,7 +117,7 @@ class PriorityOnFoot:
         return np.repeat(rows, count), self._sorted[at]
 
     def _are_open(self, which: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """(k,) whether people may enter each of these crossings now."""
+        """Return (k,) whether people may enter each of these crossings now."""
         states: dict[str, str] = {"": ""}
         open_now: dict[int, bool] = {}
         for number in which.tolist():

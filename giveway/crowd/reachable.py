@@ -1,4 +1,4 @@
-"""Whether the pedestrians that giveway adds start where one can walk, and near the ego's way."""
+"""The check that added pedestrians start on walkable ground and near an ego's way."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,17 +14,17 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at
 from giveway.walkways import WalkNetwork, beside
 
-_NEAR = 25.0  # [m] from the ego's way: who comes no nearer does not matter to the ego
-_NO_WALKWAY = 30.0  # [m] from the next lane on which people may walk
+_NEAR = 25.0  # Distance [m] from the ego's way beyond which people do not matter to it
+_NO_WALKWAY = 30.0  # Distance [m] to a pedestrian lane beyond which there is no walkway
 
 
 def spawn_remark(config: CrowdConfig, ways: Sequence[Array], net_file: Path) -> str:
     """The remark on a spawn area whose pedestrians no ego can meet; empty if one can.
 
     Args:
-        config: where they start and how they walk.
-        ways: (k, 2) [m] of each ego, from its departure to where it is done.
-        net_file: the network's, which is read only if there is something to remark.
+        config: Places where people start, and how they walk.
+        ways: (k, 2) [m] Way of each ego, from its departure to its goal.
+        net_file: File of the network, which is read only if there is something to remark.
     """
     if config.sampler == ENCOUNTERS:
         return ""  # they start where they meet it
@@ -48,8 +48,8 @@ def flow_remark(flows: Sequence[FlowConfig], ways: Sequence[Array]) -> str:
     """The remark on flows none of which an ego can meet; empty if it can meet one.
 
     Args:
-        flows: of people who come in.
-        ways: (k, 2) [m] of each ego, from its departure to where it is done.
+        flows: Flows of people who come in.
+        ways: (k, 2) [m] Way of each ego, from its departure to its goal.
     """
     if not flows:
         return ""
@@ -70,7 +70,7 @@ def flow_remark(flows: Sequence[FlowConfig], ways: Sequence[Array]) -> str:
 
 
 def way_of(vertices: Array, stations: Array, first: float, last: float) -> Array:
-    """(k, 2) [m] the part of a path between two stations [m]."""
+    """Return the part (k, 2) [m] of a path between two stations [m]."""
     inside = (stations > first) & (stations < last)
     at = np.concatenate([[first], stations[inside], [max(last, first + 1e-3)]])
     return points_at(vertices, stations, at)

@@ -13,14 +13,14 @@ from giveway.config.tables.people import DISTRACTED
 from giveway.crowd.motion.disturbance import disturbance_of
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
 
-ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
+ARRIVAL_RADIUS = 0.5  # Distance [m] to the destination at which a pedestrian has arrived
 
 
 class Trait(NamedTuple):
-    """What sets somebody apart that giveway adds."""
+    """The kind and the group of a pedestrian that giveway adds."""
 
-    kind: str = ""  # as in kinds.py; empty: of none
-    group: str = ""  # the id of its first member; empty: alone
+    kind: str = ""  # as in kinds.py; empty without a kind
+    group: str = ""  # the id of its first member; empty for single people
 
 
 _NOTHING = Trait()
@@ -30,13 +30,13 @@ class Roster:
     """The crowd and the names of those in it.
 
     Attributes:
-        ids: of all that ever were in the crowd; the tables refer to them by index.
-        crowd: the state of those who are in it now.
-        present: (n,) index into ``ids`` of each of them.
-        names: the ids of each of them.
-        newcomers: indices of those who joined since somebody last emptied the list.
-        added: ids of those that giveway added; the others are the scenario's own.
-        traits: of those who have any, by their ids.
+        ids: Ids of all that ever were in the crowd; the tables refer to them by index.
+        crowd: State of those who are in the crowd now.
+        person_ids: (n,) Index into ``ids`` of each pedestrian in the crowd.
+        names: Ids of the pedestrians in the crowd.
+        newcomers: Indices of those who joined since the list was last emptied.
+        added: Ids of those that giveway added; the others are the scenario's own.
+        traits: Traits of those who have any, by their ids.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Roster:
     ) -> None:
         self.ids: list[str] = list(ids)
         self.crowd = Crowd.empty() if crowd is None else crowd
-        self.present = np.arange(len(self.ids))
+        self.person_ids = np.arange(len(self.ids))
         self.names = list(ids)
         self.added = set(ids)
         self.traits = dict(traits or {})
@@ -59,33 +59,33 @@ class Roster:
         self._counts = {"taken_over": 0, "handed_back": 0, "arrived": 0, "continued": 0}
 
     def __len__(self) -> int:
-        return len(self.present)
+        return len(self.person_ids)
 
     @property
     def ledger(self) -> dict[str, int]:
-        """Where they are; added + taken over = handed back + arrived + continued + walking."""
-        added, walking = len(self.added), len(self.present)
+        """The ledger: added + taken over = handed back + arrived + continued + walking."""
+        added, walking = len(self.added), len(self.person_ids)
         return {"added": added, **self._counts, "walking": walking}
 
     @property
     def keys(self) -> NDArray[np.int64]:
-        """(n,) a number for each of them, by the id alone: the same in every run and twin."""
+        """A number (n,) for each pedestrian by the id alone, the same in every run and twin."""
         for name in itertools.islice(self.ids, len(self._keys), None):
             digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
             self._keys.append(int.from_bytes(digest, "big") >> 1)
-        return np.array(self._keys, dtype=np.int64)[self.present]
+        return np.array(self._keys, dtype=np.int64)[self.person_ids]
 
     @property
     def distracted(self) -> NDArray[np.bool_]:
-        """(n,) who of them is."""
+        """The pedestrians (n,) who are distracted."""
         self._learn()
-        return np.array(self._distracted, dtype=np.bool_)[self.present]
+        return np.array(self._distracted, dtype=np.bool_)[self.person_ids]
 
     @property
     def groups(self) -> NDArray[np.int64]:
-        """(n,) the number of each one's group; -1: alone."""
+        """The index (n,) of each one's group; -1 for single people."""
         self._learn()
-        return np.array(self._groups, dtype=np.int64)[self.present]
+        return np.array(self._groups, dtype=np.int64)[self.person_ids]
 
     def _learn(self) -> None:
         """Note the traits of those who are new."""
@@ -113,7 +113,7 @@ class Roster:
                 self._index[name] = len(self.ids)
                 self.ids.append(name)
             indices.append(self._index[name])
-        self.present = np.concatenate([self.present, np.array(indices, dtype=np.int64)])
+        self.person_ids = np.concatenate([self.person_ids, np.array(indices, dtype=np.int64)])
         self.newcomers += indices
         self.names += names
         self.crowd = self.crowd.concatenate(crowd) if len(self.crowd) else crowd
@@ -123,7 +123,7 @@ class Roster:
         names = [self.names[i] for i in np.flatnonzero(gone)]
         self.names = list(itertools.compress(self.names, (~gone).tolist()))
         self.crowd = self.crowd.select(~gone)
-        self.present = self.present[~gone]
+        self.person_ids = self.person_ids[~gone]
         return names
 
     def count(self, event: str, number: int = 1) -> None:
@@ -134,8 +134,10 @@ class Roster:
 class Log(Protocol):
     """Notes how people get on."""
 
-    def note(self, step: int, ids: Sequence[str], present: NDArray[np.int64], crowd: Crowd) -> None:
-        """Note where those who are ``present`` are at a control instant."""
+    def note(
+        self, step: int, ids: Sequence[str], person_ids: NDArray[np.int64], crowd: Crowd
+    ) -> None:
+        """Note the positions of ``person_ids`` at a control instant."""
 
     def arrive(self, step: int, pedestrians: NDArray[np.int64]) -> None:
         """Note who reached the last way-point at a control instant."""
@@ -145,10 +147,10 @@ class Walking:
     """Steps a crowd.
 
     Args:
-        config: the run's.
-        model: of the crowd.
-        roster: the crowd, and who is in it.
-        log: notes how people get on; None: nobody asks for it.
+        config: Configuration of the run.
+        model: Model of the crowd.
+        roster: Crowd that is stepped, and its ids.
+        log: Log of how people get on; None if it is not needed.
     """
 
     def __init__(
@@ -163,29 +165,29 @@ class Walking:
         """Note where everybody is at the control instant ``step``."""
         if self._log is not None:
             roster = self._roster
-            self._log.note(step, roster.ids, roster.present, roster.crowd)
+            self._log.note(step, roster.ids, roster.person_ids, roster.crowd)
 
     def advance(self, step: int, vehicles: Vehicles, surroundings: Surroundings) -> list[str]:
         """Step the crowd from the control instant ``step``; the names of those who have arrived.
 
         Args:
-            step: the instant.
-            vehicles: that people feel.
-            surroundings: the walls and lights that they heed.
+            step: Index of the control instant.
+            vehicles: Vehicles that people react to.
+            surroundings: Walls and lights that people heed.
         """
         roster = self._roster
-        if not len(roster.present):
+        if not len(roster.person_ids):
             return []
         crowd = roster.crowd
         if self._disturbance is None:
             self._model.advance(crowd, vehicles, surroundings)
         else:
             self._disturbance.advance(
-                crowd, vehicles, surroundings, roster.present, len(roster.ids)
+                crowd, vehicles, surroundings, roster.person_ids, len(roster.ids)
             )
         if not any_arrived(roster.crowd, ARRIVAL_RADIUS):
             return []
         there = arrived(roster.crowd, ARRIVAL_RADIUS)
         if self._log is not None:
-            self._log.arrive(step + 1, roster.present[there])
+            self._log.arrive(step + 1, roster.person_ids[there])
         return roster.release(there)

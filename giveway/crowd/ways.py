@@ -14,20 +14,20 @@ from giveway.geometry.kernel import Array
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.walkways.reading import Signal
 
-_BODY = 0.27  # [m] from a line's ends; half of a shoulder breadth
-_BACK = 0.3  # [m] from the kerb people wait for their light
+_BODY = 0.27  # Distance [m] kept from a line's ends: half a shoulder breadth
+_BACK = 0.3  # Distance [m] from the kerb at which people wait for their light
 
 
 class Gate(NamedTuple):
-    """What people come through on the way: a point, or a line that they cross anywhere."""
+    """A gate on the way of people: a point, or a line that they cross anywhere."""
 
     middle: Array  # (2,) [m]
-    across: Array  # (2,) unit direction in which a line is crossed; 0, 0: a point
-    half_width: float  # [m] of a line; 0: a point
-    signal: int = -1  # that has to be open; -1: none
+    across: Array  # (2,) unit direction in which a line is crossed; 0, 0 for a point
+    half_width: float  # [m] of a line; 0 for a point
+    signal: int = -1  # the signal that has to be open; -1 without one
 
     def aim(self, place: Array) -> Array:
-        """(2,) [m] where somebody at ``place`` (2,) comes through."""
+        """Return the point (2,) [m] at which somebody from ``place`` (2,) passes the gate."""
         along = np.array([-self.across[1], self.across[0]])
         room = max(self.half_width - _BODY, 0.0)
         beside = float(np.clip((place - self.middle) @ along, -room, room))
@@ -44,7 +44,7 @@ class LitCrossing(NamedTuple):
     signal: int
 
     def gate(self, start: Array, end: Array) -> Gate | None:
-        """Where somebody waits who walks straight over it; None: the way leads elsewhere."""
+        """Return the gate of a straight walk over the crossing; None if it leads elsewhere."""
         u, w = self._place(start)
         u_end, w_end = self._place(end)
         along = self.along
@@ -59,7 +59,7 @@ class LitCrossing(NamedTuple):
         return Gate(kerb - _BACK * along, along, self.half_width, self.signal)
 
     def _place(self, at: Array) -> tuple[float, float]:
-        """[m] along it from the kerb, and beside it."""
+        """Return the distances [m] along the crossing from the kerb and to its side."""
         x, y = at - self.kerb
         d_x, d_y = self.along
         return float(x * d_x + y * d_y), float(y * d_x - x * d_y)
@@ -68,11 +68,11 @@ class LitCrossing(NamedTuple):
 def lit_crossings(
     crossings: Sequence[Crossing], signals: Sequence[Signal]
 ) -> tuple[LitCrossing, ...]:
-    """Those crossings of the network at which people wait for their light.
+    """Return the crossings of the network at which people wait for their light.
 
     Args:
-        crossings: all.
-        signals: that the run watches, in the order of ``Surroundings.closed``.
+        crossings: All crossings.
+        signals: Signals that the run watches, in the order of ``Surroundings.closed``.
     """
     by_edge = {signal.crossing: number for number, signal in enumerate(signals)}
     found = []
@@ -87,7 +87,7 @@ def lit_crossings(
 
 
 def gates_of(flow: FlowConfig) -> tuple[Gate, ...]:
-    """What a flow comes through, with the lines facing away from where it comes from."""
+    """Return the gates of a flow, with the lines facing away from its start."""
     gates = []
     before = middle_of(flow.start)
     for place in flow.via:
@@ -119,7 +119,7 @@ def with_lights(
 
 
 def longest_way(flow: FlowConfig) -> float:
-    """[m] that nobody who walks with a flow exceeds."""
+    """Return an upper bound [m] on the length of the walks of a flow."""
     boxes = [np.sort(corners(place), axis=0) for place in (flow.start, *flow.via, flow.to)]
     return sum(
         math.hypot(*np.maximum(b[1] - a[0], a[1] - b[0])) for a, b in itertools.pairwise(boxes)
@@ -127,18 +127,18 @@ def longest_way(flow: FlowConfig) -> float:
 
 
 def corners(place: Place) -> Array:
-    """(2, 2) [m] the ends of a line, opposite corners of a rectangle; a point twice."""
+    """Return the ends (2, 2) [m] of a line, opposite corners of a rectangle, or a point twice."""
     numbers = np.array(place, dtype=np.float64).ravel()
     return np.resize(numbers, (2, 2))
 
 
 def middle_of(place: Place) -> Array:
-    """(2,) [m]."""
+    """Return the middle (2,) [m] of a place."""
     return np.asarray(corners(place).mean(axis=0))
 
 
 def somewhere(place: Place, random: np.random.Generator) -> Array:
-    """(2,) [m] a point, or one of a line or rectangle, all alike."""
+    """Draw a point (2,) [m] of a place, uniform on a line or rectangle."""
     low, high = corners(place)
     share = random.random() if is_line(place) else random.random(2)
     return np.asarray(low + share * (high - low))

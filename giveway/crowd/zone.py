@@ -14,18 +14,18 @@ _EXPECTED = (
     "three corners 'x,y x,y x,y' [m] in network coordinates"
 )
 
-_SMALLEST, _LARGEST = 0.1, 1e6  # [m] radii
-_FARTHEST = 1e7  # [m] a corner; beyond it a millimetre is lost in rounding
+_SMALLEST, _LARGEST = 0.1, 1e6  # Bounds of the radius [m]
+_FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
 
 
-_MARGIN = 5.0  # Distance [m] that keeps people from changing hands at the edge, some steps wide
+_MARGIN = 5.0  # Hysteresis [m] at the zone's edge: people do not change hands to and fro
 
 
 class Zone:
-    """Where pedestrians are ours: round the egos or their way, in a polygon, everywhere, nowhere.
+    """The zone in which pedestrians are ours: round egos, a polygon, everywhere or nowhere.
 
     Args:
-        text: as in the configuration.
+        text: Text of the setting ``zone`` in the configuration.
         margin: Distance [m] outside the zone at which people are handed back to SUMO.
 
     Raises:
@@ -57,10 +57,10 @@ class Zone:
             raise ConfigError(f"--zone '{text}': {_EXPECTED}")
 
     def along(self, way: Array) -> "Zone":
-        """The zone of a run without an ego: where one would be that drives along ``way``.
+        """Return the zone of a run without an ego: round the way that one would drive.
 
         Args:
-            way: (k, 2) [m].
+            way: (k, 2) [m] Way that an ego would drive.
         """
         if self._radius is None:
             return self
@@ -73,14 +73,14 @@ class Zone:
 
     @property
     def follows_egos(self) -> bool:
-        """Whether the zone is round the egos, and so nowhere without one."""
+        """Return whether the zone is round the egos, and so nowhere without one."""
         return self._radius is not None
 
     def require_overlap(self, boundary: tuple[float, float, float, float]) -> None:
         """Make sure that the zone lies in the network.
 
         Args:
-            boundary: x_min, y_min, x_max, y_max of the network [m].
+            boundary: Bounds x_min, y_min, x_max, y_max of the network [m].
 
         Raises:
             ConfigError: it lies outside.
@@ -94,16 +94,16 @@ class Zone:
         )
 
     def enters(self, points: Array, egos: Array) -> NDArray[np.bool_]:
-        """Which of ``points`` (n, 2) [m] lie in the zone.
+        """Return which of ``points`` (n, 2) [m] lie in the zone.
 
         Args:
-            points: (n, 2) [m].
-            egos: (e, 2) [m] the egos' front bumpers.
+            points: (n, 2) [m] Points to test.
+            egos: (e, 2) [m] Positions of the egos' front bumpers.
         """
         return self._inside(points, egos, self._radius or 0.0, self._inner)
 
     def keeps(self, points: Array, egos: Array) -> NDArray[np.bool_]:
-        """Which of ``points`` lie in the zone or not further than its margin outside."""
+        """Return which of ``points`` lie in the zone or at most its margin outside."""
         return self._inside(points, egos, (self._radius or 0.0) + self._margin, self._outer)
 
     def _inside(

@@ -21,9 +21,9 @@ def density_figure(
     """Mean density on a grid, the measures' outlines, and the conflicts of all egos, to scale.
 
     Args:
-        found: the density.
-        measures: drawn as lines.
-        conflicts: severity and place of each.
+        found: Density to draw.
+        measures: Measures to draw as lines.
+        conflicts: Severity and place of each.
         title: Title of the figure.
     """
     aspect = (found.top - found.bottom) / (found.right - found.left)

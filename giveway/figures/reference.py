@@ -23,8 +23,8 @@ def reference_figure(
 
     Args:
         curves: Curves, at most two, each with its label.
-        safe_distance: d_safe [m], where they begin to rise.
-        buffer_distance: d_buffer [m], over which the paper's rises to v_r.
+        safe_distance: Gap d_safe [m] at which the curves begin to rise.
+        buffer_distance: Distance d_buffer [m] over which the paper's curve rises to v_r.
 
     Raises:
         ValueError: there is no curve, or there are more than two.

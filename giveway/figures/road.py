@@ -42,7 +42,7 @@ def draw_marks(axes: Axes, marks: RoadMarks, states: Mapping[str, str] | None, v
 
     Args:
         axes: Axes to draw into.
-        marks: crossings and stop lines.
+        marks: Crossings and stop lines.
         states: Traffic light states by id. None: stop lines are grey.
         view: Rectangle to show; everything outside is left out.
     """

@@ -84,10 +84,10 @@ def state_figure(
     bar above the speed says what the ego stands for.
 
     Args:
-        runs: the ego's track, or pairs of a label and a track.
-        safe_distance: d_safe [m], drawn into the gap's panel.
-        buffer_distance: d_buffer [m], drawn on top of it; 0: not.
-        stop_lines: positions [m] of the front bumper, as in the track, at which lights hold it.
+        runs: Track of the ego, or pairs of a label and a track.
+        safe_distance: Distance d_safe [m], drawn into the gap's panel.
+        buffer_distance: Distance d_buffer [m], drawn on top of it unless 0.
+        stop_lines: Positions [m] of the front bumper, as in the track, at which lights hold it.
         title: Title of the whole figure.
 
     Raises:
@@ -186,7 +186,7 @@ def strokes(
 
     Args:
         ego: Ego from which the distances are measured.
-        distance: (T,) [m] to what is in front; inf: nothing.
+        distance: (T,) [m] Distance to what is in front; inf if nothing is.
         fastest: [m/s] at which one and the same may move along the way.
     """
     known = np.where(np.isfinite(distance), distance, np.nan)

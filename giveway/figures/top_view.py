@@ -65,20 +65,20 @@ def top_view_figure(
     """Whole trajectories coloured by time, and the scene at some instants, all to scale.
 
     Args:
-        ego: the ego's track.
-        crowd: the crowd's track; may be empty.
-        shape: the ego's rectangle.
-        body_radius: radius of a pedestrian [m].
+        ego: Track of the ego.
+        crowd: Track of the crowd; may be empty.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
         times: Times of the snapshots [s], each taken at the nearest control instant. Left out: six
             over
             the time in which a pedestrian is within 10 m of the ego, one of them at the closest
             approach and the others evenly.
-        background: other vehicles, drawn in the snapshots; from their latest instant on they are
+        background: Other vehicles, drawn in the snapshots; from their latest instant on they are
             taken to drive straight on.
-        road: areas and lines to draw underneath.
-        marks: crossings and stop lines.
-        signals: the lights' states; in a snapshot stop lines have the colour of the instant.
-        conflicts: marked among the trajectories.
+        road: Areas and lines to draw underneath.
+        marks: Crossings and stop lines.
+        signals: States of the lights; in a snapshot stop lines have the colour of the instant.
+        conflicts: Conflicts to mark among the trajectories.
         title: Title of the whole figure.
 
     Raises:
@@ -135,9 +135,9 @@ def crowd_view_figure(
     """The trajectories of a run without an ego, coloured by time, to scale.
 
     Args:
-        time: (T,) [s] the control instants.
-        crowd: the crowd's track.
-        road: areas and lines to draw underneath.
+        time: (T,) [s] Control instants.
+        crowd: Track of the crowd.
+        road: Areas and lines to draw underneath.
         title: Title of the figure.
 
     Raises:

@@ -75,8 +75,8 @@ def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title:
     """The displacement error over the horizon, one panel per group of pedestrians.
 
     Args:
-        time: (H,) [s] ahead.
-        panels: per panel, a curve per predictor.
+        time: (H,) [s] Prediction time ahead.
+        panels: Curves of each panel, one per predictor.
         title: Title of the whole figure.
     """
     figure = Figure(figsize=(4.2 * len(panels), 3.6), layout="constrained")
@@ -104,7 +104,7 @@ def tracks_figure(
     """Draw what was predicted for one window, and what was observed.
 
     Args:
-        observed: (H + 1, n, 2) [m], from the start on.
+        observed: (H + 1, n, 2) [m] Observed positions, from the start on.
         predicted: Predicted trajectories of each predictor, in the same form.
         vehicle: Poses at the start, on the way and at the end; may be empty.
         title: Title of the figure.
@@ -136,9 +136,9 @@ def places_figure(place: Array, errors: Mapping[str, Array], body: Body, title: 
     """The mean final error by where the pedestrian is, seen from the vehicle.
 
     Args:
-        place: (R, 2) [m] before and left of the vehicle; nan without one.
-        errors: (R,) [m] by predictor; nan where there is none.
-        body: the vehicle's, at the origin.
+        place: (R, 2) [m] Place before and left of the vehicle; nan without one.
+        errors: (R,) [m] Errors by predictor; nan without one.
+        body: Body of the vehicle, at the origin.
         title: Title of the whole figure.
     """
     edges = np.arange(-_REACH, _REACH + _CELL / 2, _CELL)

@@ -36,13 +36,13 @@ Rows = NDArray[np.void]
 
 ROWS_FILE = "rows"
 META_FILE = "meta.json"
-MAGIC = b"giveway3"  # another number for another format; which columns a table has, it says itself
+MAGIC = b"giveway3"  # Format number; the columns of a table are in the journal
 RECORD = struct.Struct("=IIQ")  # kind, table, bytes of payload; 16 bytes
-_FIRST_ROWS = 1024  # a table's first size; it doubles from there
+_FIRST_ROWS = 1024  # Initial number of rows of a table, which then doubles
 
 
 class Kind(enum.IntEnum):
-    """What a record holds."""
+    """The kind of content that a record holds."""
 
     ROWS_TABLE = 1  # payload: JSON, name and names of columns
     NAME_TABLE = 2  # payload: JSON, name
@@ -64,7 +64,7 @@ class JournalRows:
 
     Args:
         columns: Names of the columns, in order.
-        number: of the table in its journal.
+        number: Number of the table in its journal.
     """
 
     def __init__(self, columns: Sequence[str], number: int = 0) -> None:
@@ -123,7 +123,7 @@ class NameTable:
     """Strings as row entries: each gets the index of its first appearance.
 
     Args:
-        number: of the table in its journal.
+        number: Number of the table in its journal.
     """
 
     def __init__(self, number: int = 0) -> None:
@@ -156,11 +156,11 @@ class Journal:
 
     Args:
         folder: where the journal is kept; with None nothing is kept.
-        heartbeat: the one in use; None makes one in the folder.
+        heartbeat: Heartbeat in use; None makes one in the folder.
 
     Attributes:
-        heartbeat: where the run stands.
-        failure: why nothing is journalled any more; empty while all is well.
+        heartbeat: Progress of the run.
+        failure: Reason why journalling stopped; empty while it works.
     """
 
     def __init__(self, folder: Path | None, heartbeat: Heartbeat | None = None) -> None:

@@ -15,14 +15,14 @@ from giveway.processes.heartbeat import Heartbeat, Pulse
 
 @dataclass(frozen=True)
 class JournalContents:
-    """What a journal holds.
+    """The contents of a journal.
 
     Attributes:
-        meta: what the rows belong to; empty if the run ended before it was written.
-        tables: (n,) rows each, by name; so are the columns of a row.
-        names: by name, each by index.
-        commits: whole steps found.
-        pulse: where the run stood.
+        meta: Facts about the run; empty if the run ended before they were written.
+        tables: (n,) Rows of each table, by its name.
+        names: Strings of each name table, by its name and in the order of their indices.
+        commits: Number of whole steps found.
+        pulse: Progress of the run when it last reported.
     """
 
     meta: dict[str, Any]

@@ -37,15 +37,15 @@ class RecordedEgo(NamedTuple):
     track: EgoTrack
     predictions: PredictionTrack
     outputs: tuple[Output, ...] = ()
-    hasty: NDArray[np.int64] = _NOBODY  # indices of who set out for the road too suddenly
+    hasty: NDArray[np.int64] = _NOBODY  # indices of people whose start broke the assumption
 
 
 class RecordedRows:
     """Recorded rows, from a recorder or from the journal of a run that died.
 
     Args:
-        rows: by table, with the columns of :data:`giveway.journal.layout.ROWS`.
-        names: what their indices mean.
+        rows: Rows of each table, with the columns of :data:`giveway.journal.layout.ROWS`.
+        names: Strings to which the indices in the rows refer.
     """
 
     def __init__(self, rows: dict[str, Rows], names: dict[str, tuple[str, ...]]) -> None:
@@ -58,7 +58,7 @@ class RecordedRows:
 
     @property
     def ledger(self) -> dict[str, int]:
-        """How many pedestrians were where at the latest of SUMO's instants."""
+        """The ledger of pedestrians at the latest of SUMO's instants."""
         rows = self._rows["ledger"]
         return {name: int(rows[name][-1]) for name in LEDGER} if len(rows) else {}
 
@@ -100,7 +100,7 @@ class RecordedRows:
         )
 
     def _outputs_of(self, ego: str, rows: Rows) -> tuple[Output, ...]:
-        """What the profile of an ego's FMU wanted to have recorded, at each of its instants."""
+        """Return the outputs that the profile of an ego's FMU has recorded, per control instant."""
         recorded, found = self._rows["outputs"], list[Output]()
         for key, text in enumerate(self._names["outputs"]):
             whose, name, unit, description = json.loads(text)
@@ -113,7 +113,7 @@ class RecordedRows:
         return tuple(found)
 
     def _hasty_of(self, number: float) -> NDArray[np.int64]:
-        """Who set out for the road more suddenly than an ego's safety layer assumes."""
+        """Return the pedestrians who broke the safety layer's assumption by a sudden start."""
         rows = self._rows["hasty"]
         return np.unique(_indices(rows["pedestrian"][rows["ego"] == number]))
 

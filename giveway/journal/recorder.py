@@ -25,7 +25,7 @@ class Recorder:
     """Collects what the loop knows at each control instant.
 
     Args:
-        journal: keeps the rows where they outlive this process.
+        journal: Journal that keeps the rows beyond this process.
     """
 
     def __init__(self, journal: Journal | None = None) -> None:
@@ -49,8 +49,8 @@ class Recorder:
         """Note the names of pedestrians, in the order of their indices.
 
         Args:
-            ids: of them.
-            traits: the kind and the group of those who have any.
+            ids: Ids of the pedestrians.
+            traits: Kind and group of those who have any.
         """
         for name in ids:
             self._names["pedestrians"].index(name)
@@ -67,9 +67,9 @@ class Recorder:
         """Record what an FMU's profile wants to have recorded at the present control instant.
 
         Args:
-            ego_id: the ego that it drives.
-            record: name, unit and description of each variable.
-            values: of them.
+            ego_id: Id of the ego that the FMU drives.
+            record: Name, unit and description of each variable.
+            values: Values of the variables.
         """
         block = self._rows["outputs"].block(len(record))
         for row, (about, value) in enumerate(zip(record, values, strict=True)):
@@ -91,9 +91,9 @@ class Recorder:
         """Record where a pedestrian means to walk from the present instant on.
 
         Args:
-            pedestrian: its index.
+            pedestrian: Index of the pedestrian.
             desired_speed: [m/s].
-            places: (k, 2) [m] where it is and its way-points.
+            places: (k, 2) [m] Its position and its way-points.
         """
         block = self._rows["people"].block(len(places))
         block[:, 0] = self._steps - 1
@@ -122,20 +122,20 @@ class Recorder:
         block[:, 0], block[:, 1] = self._names["egos"].index(ego_id), pedestrians
 
     def crowd(
-        self, present: Indices, position: Array, velocity: Array, egos: Array, within: float
+        self, person_ids: Indices, position: Array, velocity: Array, egos: Array, within: float
     ) -> None:
-        """Record the pedestrians ``present`` at the present control instant.
+        """Record the crowd at the present control instant.
 
         Args:
-            present: (n,) their indices.
-            position: (n, 2) [m].
-            velocity: (n, 2) [m/s].
-            egos: (e, 2) [m] where the egos are.
+            person_ids: (n,) Index of each pedestrian.
+            position: (n, 2) [m] Positions.
+            velocity: (n, 2) [m/s] Velocities.
+            egos: (e, 2) [m] Positions of the egos.
             within: [m] from an ego; pedestrians farther from every ego are left out.
         """
-        block = self._crowd.block(len(present))
-        filled = fill_near(self._steps - 1, present, position, velocity, egos, within, block)
-        self._crowd.give_back(len(present) - filled)
+        block = self._crowd.block(len(person_ids))
+        filled = fill_near(self._steps - 1, person_ids, position, velocity, egos, within, block)
+        self._crowd.give_back(len(person_ids) - filled)
 
     def predictions(
         self, ego_id: str, pedestrians: Indices, look_ahead: Array, positions: Array
@@ -143,10 +143,10 @@ class Recorder:
         """Record what an ego's controller expects of the crowd from the present instant on.
 
         Args:
-            ego_id: the ego whose controller it is.
-            pedestrians: (n,) the indices of those predicted.
-            look_ahead: (m,) [s].
-            positions: (m, n, 2) [m] then.
+            ego_id: Id of the ego whose controller it is.
+            pedestrians: (n,) Indices of the predicted pedestrians.
+            look_ahead: (m,) [s] Prediction times ahead.
+            positions: (m, n, 2) [m] Predicted positions.
         """
         block = self._rows["predictions"].block(look_ahead.size * pedestrians.size)
         block[:, 0] = self._steps - 1
@@ -188,7 +188,7 @@ class Recorder:
 @kernel
 def fill_near(
     step: int,
-    present: Indices,
+    person_ids: Indices,
     position: Array,
     velocity: Array,
     egos: Array,
@@ -197,14 +197,14 @@ def fill_near(
 ) -> int:
     """Fill the crowd's rows of one step with the pedestrians near an ego; returns how many."""
     count = 0
-    for i in range(len(present)):
+    for i in range(len(person_ids)):
         near = np.isinf(within)
         for j in range(len(egos)):
             d_x, d_y = position[i, 0] - egos[j, 0], position[i, 1] - egos[j, 1]
             near |= d_x * d_x + d_y * d_y <= within * within
         if near:
             block[count, 0] = step
-            block[count, 1] = present[i]
+            block[count, 1] = person_ids[i]
             block[count, 2] = position[i, 0]
             block[count, 3] = position[i, 1]
             block[count, 4] = velocity[i, 0]

@@ -1,7 +1,7 @@
-"""How people get on with their ways, gathered step by step in this process's memory.
+"""The log of how people progress on their ways, kept in this process's memory.
 
-The rows of a run outlive a crash in its journal; these need not: without the twin that comes after
-the run they say nothing.
+The rows of a run outlive a crash in its journal. These need not: they only serve the comparison
+with the counterfactual run (twin) that follows.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,8 +17,8 @@ from pedestrian_model import Crowd, remaining_distance
 
 REACH = 30.0
 """[m] from an ego's way: who comes no closer is not looked at."""
-_LOOKS = 0.5  # [s] between two looks at who comes close
-_SWAY = 0.1  # [m] who stands may sway by less, which is no way
+_LOOKS = 0.5  # Interval [s] between two searches for people who come close
+_SWAY = 0.1  # Smallest distance [m] that counts as walked; standing people sway by less
 _NUMBERS = ("x", "y", "vx", "vy", "remaining", "walked")
 _COLUMNS = ("step", "pedestrian", *_NUMBERS)  # as the kernel fills them
 
@@ -54,14 +54,16 @@ class WalkLog:
         """The egos have gone: who comes close from now on was not in their way."""
         self._ways.clear()
 
-    def note(self, step: int, ids: Sequence[str], present: NDArray[np.int64], crowd: Crowd) -> None:
-        """Note where those who are ``present`` are at a control instant; the second time nothing.
+    def note(
+        self, step: int, ids: Sequence[str], person_ids: NDArray[np.int64], crowd: Crowd
+    ) -> None:
+        """Note the positions of ``person_ids`` at a control instant, once per instant.
 
         Args:
-            step: the instant.
-            ids: of all that ever were in the crowd.
-            present: (n,) index into ``ids`` of those in the crowd.
-            crowd: n pedestrians.
+            step: Index of the control instant.
+            ids: Ids of all that ever were in the crowd.
+            person_ids: (n,) Index into ``ids`` of those in the crowd.
+            crowd: Crowd of n pedestrians.
         """
         if step <= self._last:
             return
@@ -69,13 +71,13 @@ class WalkLog:
         if len(ids) > len(self._ids):
             self._learn(ids[len(self._ids) :])
         if self._ways and step % self._every == 0:
-            self._look(present, crowd.position)
-        if not len(present):
+            self._look(person_ids, crowd.position)
+        if not len(person_ids):
             return
-        block = self._rows.block(len(present))
+        block = self._rows.block(len(person_ids))
         filled = _fill(
             step,
-            present,
+            person_ids,
             crowd.position,
             crowd.velocity,
             crowd.desired_speed,
@@ -84,7 +86,7 @@ class WalkLog:
             self._memory,
             block,
         )
-        self._rows.give_back(len(present) - filled)
+        self._rows.give_back(len(person_ids) - filled)
 
     def _learn(self, ids: Sequence[str]) -> None:
         self._ids += ids
@@ -93,21 +95,21 @@ class WalkLog:
         unseen = np.full((len(ids), self._memory.shape[1]), np.nan)
         self._memory = np.concatenate([self._memory, unseen])
 
-    def _look(self, present: NDArray[np.int64], position: Array) -> None:
-        far = np.flatnonzero(~self._near[present])
+    def _look(self, person_ids: NDArray[np.int64], position: Array) -> None:
+        far = np.flatnonzero(~self._near[person_ids])
         if not len(far):
             return
         points = shapely.points(position[far])
         for way in self._ways:
-            self._near[present[far[shapely.dwithin(way, points, REACH)]]] = True
+            self._near[person_ids[far[shapely.dwithin(way, points, REACH)]]] = True
 
     def arrive(self, step: int, pedestrians: NDArray[np.int64]) -> None:
         """Note that pedestrians, by their indices, reached the last way-point at ``step``."""
         self._arrivals += [(step, int(pedestrian)) for pedestrian in pedestrians]
 
-    def awaits(self, present: NDArray[np.int64]) -> bool:
-        """Whether anybody who counts is among those ``present``."""
-        return bool(self._near[present].any())
+    def awaits(self, person_ids: NDArray[np.int64]) -> bool:
+        """Return whether anybody who counts is among ``person_ids``."""
+        return bool(self._near[person_ids].any())
 
     @property
     def near(self) -> frozenset[str]:
@@ -136,7 +138,7 @@ class WalkLog:
 @kernel
 def _fill(
     step: int,
-    present: NDArray[np.int64],
+    person_ids: NDArray[np.int64],
     position: Array,
     velocity: Array,
     desired_speed: Array,
@@ -147,8 +149,8 @@ def _fill(
 ) -> int:
     """Fill the rows of one instant with those who count, note the others; returns how many."""
     count = 0
-    for i in range(len(present)):
-        p, x, y = present[i], position[i, 0], position[i, 1]
+    for i in range(len(person_ids)):
+        p, x, y = person_ids[i], position[i, 0], position[i, 1]
         if np.isnan(memory[p, 0]):
             memory[p, 0], memory[p, 1], memory[p, 2] = x, y, 0.0
         moved = np.hypot(x - memory[p, 0], y - memory[p, 1])

@@ -1,1 +1,1 @@
-"""What a run leaves: the result object, its tables, folder, pictures and provenance."""
+"""The results of a run: result object, tables, folder, pictures and provenance."""

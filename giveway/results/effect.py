@@ -1,4 +1,4 @@
-"""What the egos of a run cost the people, from the run and its twin."""
+"""The cost of a run's egos to people, from the run and its counterfactual run (twin)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,13 +17,13 @@ class Effect:
     """A run's people beside those of its twin.
 
     Attributes:
-        run: how people got on, until after the last ego's arrival.
-        twin: the same where they did not feel the egos.
-        delays: what the egos together cost each person, in the order of the run's ids.
-        yielded: (n,) of each ego, by its id: who gave way to it, "yes", "no" or "".
-        traffic_differs: whether lights or background vehicles did anything else in the twin.
-        traffic_delay: [s] of the background vehicles; nan: not known.
-        seconds: of wall clock that following the run, its twin and the comparison took.
+        run: Walks of the people, until after the last ego's arrival.
+        twin: Walks of the same people where they did not feel the egos.
+        delays: Delay of each person by all egos, in the order of the run's ids.
+        yielded: (n,) Whether each person gave way ("yes", "no" or ""), by the ego's id.
+        traffic_differs: Whether lights or background vehicles differ in the twin.
+        traffic_delay: Delay of the background vehicles [s]; nan if it is not known.
+        seconds: Computing time [s] of the log, the twin and the comparison.
     """
 
     run: WalkTrack
@@ -52,15 +52,15 @@ def who_gave_way(
     shape: VehicleShape,
     body_radius: float,
 ) -> NDArray[np.str_]:
-    """(n,) who of the run's people gave way to an ego: "yes", "no" or "".
+    """Return (n,) whether each person of the run gave way to an ego: "yes", "no" or "".
 
     Args:
-        run: how people got on.
-        twin: the same where they did not feel the egos.
-        ego: its rows.
-        first: the control instant at which it departed.
-        shape: its body.
-        body_radius: of a pedestrian [m].
+        run: Walks of the people.
+        twin: Walks of the same people where they did not feel the egos.
+        ego: Rows of the ego.
+        first: Control instant at which the ego departed.
+        shape: Body of the ego.
+        body_radius: Radius of a pedestrian's body [m].
     """
     of_run = _first(run, run.near, ego, first, shape, body_radius)
     places = {name: i for i, name in enumerate(twin.ids)}
@@ -79,7 +79,7 @@ def _first(
     shape: VehicleShape,
     body_radius: float,
 ) -> NDArray[np.str_]:
-    """(n,) who was first, of the people ``asked`` (n,); what they do after its arrival counts."""
+    """Return (n,) who was first of the people ``asked`` (n,), also after the ego's arrival."""
     beside = shape.length + shape.width + body_radius
     x, y = ego.front_x, ego.front_y
     rows = (walks.step >= first) & asked[walks.pedestrian]

@@ -1,4 +1,4 @@
-"""What one ego of a run leaves behind: its rows, and what they come to."""
+"""The result of one ego of a run: its rows, and the measures computed from them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -39,24 +39,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class EgoResult:
-    """What one ego leaves behind.
+    """The result of one ego.
 
     Attributes:
-        config: of the ego.
-        id: in SUMO.
-        shape: its body.
-        goal: the distance [m] after which it is done.
-        first: the control instant at which it departed.
-        track: its rows, from that instant on.
-        ending: why its drive ended.
-        crowd: the crowd's records of these instants, counted from ``first``.
-        predictions: what its controller expected of the crowd, if that was recorded.
-        background: the background vehicles of the run.
-        law: what its drive is judged by; None: the law of the road has no say on its way.
-        outputs: what the profile of its FMU wants to have recorded.
-        effect: the run's people beside those of its twin; None: there is no twin.
-        measured: what metrics of other packages say of it; nothing of a run that was recovered.
-        hasty: indices of those who set out from a sidewalk more suddenly than its layer assumes.
+            config: Configuration of the ego.
+        id: Id of the ego in SUMO.
+        shape: Body of the ego.
+        goal: Distance [m] after which its drive is complete.
+        first: Control instant at which it departed.
+        track: Rows of the ego, from that instant on.
+        ending: Reason why its drive ended.
+        crowd: Records of the crowd at these instants, counted from ``first``.
+        predictions: Positions of the crowd that its controller expected, if recorded.
+        background: Background vehicles of the run.
+        law: Rows by which its drive is judged; None if no rule of the road applies to it.
+        outputs: Outputs that the profile of its FMU has recorded.
+        effect: Comparison of the people with those of the twin; None without a twin.
+        measured: Columns that metrics of other packages measured; empty if the run was recovered.
+        hasty: Indices of people whose sudden start broke its safety layer's assumption.
     """
 
     config: EgoRunConfig
@@ -113,7 +113,7 @@ class EgoResult:
 
     @cached_property
     def ledger(self) -> Ledger | None:
-        """How it kept to the law of the road; None: that has no say on its way."""
+        """The ego's compliance with the law of the road; None if no rule applies on its way."""
         if self.law is None:
             return None
         drive = Drive(
@@ -146,7 +146,7 @@ class EgoResult:
 
     @property
     def people_at_worst(self) -> WorstMotion | None:
-        """What its safety layer takes people to be able to do; None: it has none."""
+        """The worst motion of people that its safety layer assumes; None without a layer."""
         config = self.config
         if not config.safety_layer:
             return None
@@ -191,13 +191,13 @@ class EgoResult:
 def results_of_egos(
     config: RunConfig, rows: RecordedRows, ending: Ending, endings: Mapping[str, Ending]
 ) -> tuple[EgoResult, ...]:
-    """What each ego leaves behind.
+    """Return the result of each ego.
 
     Args:
-        config: the run's.
-        rows: the run's.
-        ending: of the run.
-        endings: of those egos whose drive ended by itself.
+        config: Configuration of the run.
+        rows: Recorded rows of the run.
+        ending: Reason why the run ended.
+        endings: Reasons for those egos whose drive ended by itself.
     """
     crowd, background = rows.crowd_track(), rows.background_track()
     configs = {own.ego_id: own for own in config.each_ego()}

@@ -25,7 +25,7 @@ _RUNNING = '{"ending": "running"}\n'
 
 
 class Wording(NamedTuple):
-    """How a caller asks for what a message advises."""
+    """The words by which a caller follows the advice of a message."""
 
     force: str
     folder: str
@@ -46,11 +46,11 @@ def check_folder(
     """Make sure that the results may go to ``folder``; nothing is changed.
 
     Args:
-        folder: where they would go.
-        force: whether former results may be replaced.
-        ours: the names of the files that may be there.
-        writer: the program that writes them, for messages.
-        wording: of the caller, likewise.
+        folder: Folder to which they would go.
+        force: Whether former results may be replaced.
+        ours: Names of the files that may be there.
+        writer: Program that writes them, for messages.
+        wording: Words of the caller, for messages.
 
     Raises:
         ResultsError: it exists and ``force`` is not given, it is a file, or it holds files that
@@ -88,7 +88,7 @@ def check_folder(
 
 
 def is_marked_only(folder: Path) -> bool:
-    """Whether a run has taken ``folder`` and not written its results: it is at work, or died.
+    """Return whether a run has taken ``folder`` without writing its results (yet).
 
     Raises:
         OSError: it cannot be read.
@@ -244,9 +244,9 @@ def package_of(name: str, title: str, schemas: Mapping[str, Sequence[Column]]) -
     """The Frictionless description of CSV files: each column's type, unit and meaning.
 
     Args:
-        name: of the package.
-        title: of the package, for readers.
-        schemas: the columns of each file, by its name without the suffix.
+        name: Name of the package.
+        title: Title of the package, for readers.
+        schemas: Columns of each file, by its name without the suffix.
     """
     return {
         "profile": "tabular-data-package",

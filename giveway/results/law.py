@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class LawRows(NamedTuple):
-    """What a drive is judged by besides its own tracks and the crowd's."""
+    """The rows by which a drive is judged, besides its own tracks and the crowd's."""
 
     way: EgoWay
     signals: SignalTrack
@@ -67,7 +67,7 @@ def ledger_table(events: Sequence[tuple[str, Event]]) -> "pd.DataFrame":
     """``ledger.csv``: one row per event.
 
     Args:
-        events: with the id of the ego of each.
+        events: Events, each with the id of its ego.
     """
     import pandas as pd
 
@@ -101,7 +101,7 @@ def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> "pd.Dat
 
 
 def remark(ego_id: str, violations: Sequence[Event]) -> str:
-    """The remark on an ego that did not keep to the law of the road; empty: it did."""
+    """Return the remark on an ego that broke the law of the road; empty if it did not."""
     if not violations:
         return ""
     kinds = [f"{number} x {kind}" for kind, number in count(violations).items()]

@@ -1,4 +1,4 @@
-"""Whether a vehicle answered as the controller's model of it said it would."""
+"""The check whether a vehicle answered as its controller's model predicts."""
 
 import numpy as np
 
@@ -8,17 +8,17 @@ from fmus.checking.model_fit.prediction import position_errors
 from giveway.results.ego_result import EgoResult
 from giveway.run_data.tracks import EgoTrack
 
-_TOLERATED = 0.05  # [m] over the horizon
-_SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is worth telling
+_TOLERATED = 0.05  # Largest tolerated position error [m] over the horizon
+_SURE = 0.1  # Largest relative half width of M's 95 % interval for a fit to be reported
 
 
 def remark(ego: EgoResult, time_step: float, margin: float) -> str:
-    """The remark on a vehicle that answers otherwise than its controller's model; else empty.
+    """Return the remark on a vehicle that differs from its controller's model, or "".
 
     Args:
-        ego: how it drove.
-        time_step: of the co-simulation [s].
-        margin: the error that its controller allows for [m].
+        ego: Result of the ego.
+        time_step: Time step of the co-simulation [s].
+        margin: Position error that its controller allows for [m].
     """
     config = ego.config
     if not config.optimises or not len(ego.track.time):

@@ -1,4 +1,4 @@
-"""How a result shows itself: a line at a prompt, a table in a notebook, pictures, a replay."""
+"""The views of a result: a line at a prompt, a table in a notebook, pictures, a replay."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Replay:
     """A page that plays a run: shown where a notebook displays it, or saved.
 
     Attributes:
-        html: the whole page; it needs no network.
+        html: Whole page, which needs no network.
     """
 
     html: str
@@ -65,7 +65,7 @@ class Replay:
 
 
 def one_line(result: RunTables) -> str:
-    """What ``repr`` says of a result."""
+    """Return the ``repr`` of a result."""
     head = result.head
     simulated = float(result.time[-1] - result.time[0]) if len(result.time) else 0.0
     driver = head["controller"] or "no ego"

@@ -1,4 +1,4 @@
-"""What a run was made of, so that anybody can make it again: versions, hashes, seeds, command."""
+"""The provenance of a run, so that it can be repeated: versions, hashes, seeds, command."""
 
 import functools
 import hashlib
@@ -81,18 +81,18 @@ def manifest(
     """The contents of ``manifest.json``; nothing in it depends on when the run was made.
 
     Args:
-        config: the run's.
-        scenario: its scenario.
-        config_text: the configuration as it is written; None: its hash is filled in later.
-        vehicles: each ego's FMU.
-        pedestrians: the ledger of the pedestrians that giveway moved.
-        traffic: what the yield layer did.
-        sumo: seed and step length in effect.
-        time_step: of the co-simulation [s]; None if it is not known because the process died.
-        remarks: for the user.
-        ending: why the run ended.
+        config: Configuration of the run.
+        scenario: Scenario of the run.
+        config_text: Configuration as it is written; None if its hash is filled in later.
+        vehicles: FMU of each ego.
+        pedestrians: Ledger of the pedestrians that giveway moved.
+        traffic: Counts of the yield layer.
+        sumo: Seed and step length in effect.
+        time_step: Time step of the co-simulation [s]; None if the process died before it was known.
+        remarks: Remarks for the user.
+        ending: Reason why the run ended.
         error: what ended it, if it failed.
-        code: of other packages, under the keys of its sockets.
+        code: Provenance of plug-ins from other packages, under the keys of their sockets.
     """
     return {
         "ending": ending,

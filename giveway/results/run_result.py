@@ -1,4 +1,4 @@
-"""What ``giveway.run`` returns: tables, and how they show themselves."""
+"""The result of ``giveway.run``: tables and their views."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -19,7 +19,7 @@ class RunResult(RunTables):
 
         Args:
             kind: ``"top_view"`` or ``"state"``.
-            ego: which one's, counted from 0.
+            ego: Index of the ego, counted from 0.
 
         Raises:
             ResultsError: there is no such picture, or no such ego.

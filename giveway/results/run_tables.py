@@ -1,4 +1,4 @@
-"""What a run leaves behind as numbers: tracks, tables, summaries."""
+"""The numbers of a run: tracks, tables and summaries."""
 
 import math
 from dataclasses import dataclass
@@ -63,22 +63,22 @@ class RunTables:
     """Everything that a run left behind; the frames hold the columns of docs/results.md.
 
     Attributes:
-        config: the configuration in effect.
-        scenario: the scenario's files.
-        ending: why the run ended.
+        config: Configuration in effect.
+        scenario: Files of the scenario.
+        ending: Reason why the run ended.
         error: what ended it, if it failed.
-        time: (T,) [s] the control instants.
-        egos: the egos that were on the road, in the order of their departure.
-        crowd_track, background_track: the rows as arrays, in SI units.
-        signal_track: the changes of the traffic lights that govern something on an ego's way.
+        time: (T,) [s] Control instants.
+        egos: Egos that were on the road, in the order of their departure.
+        crowd_track, background_track: Rows as arrays, in SI units.
+        signal_track: Changes of the traffic lights that govern something on an ego's way.
         people_track: where people mean to walk, if the law of the road has a say on an ego's way.
-        elapsed: wall clock of the loop [s].
-        facts: the manifest, perhaps without the hash of the configuration.
-        sumo_messages: what SUMO printed.
-        road: outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
-        remarks: what differs from the scenario, or from what the user may expect.
-        effect: the people beside those of the run's twin; None: there is no twin.
-        marks: the network's crossings and stop lines.
+        elapsed: Wall clock time of the loop [s].
+        facts: Manifest, perhaps without the hash of the configuration.
+        sumo_messages: Messages that SUMO printed.
+        road: Outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
+        remarks: Differences from the scenario or from what the user may expect.
+        effect: Comparison of the people with those of the twin; None without a twin.
+        marks: Crossings and stop lines of the network.
     """
 
     config: RunConfig
@@ -102,7 +102,7 @@ class RunTables:
 
     @property
     def completed(self) -> bool:
-        """Whether every ego has driven its distance."""
+        """Return whether every ego has driven its distance."""
         return self.ending is Ending.COMPLETED
 
     @cached_property
@@ -169,7 +169,7 @@ class RunTables:
 
     @cached_property
     def walks(self) -> "pd.DataFrame | None":
-        """How everybody walked in a run without an ego; None: there was one, or nobody walked."""
+        """The walks in a run without an ego; None if there was an ego or nobody walked."""
         if self.egos or not self.crowd_track.ids:
             return None
         return walks_without_ego(self.time, self.crowd_track)
@@ -195,7 +195,7 @@ class RunTables:
 
     @cached_property
     def people(self) -> "pd.DataFrame":
-        """Where people mean to walk, and how fast."""
+        """The planned ways and desired speeds of people."""
         return people_table(self.time, self.people_track, self.crowd_track.ids)
 
     @cached_property

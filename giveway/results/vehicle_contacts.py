@@ -6,7 +6,7 @@ _NAMED = 3
 
 
 def remark(ego: EgoResult) -> str:
-    """The remark on background vehicles that an ego came into contact with; empty: none."""
+    """Return the remark on an ego's contacts with background vehicles; empty without any."""
     contacts = ego.vehicle_contacts
     if not contacts:
         return ""

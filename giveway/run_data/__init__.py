@@ -1,1 +1,1 @@
-"""What a run records: columns, tracks, rows, and how it ended."""
+"""The records of a run: columns, tracks, rows, and how it ended."""

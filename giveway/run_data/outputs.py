@@ -1,4 +1,4 @@
-"""What a vehicle FMU computes besides its motion, as far as its profile has it recorded."""
+"""The recorded outputs of a vehicle FMU besides its motion, as its profile lists them."""
 
 from typing import NamedTuple
 
@@ -25,6 +25,6 @@ class Output(NamedTuple):
 
     @property
     def column(self) -> Column:
-        """Of ``ego.csv``."""
+        """Return the column of ``ego.csv`` that holds the output."""
         described = self.description or "as the FMU gives it"
         return Column(self.name, "number", self.unit or None, described)

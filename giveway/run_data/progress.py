@@ -1,4 +1,4 @@
-"""Where a run stands, and how it or one ego's drive ended."""
+"""The progress of a run, and how it or one ego's drive ended."""
 
 import enum
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 class Ending(enum.StrEnum):
-    """Why a run, or one ego's drive, ended."""
+    """The reason why a run, or one ego's drive, ended."""
 
     COMPLETED = "completed"  # the ego has driven its distance
     TIME_LIMIT = "time limit"  # the ego has not driven its distance within the time limit
@@ -18,7 +18,7 @@ class Ending(enum.StrEnum):
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run stands, for those who watch it."""
+    """The progress of a run, for those who watch it."""
 
     time: float  # [s] since the run's first instant; 0 while SUMO alone runs up to it
     clock: float  # [s] SUMO's

@@ -1,4 +1,4 @@
-"""What is painted and put up on a road: pedestrian crossings, and the stop lines of lights."""
+"""The marks on a road: pedestrian crossings and the stop lines of traffic lights."""
 
 from __future__ import annotations
 

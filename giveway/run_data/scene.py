@@ -1,4 +1,4 @@
-"""What stands still in a run, or never changes: the road's outlines and the vehicles' bodies.
+"""The static scene of a run: the road's outlines and the vehicles' bodies.
 
 A results folder keeps it in ``scene.json``, so that a replay needs neither SUMO nor the scenario,
 which may be gone by then.
@@ -25,10 +25,10 @@ class Scene:
     """The road and the bodies on it.
 
     Attributes:
-        road: closed outlines [m] of lanes, crossings and walkingareas.
-        bodies: length and width [m] of vehicles, by their ids.
-        ways: of the egos, where the law of the road has a say on them.
-        marks: crossings and stop lines.
+        road: Closed outlines [m] of lanes, crossings and walkingareas.
+        bodies: Length and width [m] of vehicles, by their ids.
+        ways: Ways of the egos on which rules of the road apply.
+        marks: Crossings and stop lines.
     """
 
     road: tuple[Outline, ...] = ()

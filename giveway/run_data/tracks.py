@@ -1,4 +1,4 @@
-"""What a run leaves behind, as arrays: the tracks of egos, crowd and background vehicles.
+"""The tracks of egos, crowd and background vehicles, as arrays.
 
 The recorder fills these; metrics, tables and figures read them. Everything is SI, angles are
 mathematical (radians, counter-clockwise from +x) and x, y are the network's coordinates.
@@ -129,8 +129,8 @@ class CrowdTrack:
     vx: NDArray[np.float64]  # (R,) [m/s]
     vy: NDArray[np.float64]  # (R,) [m/s]
     ids: tuple[str, ...]  # one per pedestrian
-    kinds: tuple[str, ...] = ()  # likewise, as "elderly"; nothing: nobody is of any
-    groups: tuple[str, ...] = ()  # likewise, the id of its first member; nothing: there are none
+    kinds: tuple[str, ...] = ()  # kind of each, as "elderly"; empty if kinds are not used
+    groups: tuple[str, ...] = ()  # first member of each one's group; empty without groups
 
     def during(self, first: int, instants: int) -> CrowdTrack:
         """The records of ``instants`` control instants from ``first`` on, which becomes step 0."""
@@ -152,7 +152,7 @@ class CrowdTrack:
 
 @dataclass(frozen=True)
 class PredictionTrack:
-    """Where an ego's controller expected pedestrians to be, as flat records in time order."""
+    """The positions of pedestrians that an ego's controller expected, in time order."""
 
     time: NDArray[np.float64]  # (P,) [s] the control instant of the prediction
     pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
@@ -187,9 +187,9 @@ class SignalTrack:
 
 @dataclass(frozen=True)
 class PeopleTrack:
-    """Where pedestrians mean to walk and how fast, as flat records in time order.
+    """The planned ways and desired speeds of pedestrians, as flat records in time order.
 
-    A pedestrian's way is the records of one step: where it was then, and each way-point after that.
+    A pedestrian's way is the records of one step: the position then, and each later way-point.
     """
 
     step: NDArray[np.int64]  # (P,) index into the control instants, from when on

@@ -1,4 +1,4 @@
-"""How people got on with their ways, control instant by control instant, as arrays."""
+"""The progress of people on their ways at each control instant, as arrays."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ class WalkTrack:
     """The people that giveway moved on their ways, as flat records in time order.
 
     Attributes:
-        step: (R,) the control instant.
-        pedestrian: (R,) index into ``ids``.
-        x, y: (R,) [m] body centre.
-        vx, vy: (R,) [m/s].
-        remaining: (R,) [m] what is left of its route.
-        walked: (R,) [m] so far.
-        arrival_step: (A,) the control instants at which somebody reached the last way-point.
-        arrival_pedestrian: (A,) who that was.
-        desired_speed: (n,) [m/s].
-        near: (n,) whether it came close to an ego's way; the others have no records.
-        ids: of all n.
+        step: (R,) Index of the control instant.
+        pedestrian: (R,) Index into ``ids``.
+        x, y: (R,) [m] Position of the body's centre.
+        vx, vy: (R,) [m/s] Velocity.
+        remaining: (R,) [m] Rest of the route.
+        walked: (R,) [m] Distance walked so far.
+        arrival_step: (A,) Control instants at which somebody reached the last way-point.
+        arrival_pedestrian: (A,) Index into ``ids`` of who arrived.
+        desired_speed: (n,) [m/s] Desired speed.
+        near: (n,) Whether the person came close to an ego's way; others have no records.
+        ids: Ids of all n people.
         time_step: [s] between two control instants.
-        last: the last control instant that was looked at.
+        last: Last control instant that was logged.
     """
 
     step: NDArray[np.int64]

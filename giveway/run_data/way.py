@@ -1,7 +1,7 @@
-"""What stands on an ego's way that the law of the road speaks of, as it is when the ego departs.
+"""The rules of the road on an ego's way (crossings, lines, junctions), as at its departure.
 
 The recorder keeps one line of JSON per ego, so that the judgement over the tables
-(:mod:`giveway.metrics.law`) needs neither SUMO nor what the ego made of the network.
+(:mod:`giveway.metrics.law`) needs neither SUMO nor the ego's own reading of the network.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ class CrossingOnWay(NamedTuple):
     ends: tuple[Point, Point]  # [m] the middle of each kerb
     width: float  # [m]
     zebra: bool  # people have priority wherever no light says otherwise
-    system: str  # SUMO's id of the traffic light; empty: none
+    system: str  # SUMO's id of the traffic light; empty without one
     link: int  # index of the movement in the light's state
 
 
 class StopLine(NamedTuple):
-    """Where a traffic light holds the ego."""
+    """The stop line of a traffic light on the ego's way."""
 
     station: float  # [m] along the path
     system: str  # SUMO's id of the traffic light
@@ -53,13 +53,13 @@ class EgoWay:
     """An ego's way and what stands on it; stations count along ``points``.
 
     Attributes:
-        ego: SUMO's id.
-        points: of the path's polyline [m].
-        departure: station [m] of the front bumper where the ego's position is 0.
-        crossings: that the path leads over.
-        lines: stop lines of traffic lights, in order.
-        junctions: in order.
-        halts: scheduled stops, in order.
+        ego: Id of the ego in SUMO.
+        points: Points of the path's polyline [m].
+        departure: Station [m] of the front bumper where the ego's position is 0.
+        crossings: Pedestrian crossings on the path.
+        lines: Stop lines of traffic lights, in order.
+        junctions: Junctions, in order.
+        halts: Scheduled stops, in order.
     """
 
     ego: str
@@ -72,7 +72,7 @@ class EgoWay:
 
     @property
     def is_ruled(self) -> bool:
-        """Whether there is anything on it at which somebody has priority."""
+        """Return whether somebody has priority anywhere on the way."""
         return bool(self.crossings or self.lines or self.junctions)
 
     @property

@@ -1,4 +1,4 @@
-"""How numbers and units are written in pictures and on pages."""
+"""The format of numbers and units in pictures and on pages."""
 
 import math
 

@@ -49,7 +49,7 @@ def test_the_stopping_gap_from_4_m_per_s(horizon, expected):
 
 @pytest.mark.parametrize("speed", [1.0, 4.0, 6.0, 7.0])
 @pytest.mark.parametrize("offset", [0.0, 0.3, 0.7])
-def test_stops_behind_a_static_pedestrian_without_an_infeasible_step(speed, offset):
+def test_it_stops_behind_a_static_pedestrian_always_feasible(speed, offset):
     mpc = Mpc(MODEL, MpcParameters(reference_speed=speed))
     obstacle = 18.0 + offset * speed * MODEL.time_step
     steps = int(20.0 * (18.0 / speed)) + 60
@@ -62,9 +62,7 @@ def test_stops_behind_a_static_pedestrian_without_an_infeasible_step(speed, offs
 
 @pytest.mark.parametrize(("horizon", "speed"), [(10, 3.75), (15, 8.25), (20, 12.75)])
 @pytest.mark.parametrize("offset", [0.0, 0.3, 0.7])
-def test_up_to_its_highest_speed_a_horizon_never_sees_a_static_pedestrian_too_late(
-    horizon, speed, offset
-):
+def test_up_to_top_speed_a_horizon_sees_static_people_in_time(horizon, speed, offset):
     """Position never makes it infeasible; releasing the brake in time (c2 against c5) may."""
     mpc = Mpc(MODEL, MpcParameters(horizon=horizon, reference_speed=speed))
     obstacle = 30.0 + offset * speed * MODEL.time_step

@@ -124,7 +124,7 @@ def moved_into(before, after, x, x_next, v):
 
 @relaxed
 @given(seed=seeds)
-def test_who_sets_out_as_assumed_is_not_hit_and_a_stop_stays_possible(seed):
+def test_an_assumed_start_is_not_hit_and_a_stop_stays_possible(seed):
     assert "unavoidable" not in drive(seed)
 
 
@@ -169,7 +169,7 @@ def test_sidewalks_only_let_more_through(seed, speed, force):
         assert more == kept
 
 
-def test_who_walks_along_a_kerb_at_thirty_kilometres_an_hour_is_passed():
+def test_a_walker_along_a_kerb_is_passed_at_thirty_km_per_hour():
     """0.5 m behind a kerb that is 0.75 m from the ego's side: a lane of 3.5 m."""
     x, v = np.array([[3.0, -2.25]]), np.array([[1.3, 0.0]])
     behind = np.array([[0.0, 1.0, 0.5]])
@@ -189,7 +189,7 @@ def test_who_walks_along_a_kerb_at_thirty_kilometres_an_hour_is_passed():
     first=st.floats(0.0, 2.0),
     rest=st.floats(0.0, 2.0),
 )
-def test_what_is_reachable_later_is_no_more_than_was_reachable_before(pace, depth, first, rest):
+def test_the_later_reachable_set_lies_in_the_earlier_one(pace, depth, first, rest):
     """Why it stays safe: the next reachable sets lie in the present ones."""
     limits = WORST.setting_out, WORST.acceleration
     now = towards_kerb(first + rest, pace, depth, *limits)

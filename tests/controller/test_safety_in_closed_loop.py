@@ -207,7 +207,7 @@ def test_when_the_vehicle_obeys_late_too(seed, delay):
 @pytest.mark.parametrize("name", ["recorded-99.9", "responsible"])
 @relaxed
 @given(seed=seeds)
-def test_within_what_it_assumes_nobody_is_hit_and_a_stop_stays_possible(name, seed):
+def test_within_the_assumptions_nobody_is_hit_and_a_stop_is_left(name, seed):
     """As hard as the assumption lets them, and no harder."""
     reasons = drive(seed, hardest=RECORDED[name].acceleration, **limits_of(name))
     assert "unavoidable" not in reasons
@@ -276,7 +276,7 @@ def test_these_people_are_driven_into_without_it():
 
 
 @pytest.mark.parametrize("speed", [2.0, 4.0])
-def test_who_steps_before_a_moving_ego_at_once_is_braked_for_as_hard_as_can_be(speed):
+def test_a_sudden_step_before_the_ego_causes_full_braking(speed):
     layer = SafetyLayer(LongitudinalModel(), SafetyParameters())
     way, still = np.array([[0.0, 0.0, 1.0, 0.0]]), np.zeros((1, 2))
     safe = layer.filter(1000.0, speed, way, SPACING, np.array([[0.4, 0.0]]), still)

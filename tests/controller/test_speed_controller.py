@@ -75,7 +75,7 @@ def test_a_solution_that_is_not_good_enough_is_not_driven(parameters, reason):
     assert decision.force == Pid().control(4.0, 10.2)
 
 
-def test_the_pid_starts_from_the_error_of_the_step_before_and_no_integral():
+def test_the_pid_starts_from_the_last_error_and_no_integral():
     parameters = PidParameters(K_p=300.0, K_i=1000.0, K_d=100.0)
     controller = SpeedController(Mpc(MODEL), Pid(parameters))
     controller.control(see(4.0, 8.1))  # the PID integrates
@@ -163,7 +163,7 @@ def test_a_speed_limit_becomes_the_reference_of_whoever_drives():
     )
 
 
-def test_a_speed_limit_that_comes_and_goes_leaves_no_trace_in_the_plan():
+def test_a_passing_speed_limit_leaves_no_trace_in_the_plan():
     mpc, fresh = Mpc(MODEL), Mpc(MODEL)
     mpc.solve(0.0, 4.0, 0.0, NOBODY, reference_speed=1.0)
     again = mpc.solve(0.0, 3.0, 0.0, NOBODY)

@@ -29,7 +29,7 @@ def test_every_metric_is_documented_with_its_better_side(metric) -> None:
     assert f"| `{metric.name}` | {metric.unit} | {metric.better} | {metric.label} |" in PAGE
 
 
-def test_settings_shown_are_settings_and_the_first_ones_the_defaults() -> None:
+def test_settings_shown_exist_and_the_first_ones_are_defaults() -> None:
     blocks = [tomllib.loads(block.split("```")[0]) for block in PAGE.split("```toml\n")[1:]]
     shown = Comparison.model_validate(blocks[0]["comparison"])
     assert shown == Comparison(baseline="pid-tuned")

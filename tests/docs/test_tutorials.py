@@ -34,7 +34,7 @@ def test_six_tutorials_are_listed_and_there(runner: Any, monkeypatch: pytest.Mon
     assert set(names) == pages
 
 
-def test_every_tutorial_runs_something_and_shows_what_comes_of_it(runner: Any) -> None:
+def test_every_tutorial_runs_something_and_shows_its_result(runner: Any) -> None:
     for page in FOLDER.glob("*.md"):
         if page.stem == "index":
             continue

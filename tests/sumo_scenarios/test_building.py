@@ -31,7 +31,7 @@ def test_rebuilding_gives_the_same_bytes(scenario: Scenario, tmp_path: Path) -> 
     assert rebuilt.read_bytes() == (scenario.folder / rebuilt.name).read_bytes()
 
 
-def test_neither_folder_nor_clock_nor_language_shows_in_the_bytes(tmp_path: Path) -> None:
+def test_folder_clock_and_language_do_not_show_in_the_bytes(tmp_path: Path) -> None:
     environment = {key: value for key, value in os.environ.items() if key != "SUMO_HOME"}
     environment |= {"TZ": "Pacific/Auckland", "LC_ALL": "de_DE.UTF-8"}
     root = Path(str(find("street").folder)).parent.parent

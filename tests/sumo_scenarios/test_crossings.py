@@ -62,7 +62,7 @@ def test_the_ego_turns_on_a_green_that_people_have_as_well(
     assert {state[left] for state in states} == {"g", "y", "r"}  # the alternative
 
 
-def test_the_island_parts_a_crossing_in_two_with_room_between_them(net: Element) -> None:
+def test_the_island_parts_a_crossing_in_two_with_room_between(net: Element) -> None:
     halves = ("south_out", "island_c0"), ("south_in", "island_c1")
     for edge, crossing in halves:
         found = net.find(f"edge[@id=':{crossing}']")

@@ -73,7 +73,7 @@ def test_settings_are_optional(my_folder: Path) -> None:
     assert found.description == ""
 
 
-def test_a_bundled_name_wins_over_a_local_folder_and_dot_slash_names_the_folder(
+def test_a_bundled_name_wins_over_a_folder_unless_dot_slash(
     my_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     local = my_folder.rename(my_folder.with_name("street"))

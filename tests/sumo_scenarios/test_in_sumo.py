@@ -25,7 +25,7 @@ CAR_LENGTH = 5.0  # [m]
 STEP_LENGTHS = [None, 0.05, 1.0]  # [s], None: the scenario's own
 
 
-def test_the_plaza_steps_like_the_controller_and_traffic_at_a_tenth(probe: Probe) -> None:
+def test_the_plaza_steps_like_the_controller_traffic_at_a_tenth(probe: Probe) -> None:
     """Cars that see people once in a second only drive into them."""
     assert probe("load", find("shared_space").config_file)["step_length"] == 0.05
     for name in ("street", "junction", "crossings"):
@@ -107,7 +107,7 @@ def test_a_vehicle_on_the_egos_route_gets_where_it_should(
 
 
 @pytest.mark.parametrize("step_length", [0.05, 1.0])
-def test_the_mirrored_ego_is_exactly_where_it_is_put_and_followers_respect_it(
+def test_the_mirrored_ego_is_where_it_is_put_and_is_followed(
     open_road: Scenario, step_length: float, probe: Probe, settings: Settings
 ) -> None:
     ego = settings(open_road)["ego"]
@@ -120,7 +120,7 @@ def test_the_mirrored_ego_is_exactly_where_it_is_put_and_followers_respect_it(
 
 
 @pytest.mark.parametrize("step_length", [0.05, 1.0])
-def test_ghost_persons_are_exactly_where_they_are_put_from_the_first_step_on(
+def test_ghost_persons_are_where_they_are_put_from_the_start(
     scenario: Scenario, step_length: float, probe: Probe, settings: Settings
 ) -> None:
     crowd = settings(scenario)["crowd"]

@@ -31,14 +31,14 @@ def watch(probe: Probe) -> Probe:
     return run
 
 
-def test_the_crossings_of_all_arms_have_signals_and_the_zebra_has_none(watch: Probe) -> None:
+def test_crossings_of_all_arms_have_signals_and_the_zebra_none(watch: Probe) -> None:
     seen = watch(seed=1)
     assert seen["signalised"] == ARMS
     assert seen["crossings"] == [*ARMS, "zebra_c0"]
 
 
 @pytest.mark.parametrize("seed", [1, 7])
-def test_some_dozens_of_people_use_every_crossing_and_none_on_red(watch: Probe, seed: int) -> None:
+def test_dozens_of_people_use_every_crossing_and_none_on_red(watch: Probe, seed: int) -> None:
     seen = watch(seed=seed)
     assert 50 <= len(seen["departed"]) <= 120
     assert set(seen["used"]) == {*ARMS, "zebra_c0"}

@@ -94,7 +94,7 @@ class ReplayedLoop:
             self._walking.note(self._k)
             self._see_arrivals()
             goes_on = to_the_end or self._egos or parts.departures.waiting
-            if not (goes_on or self._walks.awaits(parts.roster.present)):
+            if not (goes_on or self._walks.awaits(parts.roster.person_ids)):
                 return True
             if self._k >= min(last, end):
                 return True

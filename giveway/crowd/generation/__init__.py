@@ -1,1 +1,1 @@
-"""How people are generated: places, groups, kinds, flows, encounters."""
+"""The generation of people: places, groups, kinds, flows and encounters."""

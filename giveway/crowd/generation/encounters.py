@@ -16,15 +16,15 @@ from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 
-_JITTER = 0.1  # [m] on each axis about the place in the formation
-_SKEW, _MOST_SKEW = 10.0, 25.0  # [deg] of a group's heading about the square crossing
-_FIRST, _LAST = 12.0, 4.0  # [m] of the way before the first, and behind the last crossing place
-_MEETING = (-2.5, 0.5)  # [s] later than the free ego: who is on its way, or just about to be
-_ANY = (-4.0, 8.0)  # [s] of all others: before it, with it, or with one who has been held up
-_SHARE_MEETING = 0.4  # of the groups, and at least one
-_EARLIEST = 2.5  # [s] nobody starts nearer to the way than this
-_BEYOND = 15.0  # [m] from the way to the destination
-_ATTEMPTS = 2_000  # to place one group
+_JITTER = 0.1  # Largest offset [m] on each axis from the place in the formation
+_SKEW, _MOST_SKEW = 10.0, 25.0  # Deviation [deg] of a group's heading from a square crossing
+_FIRST, _LAST = 12.0, 4.0  # Length [m] of way before the first and after the last meeting point
+_MEETING = (-2.5, 0.5)  # Arrival [s] after the free ego of groups that meet it
+_ANY = (-4.0, 8.0)  # Arrival [s] after the free ego of all other groups
+_SHARE_MEETING = 0.4  # Share of groups that meet the ego; at least one does
+_EARLIEST = 2.5  # Shortest walk [s] from a start to the way
+_BEYOND = 15.0  # Distance [m] from the way to a destination
+_ATTEMPTS = 2_000  # Attempts to place one group
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,10 @@ class FreeDrive:
     """The drive that an ego would make with nobody about.
 
     Attributes:
-        path: of its front bumper.
-        departure: station [m] at which it begins.
-        distance: [m] to its goal.
-        speed: [m/s] its reference speed.
+        path: Path of the front bumper.
+        departure: Station [m] at which the drive begins.
+        distance: Distance [m] to its goal.
+        speed: Reference speed [m/s].
     """
 
     path: EgoPath
@@ -50,10 +50,10 @@ def meet(
     """Draw ``config.pedestrians`` people in groups that cross the way of a free drive.
 
     Args:
-        config: how many, how fast, and how far apart they start.
-        drive: that they meet.
-        kinds: (n,) of people they are.
-        random: of the draws.
+        config: Number, speeds and spacing of the people.
+        drive: Free drive that they meet.
+        kinds: (n,) Kind of each person.
+        random: Generator of the draws.
 
     Returns:
         (n, 2) [m] where they start, (n, 2) [m] their destinations, (n,) [m/s] desired speeds, and
@@ -103,7 +103,7 @@ def _sizes(people: int, random: np.random.Generator) -> list[int]:
 
 
 def _speed(config: CrowdConfig, kinds: Sequence[str], random: np.random.Generator) -> float:
-    """The desired speed [m/s] that the members of a group share; of a mixed one the slowest's."""
+    """Return the desired speed [m/s] of a group: in a mixed group that of the slowest."""
     members = kinds if any(kinds) else kinds[:1]
     return float(desired_speeds(config, members, random).min())
 
@@ -116,7 +116,7 @@ def _group(
     meets: bool,
     random: np.random.Generator,
 ) -> tuple[Array, Array]:
-    """(size, 2) [m] starts and destinations of a group that walks to the left (1) or right (-1)."""
+    """Return starts and ends (size, 2) [m] of a group that walks to the left (1) or right (-1)."""
     along = float(random.uniform(_FIRST, drive.distance - _LAST))
     delay = float(random.uniform(*(_MEETING if meets else _ANY)))
     skew = float(np.clip(random.normal(0.0, _SKEW), -_MOST_SKEW, _MOST_SKEW))
@@ -131,7 +131,7 @@ def _group(
 
 
 def _has_room(starts: Array, others: Array, spacing: float) -> bool:
-    """Whether each of ``starts`` keeps ``spacing`` [m] from all the rest and all ``others``."""
+    """Return whether ``starts`` keep ``spacing`` [m] from one another and from ``others``."""
     everybody = np.vstack([others, starts])
     offsets = everybody[None] - starts[:, None]
     squares = np.einsum("ijk,ijk->ij", offsets, offsets)

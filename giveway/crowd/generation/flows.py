@@ -24,7 +24,7 @@ from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
 _STREAM = 0xF70  # tells these draws from others of the same seed
-_TRIES = 20  # places at which a party looks for room, at each of SUMO's instants
+_TRIES = 20  # Places tried for a party at each of SUMO's instants
 _HOUR = 3600.0  # [s]
 
 
@@ -34,27 +34,27 @@ class Party(NamedTuple):
     due: float  # [s] after the run's start
     names: tuple[str, ...]
     kinds: tuple[str, ...]
-    speed: float  # [m/s] at which they like to walk together; of one who is alone the own
-    random: np.random.Generator  # of its places
+    speed: float  # Desired speed [m/s] of the party
+    random: np.random.Generator  # Generator of its places
 
 
 class Walk(NamedTuple):
-    """Where the members of a party are when they appear, and where they go."""
+    """The positions of a party's members when they appear, and their ways."""
 
     position: Array  # (k, 2) [m]
     velocity: Array  # (k, 2) [m/s]
     destination: Array  # (k, 2) [m]
-    gates: tuple[Gate, ...]  # that are still ahead
+    gates: tuple[Gate, ...]  # gates that are still ahead
 
 
 class Flow:
     """One stream.
 
     Args:
-        config: the run's.
-        number: of the flow in it.
-        prefix: of its people's ids; a number follows.
-        lit: crossings at which they wait for their light.
+        config: Configuration of the run.
+        number: Index of the flow in the configuration.
+        prefix: Prefix of the ids of its people; a number follows.
+        lit: Crossings at which people wait for their light.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Flow:
         parties = flow.rate * crowd.flow_scale * parties_per_person(self._groups)  # an hour
         self._headway = _HOUR / parties
         self._random = np.random.default_rng(self._seed)
-        # Whoever came before has arrived, and a Poisson process may begin to be looked at anywhere.
+        # People due before this have arrived; a Poisson process has no memory and may begin here.
         begin = max(flow.begin, -longest_way(flow) / crowd.desired_speed_min)
         self._next = begin + self._random.exponential(self._headway)
         self._parties = self._persons = 0
@@ -94,7 +94,7 @@ class Flow:
         return Party(due, names, kinds, speed, random)
 
     def walk(self, party: Party, ahead: float) -> Walk | None:
-        """Somewhere for a party to be, ``ahead`` [m] of its start; None: it has arrived there."""
+        """Return the walk of a party from ``ahead`` [m] after its start; None if it has arrived."""
         place = somewhere(self._flow.start, party.random)
         end = somewhere(self._flow.to, party.random)
         gates = list(with_lights(place, self._gates, end, self._lit))
@@ -123,11 +123,11 @@ class Flows:
     """All streams of a run, and the crowd that they join.
 
     Args:
-        config: the run's.
-        roster: the crowd.
-        prefixes: of the ids of each flow's people.
-        time_step: of the co-simulation [s].
-        lit: crossings at which they wait for their light.
+        config: Configuration of the run.
+        roster: Crowd that people join.
+        prefixes: Prefix of the ids of each flow's people.
+        time_step: Time step of the co-simulation [s].
+        lit: Crossings at which people wait for their light.
     """
 
     def __init__(
@@ -152,9 +152,9 @@ class Flows:
         return type(self)(self._config, roster, self._prefixes, self._time_step, self._lit)
 
     def enter(self, step: int) -> list[list[str]]:
-        """Let people in at the control step ``step``; for each flow the names of those.
+        """Let people in at the control step ``step`` and return their names for each flow.
 
-        The second time at one step nobody comes.
+        A second call for the same step lets nobody in.
         """
         names: list[list[str]] = [[] for _ in self._flows]
         if step <= self._step:
@@ -175,7 +175,7 @@ class Flows:
         return names
 
     def _enter(self, flow: Flow, party: Party, ahead: float) -> tuple[str, ...] | None:
-        """Let a party in, ``ahead`` [m] of its start; who has come in, None: there is no room."""
+        """Let a party in ``ahead`` [m] after its start; return who came in, None without room."""
         roster, spacing = self._roster, self._config.crowd.minimum_spacing
         for _ in range(_TRIES):
             walk = flow.walk(party, ahead)
@@ -191,14 +191,14 @@ class Flows:
 
     @property
     def keeps_coming(self) -> bool:
-        """Whether a flow with an end has not reached it, or somebody waits for room."""
+        """Return whether a flow with an end still runs or somebody waits for room."""
         time = self._step * self._time_step
         ends = [flow.end for flow in self._config.crowd.flow if flow.end is not None]
         return any(time < end for end in ends) or any(flow.waiting for flow in self._flows)
 
     @property
     def remarks(self) -> list[str]:
-        """Where it backed up."""
+        """The remarks on flows whose people waited for room at their entry."""
         found = []
         for config, flow, longest in zip(
             self._config.crowd.flow, self._flows, self._longest, strict=True

@@ -17,24 +17,24 @@ _ABREAST = 3  # more walk in two rows
 _BESIDE, _BEHIND = 0.75, 1.0  # [m] between neighbours in a row, and between rows
 _SIZES = np.arange(2, LARGEST + 1)
 _WEIGHTS = np.array([RATE**size / math.factorial(size) for size in _SIZES.tolist()])
-_MEAN = float(_SIZES @ _WEIGHTS / _WEIGHTS.sum())  # of those who are not alone
+_MEAN = float(_SIZES @ _WEIGHTS / _WEIGHTS.sum())  # Mean size of groups of at least two
 
 
 def parties_per_person(share: float) -> float:
-    """How many parties, groups and those who walk alone, a person is on average.
+    """Return the mean number of parties (groups and single people) per person.
 
     Args:
-        share: of the people who walk in groups.
+        share: Share of the people who walk in groups.
     """
     return 1.0 - share + share / _MEAN
 
 
 def party_size(share: float, random: np.random.Generator) -> int:
-    """The size of the next party; without groups nothing is drawn.
+    """Draw the size of the next party; without groups it is 1 and nothing is drawn.
 
     Args:
-        share: of the people who walk in groups.
-        random: of the draw.
+        share: Share of the people who walk in groups.
+        random: Generator of the draw.
     """
     if not share or random.random() >= share / _MEAN / parties_per_person(share):
         return 1
@@ -42,7 +42,7 @@ def party_size(share: float, random: np.random.Generator) -> int:
 
 
 def party_sizes(people: int, share: float, random: np.random.Generator) -> list[int]:
-    """Sizes of parties that come to ``people``; the last one is what is left."""
+    """Draw sizes of parties that add up to ``people``; the last one takes the rest."""
     sizes: list[int] = []
     left = people
     while left > 0:
@@ -52,7 +52,7 @@ def party_sizes(people: int, share: float, random: np.random.Generator) -> list[
 
 
 def formation(size: int) -> Array:
-    """(size, 2) [m] beside and ahead of the middle: abreast, the larger ones in two rows."""
+    """Return offsets (size, 2) [m] to the side and ahead: abreast, large groups in two rows."""
     front = size if size <= _ABREAST else (size + 1) // 2
     rows = [front, size - front]
     return np.array(
@@ -65,14 +65,14 @@ def formation(size: int) -> Array:
 
 
 def facing(size: int, way: Array) -> Array:
-    """(size, 2) [m] of each from the middle, in formation for a walk along ``way`` (2,)."""
+    """Return offsets (size, 2) [m] of a formation that walks along ``way`` (2,)."""
     length = math.hypot(*way)
     ahead = np.asarray(way) / length if length > 0.0 else np.array([1.0, 0.0])
     return np.asarray(formation(size) @ np.array([[-ahead[1], ahead[0]], ahead]))
 
 
 def of_parties(sizes: list[int], names: tuple[str, ...]) -> tuple[str, ...]:
-    """For each of ``names`` its group, which is called as its first member; empty: alone."""
+    """Return the group of each of ``names``: its first member's name, empty for single people."""
     groups: list[str] = []
     for size in sizes:
         groups += [names[len(groups)] if size > 1 else ""] * size
@@ -80,6 +80,6 @@ def of_parties(sizes: list[int], names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def slowest(speed: Array, sizes: list[int]) -> Array:
-    """(n,) [m/s] at which everybody wants to walk: with the slowest of the own party."""
+    """Return desired speeds (n,) [m/s], each that of the slowest member of the party."""
     first = np.cumsum([0, *sizes[:-1]])
     return np.repeat(np.minimum.reduceat(speed, first), sizes) if len(speed) else speed

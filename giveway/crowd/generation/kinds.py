@@ -28,7 +28,7 @@ _REDRAWS = 1_000
 
 
 def draw_kinds(people: PeopleConfig, count: int, random: np.random.Generator) -> tuple[str, ...]:
-    """Who ``count`` people are; without a mixture nothing is drawn, and nobody is anything."""
+    """Draw the kinds of ``count`` people; without a mixture all are empty and undrawn."""
     if not people.mixed:
         return ("",) * count
     shares = people.shares
@@ -38,12 +38,12 @@ def draw_kinds(people: PeopleConfig, count: int, random: np.random.Generator) ->
 
 
 def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.Generator) -> Array:
-    """(n,) desired speeds [m/s] of people of these kinds: normal, redrawn until inside the bounds.
+    """Draw desired speeds (n,) [m/s] by kind: normal, redrawn until they lie in the bounds.
 
     Args:
-        config: of adults, and the bounds for all.
-        kinds: (n,) of each; empty: as an adult.
-        random: of the draws.
+        config: Distribution for adults, and the bounds for all.
+        kinds: (n,) Kind of each person; empty counts as adult.
+        random: Generator of the draws.
     """
     low, high = config.desired_speed_min, config.desired_speed_max
     about = [_distribution(config, kind) for kind in kinds]
@@ -58,7 +58,7 @@ def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.
 
 
 def _distribution(config: CrowdConfig, kind: str) -> tuple[float, float]:
-    """Mean and standard deviation [m/s]."""
+    """Return mean and standard deviation of the desired speed [m/s]."""
     mean, deviation = config.desired_speed_mean, config.desired_speed_sd
     known = {
         "child": _SLOW,

@@ -16,9 +16,9 @@ from giveway.geometry.path import EgoPath, Pose
 
 _ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
 
-_KINDS = 0x41D  # tells draws of who they are from others of the same seed
+_KINDS = 0x41D  # Key of the stream of kinds, apart from others of the same seed
 
-PREFIX = "ped"  # of the ids of the pedestrians that giveway adds
+PREFIX = "ped"  # Prefix of the ids of the pedestrians that giveway adds
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,12 @@ class Spawned:
     position: Array  # (n, 2) [m]
     destination: Array  # (n, 2) [m]
     desired_speed: Array  # (n,) [m/s]
-    kinds: tuple[str, ...]  # (n,) as in kinds.py; empty: of no kind
-    groups: tuple[str, ...]  # (n,) the id of the first in each one's group; empty: alone
+    kinds: tuple[str, ...]  # (n,) as in kinds.py; empty without a kind
+    groups: tuple[str, ...]  # (n,) id of the group's first member; empty for single people
 
     @property
     def traits(self) -> dict[str, Trait]:
-        """Who of them is what, by their ids."""
+        """The traits of those pedestrians who have any, by their ids."""
         told = zip(self.ids, self.kinds, self.groups, strict=True)
         return {name: Trait(kind, group) for name, kind, group in told if kind or group}
 
@@ -55,11 +55,11 @@ def spawn(
     same people: the spacing rule couples them.
 
     Args:
-        config: how many, where, where to, how fast.
-        path: the ego's, for ``two_sided``; None where no ego is inserted.
-        seed: of the draw.
-        prefix: of their ids; a number follows.
-        drive: that is met, for the sampler ``encounters``; None where no way is known.
+        config: Number, places, destinations and speeds of the people.
+        path: Path of the ego, for ``two_sided``; None where no ego is inserted.
+        seed: Seed of the draw.
+        prefix: Prefix of their ids; a number follows.
+        drive: Free drive for the sampler ``encounters``; None where no way is known.
 
     Raises:
         CrowdError: there is no room for so many at this spacing, or no ego about whose path to
@@ -104,9 +104,9 @@ def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
 def _scatter(
     config: CrowdConfig, sizes: Sequence[int], random: np.random.Generator, axis: Pose | None
 ) -> Array:
-    """(n, 2) places of parties, no two people of different ones closer than the minimum spacing.
+    """Draw places (n, 2) [m] of parties that keep the minimum spacing from one another.
 
-    All in the spawn area, or every second party in its mirror image about ``axis``.
+    All lie in the spawn area, or every second party in its mirror image about ``axis``.
     """
     x_min, y_min, x_max, y_max = config.spawn_area
     low, high = np.array([x_min, y_min]), np.array([x_max, y_max])
@@ -135,7 +135,7 @@ def _scatter(
 
 
 def has_room(places: Array, others: Array, spacing: float) -> bool:
-    """Whether each of ``places`` (k, 2) keeps ``spacing`` [m] from all ``others`` (n, 2)."""
+    """Return whether ``places`` (k, 2) keep ``spacing`` [m] from all ``others`` (n, 2)."""
     offsets = others[None] - places[:, None]
     return not (np.einsum("ijk,ijk->ij", offsets, offsets) < spacing**2).any()
 

@@ -1,1 +1,1 @@
-"""What disturbs or guides how people walk."""
+"""The disturbances and attractions on top of a pedestrian model."""

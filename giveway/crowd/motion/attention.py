@@ -20,18 +20,18 @@ from pedestrian_model import (
     Vehicles,
 )
 
-NOTICED = 2.0  # [m] between the middle of a body and a vehicle
+NOTICED = 2.0  # Distance [m] to a vehicle within which everybody notices it
 _NONE = Vehicles.empty()
 
 
 class Inattentive(AroundModel):
     """A model whose distracted people notice vehicles late.
 
-    Where somebody does not notice, the crowd is stepped twice: the bundled models have no memory.
+    If somebody does not notice, the crowd is stepped twice: the bundled models have no memory.
 
     Args:
-        model: that moves everybody.
-        distracted: (n,) who of the crowd is.
+        model: Model that moves everybody.
+        distracted: Function that returns (n,) who is distracted.
     """
 
     def __init__(self, model: PedestrianModel, distracted: Callable[[], NDArray[np.bool_]]) -> None:
@@ -41,7 +41,7 @@ class Inattentive(AroundModel):
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
     ) -> None:
-        """Change the crowd in place, a time step on."""
+        """Step the crowd in place."""
         unaware = self._distracted()
         if len(vehicles) and unaware.any():
             unaware &= distance_to_next(crowd.position, vehicles) > NOTICED
@@ -56,7 +56,7 @@ class Inattentive(AroundModel):
 
 
 def distance_to_next(position: Array, vehicles: Vehicles) -> Array:
-    """(n,) [m] from each of ``position`` (n, 2) [m] to the nearest vehicle's rectangle."""
+    """Return the distance (n,) [m] of each ``position`` (n, 2) [m] to the nearest vehicle."""
     x, y, heading, _, front, rear, width = vehicles.array.T
     d_x, d_y = position[:, :1] - x, position[:, 1:] - y
     along = d_x * np.cos(heading) + d_y * np.sin(heading)

@@ -1,9 +1,9 @@
-"""Groups stay together: who has fallen behind is drawn to the middle of the group.
+"""The cohesion of groups: people who have fallen behind are drawn to the middle of their group.
 
 Moussaïd et al. 2010 (groups.py): an acceleration of 3 m/s^2 towards the centre of mass of a group
 of N, beyond (N - 1)/2 m from it. Here it rises to that over another metre (ours), so that nobody
 trembles at the threshold. The paper's turning of heads and repulsion within a group are left out:
-the models' own repulsion keeps people apart. Of the models those have it whose people obey forces.
+the models' own repulsion keeps people apart. Only force-based models support cohesion.
 """
 
 from collections.abc import Callable
@@ -26,16 +26,16 @@ from pedestrian_model import (
 BY_FORCES: Final = frozenset({"vci", "social-force"})
 """The models in which groups are drawn together."""
 
-_ATTRACTION = 3.0  # [m/s^2]
-_RISE = 1.0  # [m]
+_ATTRACTION = 3.0  # Largest acceleration [m/s^2] towards the middle of the group
+_RISE = 1.0  # Distance [m] over which the acceleration rises to it
 
 
 class Cohesive(AroundModel):
     """A model whose groups stay together.
 
     Args:
-        model: that moves everybody.
-        groups: (n,) the number of each one's group in the crowd; -1: alone.
+        model: Model that moves everybody.
+        groups: Function that returns (n,) the index of each one's group; -1 for single people.
     """
 
     def __init__(self, model: PedestrianModel, groups: Callable[[], NDArray[np.int64]]) -> None:
@@ -45,7 +45,7 @@ class Cohesive(AroundModel):
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
     ) -> None:
-        """Change the crowd in place, a time step on."""
+        """Step the crowd in place."""
         pull = attraction(crowd.position, self._groups())
         if not pull.any():
             self._model.advance(crowd, vehicles, surroundings)
@@ -56,11 +56,11 @@ class Cohesive(AroundModel):
 
 
 def attraction(position: Array, groups: NDArray[np.int64]) -> Array:
-    """(n, 2) [m/s^2] that draws each of ``position`` (n, 2) [m] to the middle of its group.
+    """Return accelerations (n, 2) [m/s^2] that draw each person to the middle of the group.
 
     Args:
-        position: of each.
-        groups: (n,) the number of its group; -1: alone.
+        position: (n, 2) [m] Position of each person.
+        groups: (n,) Index of the group of each person; -1 for single people.
     """
     pull = np.zeros_like(position)
     rows = np.flatnonzero(groups >= 0)

@@ -18,9 +18,9 @@ class Disturbance:
     accelerations at the same instants whichever controller drives.
 
     Args:
-        model: of the crowd, whose limits of speed and acceleration hold all the same.
-        deviation: standard deviation on each axis [m/s^2], before it is cut off at twice that.
-        seed: of the draws.
+        model: Model of the crowd; its limits of speed and acceleration still hold.
+        deviation: Standard deviation on each axis [m/s^2], before it is cut off at twice that.
+        seed: Seed of the draws.
     """
 
     def __init__(self, model: PedestrianModel, deviation: float, seed: int) -> None:
@@ -33,21 +33,21 @@ class Disturbance:
         crowd: Crowd,
         vehicles: Vehicles,
         surroundings: Surroundings,
-        present: NDArray[np.integer],
+        person_ids: NDArray[np.integer],
         known: int,
     ) -> None:
         """Step the crowd in place as the model does, and push each pedestrian.
 
         Args:
-            crowd: n pedestrians.
-            vehicles: in their way.
-            surroundings: the walls and lights that they heed.
-            present: (n,) which of all ``known`` pedestrians they are.
-            known: how many pedestrians ever were in the crowd.
+            crowd: Crowd of n pedestrians.
+            vehicles: Vehicles that pedestrians react to.
+            surroundings: Walls and lights that pedestrians heed.
+            person_ids: (n,) Index of each among all ``known`` pedestrians.
+            known: Number of pedestrians that ever were in the crowd.
         """
         before = crowd.velocity.copy()
         self._model.advance(crowd, vehicles, surroundings)
-        push = planar_noise(self._random, known)[present]
+        push = planar_noise(self._random, known)[person_ids]
         push *= self._deviation * self._model.time_step
         pushed(self._model, crowd, before, push)
 
@@ -61,10 +61,10 @@ def pushed(model: PedestrianModel, crowd: Crowd, before: Array, push: Array) -> 
     constant acceleration has it.
 
     Args:
-        model: whose step it was.
-        crowd: after its step.
-        before: (n, 2) [m/s] its velocities before.
-        push: (n, 2) [m/s] to be added.
+        model: Model that made the step.
+        crowd: Crowd after its step.
+        before: (n, 2) [m/s] Velocities before the step.
+        push: (n, 2) [m/s] Velocity changes to add.
     """
     most = model.parameters.max_acceleration * model.time_step  # [m/s] in a step
     change = crowd.velocity + push - before
@@ -75,12 +75,12 @@ def pushed(model: PedestrianModel, crowd: Crowd, before: Array, push: Array) -> 
 
 
 def disturbance_of(config: RunConfig, model: PedestrianModel) -> Disturbance | None:
-    """What pushes a run's crowd; None: nothing does."""
+    """Return the disturbance of a run's crowd, or None if it has none."""
     noise = config.crowd.acceleration_noise
     return Disturbance(model, noise, config.seed) if noise else None
 
 
 def _within(vectors: Array, longest: float) -> Array:
-    """(n, 1) factors that shorten each vector (n, 2) to ``longest``; 1 for the shorter ones."""
+    """Return factors (n, 1) that shorten each vector (n, 2) to at most ``longest``."""
     length = np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
     return np.asarray(longest / np.maximum(length, longest))

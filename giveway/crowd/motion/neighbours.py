@@ -1,13 +1,13 @@
-"""What stands round a model of people and changes how it moves them."""
+"""The base class of models that wrap another pedestrian model."""
 
 from pedestrian_model import PedestrianModel, VciParameters
 
 
 class AroundModel:
-    """Has the bodies, limits and time step of the model inside.
+    """A model that wraps another one and has its bodies, limits and time step.
 
     Args:
-        model: that moves everybody.
+        model: Model that moves everybody.
     """
 
     def __init__(self, model: PedestrianModel) -> None:
@@ -15,10 +15,10 @@ class AroundModel:
 
     @property
     def parameters(self) -> VciParameters:
-        """Bodies and limits."""
+        """The bodies and limits of the wrapped model."""
         return self._model.parameters
 
     @property
     def time_step(self) -> float:
-        """[s]."""
+        """The time step [s] of the wrapped model."""
         return self._model.time_step

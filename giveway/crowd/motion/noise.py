@@ -1,4 +1,4 @@
-"""Random numbers with an end: what physics or a proof bounds must not have normal tails."""
+"""Bounded random numbers: a quantity that physics or a proof bounds has no normal tails."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ BOUND = 2.0
 
 
 def planar_noise(random: np.random.Generator, count: int) -> NDArray[np.float64]:
-    """(count, 2) standard normal numbers, each redrawn until within ``BOUND`` of zero.
+    """Draw (count, 2) standard normal numbers, each redrawn until within ``BOUND`` of zero.
 
     Cut off there, their standard deviation is 0.88.
     """

@@ -34,11 +34,11 @@ class Differences:
     """One panel.
 
     Attributes:
-        values: (n,) treatment minus baseline, one per pair.
+        values: (n,) Treatment minus baseline, one per pair.
         share: Share of all pairs of the context; nan if not known.
         mean: Mean of the values; nan if it is not reported (N.A.).
         low, high: Interval of the mean.
-        published: the mean in the literature, or None.
+        published: Mean in the literature, or None.
     """
 
     values: NDArray[np.float64]
@@ -70,8 +70,8 @@ def differences_figure(
     """Histograms of paired differences, one row of panels per context.
 
     Args:
-        columns: a situation each.
-        rows: label of a context, and its panels in the order of the columns.
+        columns: Situation of each column.
+        rows: Label of a context, and its panels in the order of the columns.
         title: Title of the whole figure.
         source: Source of the published means, for the legend.
 

@@ -23,7 +23,7 @@ class FrontPoint:
     Attributes:
         level: Level of the compared factor.
         x, y: Means of both costs.
-        x_interval, y_interval: their intervals (low, high); nan: too few runs.
+        x_interval, y_interval: Intervals (low, high); nan for too few runs.
         front: True if no other level is better on both sides.
     """
 
@@ -49,9 +49,9 @@ def fronts_figure(
     A line joins the levels on the Pareto front.
 
     Args:
-        panels: heading and points of each context.
+        panels: Heading and points of each context.
         colours: Colour of each level.
-        x_label: quantity and unit of the ego's cost.
+        x_label: Quantity and unit of the ego's cost.
         y_label: Label of the people's cost.
         title: Title of the figure.
 

@@ -30,10 +30,10 @@ class TradeOffPoint:
     """One cell.
 
     Attributes:
-        context: short label of the other factors' levels.
+        context: Short label of the other factors' levels.
         level: Level of the compared factor.
         x, y: Means of both costs.
-        x_interval, y_interval: their intervals (low, high).
+        x_interval, y_interval: Intervals of the means (low, high).
     """
 
     context: str
@@ -60,7 +60,7 @@ def tradeoff_figure(
     Args:
         points: Points in the order of the legend.
         colours: Colour of each level.
-        x_label: quantity and unit of the first metric.
+        x_label: Quantity and unit of the first metric.
         y_label: Label of the second metric.
         title: Title of the figure.
 

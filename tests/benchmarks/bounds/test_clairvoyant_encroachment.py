@@ -60,7 +60,7 @@ def test_nobody_about_is_full_speed_and_nobody_met():
     assert (first.met, last.met) == (0, 0)
 
 
-def test_a_second_for_somebody_who_crosses_costs_what_the_metric_says():
+def test_a_second_for_a_crossing_person_costs_as_the_metric_says():
     """Being there just when the ego is: at full speed met, a second kept by arriving later."""
     people = one_crossing()
     found, lattice, _ = searched(people)

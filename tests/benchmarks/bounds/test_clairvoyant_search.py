@@ -54,7 +54,7 @@ def test_from_a_standstill_driving_off_costs_what_the_limits_say():
     assert found.completion_time == pytest.approx(10.44, abs=1e-4)
 
 
-def test_who_knows_that_somebody_will_leave_arrives_at_full_speed_just_then():
+def test_a_known_departure_is_met_at_full_speed_just_in_time():
     # The front is R short of 20 m just before, 20.27 m before the goal.
     found = past_who_leaves(TOUCH)
     assert found.completion_time == pytest.approx(15.0 - 0.1 + 20.27 / 4.0, abs=0.02)
@@ -125,7 +125,7 @@ def test_no_motion_is_better(seed, price, speed):
 
 @settings(max_examples=10)
 @given(at=st.floats(3.0, 38.0), begin=st.floats(0.0, 9.0), stay=st.floats(0.0, 6.0))
-def test_a_dearer_safe_distance_is_never_faster_and_never_longer_below(at, begin, stay):
+def test_a_dearer_safe_distance_is_never_faster_nor_longer_below(at, begin, stay):
     people = standing(at, begin, begin + stay)
     coarse = people.station[::2], people.offset[::2]
     people = search.People(*coarse)

@@ -129,7 +129,7 @@ def test_every_row_is_one_inequality_of_the_paper(case):
 
 
 @given(case=cases())
-def test_cost_is_the_weighted_squared_error_of_speed_up_to_a_constant(case):
+def test_cost_is_the_weighted_squared_speed_error_and_a_constant(case):
     position, speed, previous, x_p, U = case
     qp = quadratic_program(MODEL, PARAMETERS, np.array([position, speed]), previous, x_p)
 

@@ -148,7 +148,7 @@ def test_says_why_there_is_no_plan(speed, previous, gap, status, reference):
     assert reference(model, parameters, 0.0, speed, previous, x_p).margin() < 0.0
 
 
-def test_a_pedestrian_exactly_at_the_safe_distance_of_a_standing_car():
+def test_a_pedestrian_at_the_safe_distance_of_a_standing_car():
     solution = Mpc(LongitudinalModel()).solve(0.0, 0.0, 0.0, np.full(15, 8.0))
     assert solution.found
     assert solution.force == pytest.approx(0.0, abs=1e-3)
@@ -167,7 +167,7 @@ def test_the_weight_does_not_move_the_optimum():
     assert weighted.force == pytest.approx(force, abs=1e-6)
 
 
-def test_the_same_problems_give_the_same_bytes_whatever_came_before(draw):
+def test_equal_problems_give_equal_bytes_whatever_came_before(draw):
     model, parameters = LongitudinalModel(), MpcParameters()
     generator = np.random.default_rng(3)
     problems = [draw(generator, model, parameters) for _ in range(150)]

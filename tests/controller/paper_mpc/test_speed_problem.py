@@ -79,7 +79,7 @@ def test_no_proof_refuses_a_plan_that_only_just_stops():
 
 @pytest.mark.parametrize("rate", [800.0, 3000.0])  # of the forces: within c2 and c3, and beyond
 @pytest.mark.parametrize("counted", [0, 1, 2])
-def test_a_plan_is_judged_by_its_worst_constraint_over_its_tolerance(counted, rate):
+def test_a_plan_is_judged_by_its_worst_violation_over_tolerance(counted, rate):
     """Positions, speeds, forces: each in turn, the tolerances of the other two out of reach."""
     model, parameters = LongitudinalModel(), MpcParameters(horizon=5)
     limits = SpeedProblem(model, parameters).limits

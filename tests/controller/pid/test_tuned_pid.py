@@ -57,7 +57,7 @@ def jerk(speeds):
 @pytest.mark.parametrize("known", [True, False], ids=["mass known", "mass unknown"])
 @pytest.mark.parametrize("mass", MASSES)
 @pytest.mark.parametrize("start", [0.0, 2.0, 6.0])
-def test_it_settles_at_the_reference_speed_without_error_or_overshoot(mass, known, start):
+def test_it_settles_at_the_reference_without_error_or_overshoot(mass, known, start):
     pid = TunedPid(model=replace(MODEL, mass=mass if known else 1000.0))
     _, speeds, _ = drive(pid, start, 15.0, mass=mass)
     beyond = (speeds - 4.0) * (1.0 if start < 4.0 else -1.0)
@@ -185,7 +185,7 @@ def test_windup_costs_nothing():
     assert speeds[-1] == pytest.approx(4.0, abs=1e-3)
 
 
-def test_a_vehicle_stronger_in_words_than_in_deeds_does_not_wind_it_up():
+def test_a_vehicle_weaker_than_its_model_does_not_wind_it_up():
     """The true mass is three times the known one: the rate limit cuts off most of the demand."""
     _, speeds, _ = drive(TunedPid(), 0.0, 40.0, mass=3000.0)
     assert speeds.max() < 1.1 * 4.0
@@ -204,7 +204,7 @@ def test_it_takes_over_without_a_bump(speed, force):
     assert abs(pid.control(speed, math.inf) - force) <= min(sharpest, 1000.0) + 1e-6
 
 
-def test_at_the_reference_speed_it_takes_over_with_the_very_force():
+def test_at_the_reference_speed_it_takes_over_with_equal_force():
     pid = TunedPid()
     pid.track(4.0, math.inf, force=400.0)
     assert pid.control(4.0, math.inf) == 400.0
@@ -235,7 +235,7 @@ def test_reset_forgets_all():
 
 @pytest.mark.parametrize("profile", PROFILES)
 @given(gaps=st.tuples(st.floats(-5.0, 100.0), st.floats(-5.0, 100.0)), limit=st.floats(0.0, 9.0))
-def test_the_profile_never_falls_with_the_gap_and_heeds_the_limit(profile, gaps, limit):
+def test_the_profile_never_falls_with_the_gap_or_passes_limits(profile, gaps, limit):
     pid = TunedPid(TunedPidParameters(reference=ReferenceParameters(profile=profile)))
     near, far = (pid.reference_speed(gap, limit) for gap in (min(gaps), max(gaps)))
     assert 0.0 <= near <= far <= min(4.0, limit)

@@ -102,7 +102,7 @@ class StepsOut:
 
 
 @pytest.mark.parametrize(("speed", "heeds"), [(4.0, False), (8.0, True), (12.0, True)])
-def test_the_faster_a_road_is_the_earlier_calm_speeds_are_kept_to(speed, heeds):
+def test_on_faster_roads_calm_speeds_are_kept_earlier(speed, heeds):
     """At 4 m/s half a second before is soon enough; from 12 m/s it takes longer at 3 m/s^2."""
     parameters = PlannerParameters(reference_speed=speed)
     parameters = replace(parameters, manoeuvres=replace(parameters.manoeuvres, threat_weight=0.0))

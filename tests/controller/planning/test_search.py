@@ -99,7 +99,7 @@ def test_braking_ends_at_the_slowest_speed(speed, wanted, slowest):
     assert m.speed.min() >= slowest - 0.3  # jerk-limited: the brake is not let go at once
 
 
-def test_an_acceleration_is_approached_with_the_jerk_and_then_held():
+def test_an_acceleration_is_reached_with_the_jerk_and_then_held():
     m = aimed(10.0, 0.0, -2.0, 0.0, 20.0, jerk=10.0)
     assert m.acceleration[:6] == pytest.approx([-0.5, -1.0, -1.5, -2.0, -2.0, -2.0])
 
@@ -130,7 +130,7 @@ def test_what_a_stop_needs():
     assert stopping_need(4.0, w) == pytest.approx(1.4)
 
 
-def test_the_cost_of_a_free_way_is_the_missing_speed_and_the_acceleration():
+def test_a_free_way_costs_the_missing_speed_and_the_acceleration():
     w = weights(time_weight=1.0, acceleration_weight=0.05, later_weight=0.0, final_weight=0.0)
     assert costs(steady(4.0, 20), w) == (0.0, 0.0, 0.0)
     assert costs(steady(3.0, 20), w)[0] == pytest.approx(20 * DT * 0.25)
@@ -172,7 +172,7 @@ def test_speed_is_regained_with_what_driving_off_allows():
     assert time_to_go(NOBODY_LATER, 2.0, 4.0) == pytest.approx(0.2, abs=0.06)
 
 
-def test_the_base_policy_arrives_behind_who_crosses_when_they_have_left():
+def test_the_base_policy_arrives_when_crossing_people_have_left():
     """8 m ahead, gone after 4 s: 2.0 m/s less 1 m of distance keep it from standing there."""
     lost = time_to_go(crosser(8.0, 0.0, 4.0), 4.0, 4.0)
     # It is a metre short of 8 m after 4 s instead of 1.75 s, then regains its speed.
@@ -232,7 +232,7 @@ def test_the_cost_of_others_by_hand():
     assert others == pytest.approx(n * (nearness + 20.0 * 0.5 * 0.5))
 
 
-def test_a_conflict_weighs_more_with_the_cube_of_the_speed_above_that_of_shared_space():
+def test_conflict_weight_is_cubic_above_the_shared_space_speed():
     w = weights(conflict_weight=0.6)._replace(reference_speed=8.0)
     slow, shared, fast = (costs(steady(v, 20), w, conflicts=1.0)[1] for v in (1.0, 4.0, 8.0))
     assert shared == pytest.approx(2.0 * slow)  # the square root
@@ -250,7 +250,7 @@ def test_who_stands_lacks_no_stopping_distance():
     assert costs(steady(0.0, 20), weights(), gap=0.2)[2] == 0.0
 
 
-def test_the_corridor_ends_where_a_stop_behind_everybody_is_possible():
+def test_the_corridor_ends_where_stopping_for_all_is_possible():
     w, m, room = weights(), steady(2.0, 4), np.empty(4)
     gap = np.array([5.0, 0.9, np.inf, 5.0])
     allowed = np.array([np.inf, np.inf, 3.0, 0.1])
@@ -290,14 +290,14 @@ def test_a_planner_that_cannot_be_is_refused_by_name(changes):
 
 
 @pytest.mark.parametrize("wanted", [2.5, 0.0])
-def test_a_speed_above_the_wanted_one_is_given_up_without_a_hard_brake(wanted):
+def test_a_speed_above_the_wanted_one_is_lost_by_gentle_braking(wanted):
     m = aimed(13.9, 0.0, wanted, 0.0, 4.0)
     assert -3.0 - 1e-9 <= m.acceleration.min() < -2.9
     assert m.speed[-1] < 6.0
 
 
 @given(speed=st.floats(0.0, 15.0), room=st.floats(0.5, 60.0), fastest=st.floats(1.0, 15.0))
-def test_driving_up_to_the_end_of_the_way_is_a_stop_in_comfort_there(speed, room, fastest):
+def test_at_the_end_of_the_way_the_stop_is_comfortable(speed, room, fastest):
     assume(speed**2 / 3.0 + 0.7 * speed <= room)  # such a stop is possible
     m = Manoeuvre.empty(400)
     approach(speed, 0.0, 2.5, room, fastest, 8.0, DT, m.distance, m.speed, m.acceleration)

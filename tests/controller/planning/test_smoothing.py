@@ -76,7 +76,7 @@ def test_the_corridor_gives_way_by_exactly_what_no_plan_avoids(plain_problem, se
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_no_plan_is_better_under_a_penalty_beyond_the_largest_multiplier(plain_problem, seed):
+def test_a_penalty_beyond_the_largest_multiplier_is_exact(plain_problem, seed):
     plain = drawn(plain_problem, seed)
     problem = bounded(plain)
     G, lower, upper = plain.rows()

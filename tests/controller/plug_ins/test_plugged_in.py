@@ -51,7 +51,7 @@ def test_an_answer_becomes_a_force_within_the_actuators_limits(answer, force):
     assert decision.reference_speed == 4.0
 
 
-def test_the_inverse_is_that_of_fmus_with_a_speed_setpoint_or_an_acceleration():
+def test_the_inverse_is_that_of_fmus_with_speed_or_acceleration():
     """What the inverse maps of the roles would set comes back."""
     from fmus.profile.commands import AccelerationCommand, SetpointCommand
     from fmus.profile.wires import Wire

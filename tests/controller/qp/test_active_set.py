@@ -37,7 +37,7 @@ def test_the_dual_method_meets_the_optimality_conditions(problems):
     assert bound_somewhere > 100
 
 
-def test_the_dual_method_says_infeasible_exactly_where_the_lp_does(problems, edge):
+def test_the_dual_method_says_infeasible_exactly_where_lp_does(problems, edge):
     said = {True: 0, False: 0}
     for reference, problem in problems(400, seed=2):
         found = optimum(problem) is not None
@@ -59,7 +59,7 @@ def test_the_dual_method_ends_at_the_optimum(problem):
 
 @settings(max_examples=150)
 @given(problem=small_problems(feasible=False))
-def test_infeasibility_is_certified_if_and_only_if_there_is_no_point(problem):
+def test_infeasibility_is_certified_exactly_if_there_is_no_point(problem):
     rows, lower, upper, target = problem
     multipliers, V = np.zeros(len(rows)), np.zeros(len(target))
     outcome = solve_exactly(*problem, multipliers, V)

@@ -54,7 +54,7 @@ def test_osqp_reports_that_it_ran_out_of_iterations(problems):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals as of POSIX")
-def test_an_interrupt_in_the_solver_reaches_its_handler_and_the_solve_ends_well(problems):
+def test_an_interrupt_reaches_its_handler_and_the_solve_ends(problems):
     """OSQP catches Ctrl-C while it solves: who pressed it must hear of it nevertheless."""
     heard = []
     before = signal.signal(signal.SIGINT, lambda *_: heard.append(True))
@@ -72,7 +72,7 @@ def test_an_interrupt_in_the_solver_reaches_its_handler_and_the_solve_ends_well(
 
 
 @pytest.mark.parametrize("gap", [10.7, 10.8, 11.0, np.inf])
-def test_osqp_from_a_cold_start_finds_the_active_set_of_an_easy_problem(gap):
+def test_cold_osqp_finds_the_active_set_of_an_easy_problem(gap):
     """Harder ones, where the car just stops, can take thousands of iterations."""
     problem = SpeedProblem(LongitudinalModel(), MpcParameters())
     assert problem.update(0.0, 4.0, 400.0, np.full(15, gap)) == UNDECIDED

@@ -51,6 +51,6 @@ def test_osqp_is_set_up_where_the_exact_methods_do_not_end(set_up, problem, monk
     assert set_up == [problem, problem]  # a fresh one: what it knew is forgotten
 
 
-def test_osqp_is_set_up_at_once_where_infeasibility_is_to_be_proved(set_up, problem):
+def test_osqp_is_set_up_at_once_if_infeasibility_must_be_proved(set_up, problem):
     exact_solver.ExactSolver(problem, LIMIT, (0.0, 20.0))
     assert set_up == [problem]

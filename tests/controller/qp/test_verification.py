@@ -80,7 +80,7 @@ def test_junk_is_no_certificate(junk, problems):
 @given(
     problem=small_problems(feasible=True), seed=st.integers(0, 2**16), noise=st.floats(0.0, 1e-3)
 )
-def test_what_refine_verifies_is_the_optimum_whatever_it_started_from(problem, seed, noise):
+def test_what_refine_verifies_is_the_optimum_from_any_start(problem, seed, noise):
     rows, *_, target = problem
     multipliers, V = np.zeros(len(rows)), np.zeros(len(target))
     solve_exactly(*problem, multipliers, V)

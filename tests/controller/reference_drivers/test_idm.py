@@ -28,7 +28,7 @@ def answer(speed, **seen):
     return driver.control(Observation(0.0, speed, np.inf, np.empty(0), path=Straight(), **seen))
 
 
-def test_at_the_wanted_speed_and_at_the_equilibrium_gap_it_keeps_its_speed():
+def test_at_the_wanted_speed_and_equilibrium_gap_it_stays_steady():
     assert answer(10.0) == (pytest.approx(0.0), "free")
     assert answer(0.0).value == pytest.approx(1.0)
     # behind a leader as fast as itself the improved model keeps s_0 + v T, not more
@@ -39,7 +39,7 @@ def test_at_the_wanted_speed_and_at_the_equilibrium_gap_it_keeps_its_speed():
 
 @pytest.mark.parametrize("speed", [4.0, 8.0, 12.0])
 @pytest.mark.parametrize("seen", ["stop_gap", "leader_gap"])
-def test_it_stops_before_a_line_and_behind_a_leader_without_braking_hard(speed, seen):
+def test_it_stops_gently_before_a_line_and_behind_a_leader(speed, seen):
     driver = IntelligentDriver(SETUP, IdmOptions())
     x, v, hardest = 0.0, speed, 0.0
     for _ in range(1200):

@@ -129,7 +129,7 @@ def test_who_walks_into_the_side_is_no_reason_to_brake(along, aside, v_x, v_y):
     assert let_through(TO_HOLD_4_M_S, 4.0, [(along, aside)], [(v_x, v_y)]).acted is False
 
 
-def test_somebody_walking_along_beside_the_front_is_passed_slowly():
+def test_somebody_walking_beside_the_front_is_passed_slowly():
     """0.3 m from its side: at 1.5 m/s it drives past, at 4 m/s it slows down first."""
     beside, along = [(0.8, 1.0 + 0.27 + 0.3)], [(1.3, 0.0)]
     assert let_through(150.0, 1.5, beside, along).acted is False
@@ -211,7 +211,7 @@ def test_what_is_worse_keeps_it_further_away(worse):
     assert nearest(**worse) > nearest() + 0.02
 
 
-def test_a_vehicle_without_brakes_to_speak_of_stays_where_people_are():
+def test_a_vehicle_with_weak_brakes_stays_where_people_are():
     weak = {"force_limit": 10.0}
     assert let_through(10.0, 5.0, [(30.0, 0.0)], **weak).reason == "unavoidable"
     assert let_through(10.0, 5.0, NOBODY, **weak).acted is False

@@ -15,14 +15,14 @@ def test_the_worst_case_is_all_that_the_simulated_people_can_do():
     assert worst_motion("worst-case", SIMULATED) == SIMULATED
 
 
-def test_what_was_recorded_does_not_depend_on_the_simulated_people_but_covers_their_speed():
+def test_the_recorded_motion_is_fixed_and_covers_their_speeds():
     faster = WorstMotion(acceleration=9.0, speed=4.0)
     for name in ("recorded-99.9", "responsible"):
         assert worst_motion(name, SIMULATED) == RECORDED[name]
         assert worst_motion(name, faster) == replace(RECORDED[name], speed=4.0)
 
 
-def test_only_the_worst_case_is_as_sudden_on_a_sidewalk_as_anywhere():
+def test_only_the_worst_case_is_equally_sudden_on_sidewalks():
     assert worst_motion("worst-case", SIMULATED).setting_out == math.inf
     for name in ("recorded-99.9", "responsible"):
         assert worst_motion(name, SIMULATED).setting_out == 0.6

@@ -42,7 +42,7 @@ def inflating(path, data):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-def test_a_description_that_is_larger_than_it_says_is_not_inflated(tmp_path):
+def test_a_description_larger_than_declared_is_not_inflated(tmp_path):
     path = inflating(tmp_path / "car.fmu", DESCRIPTION + bytes(300 * MEGABYTE))
     most_memory()
     before = most_memory()

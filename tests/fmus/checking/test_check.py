@@ -142,9 +142,7 @@ def per_cent(zoo):
         ({"mass": 1000.0}, {"model": a_model(1e5)}, "1000 kg (--mass)"),
     ],
 )
-def test_pedals_in_per_cent_that_say_otherwise_fail_by_what_the_car_weighs(
-    zoo, known, changes, origin
-):
+def test_per_cent_pedals_declared_otherwise_fail_by_the_mass(zoo, known, changes, origin):
     found = finding(checked(zoo, per_cent(zoo), known=known, **changes), "controller's model")
     assert found.verdict == "fail"
     assert origin in found.text

@@ -98,12 +98,12 @@ def test_resistance_that_is_not_linear_is_said_with_its_terms(car):
     assert "v²" not in " ".join(constant.remarks)
 
 
-def test_a_weak_and_a_heavy_vehicle_are_tried_with_fitting_forces(car):
+def test_weak_and_heavy_vehicles_are_tried_with_fitting_forces(car):
     assert identified(car(mass=80.0, friction=8.0)).largest_force < 800.0
     assert identified(car(mass=20_000.0)).largest_force == 8000.0
 
 
-def test_what_is_driven_by_its_acceleration_is_identified_as_a_whole(zoo):
+def test_an_acceleration_driven_vehicle_is_identified_as_a_whole(zoo):
     path = zoo.car(role="acceleration")
     profile = make_profile(
         zoo.profile(path) | {"inverse_map": {"mass": 1200.0, "friction": 50.0}}, "test"
@@ -170,7 +170,7 @@ def test_drive_and_brake_have_a_lag_each(car, lag, brake_lag):
     assert remark.startswith("it drives ")
 
 
-def test_a_brake_pedal_that_is_weaker_than_its_full_force_says_is_told_with_the_line(car):
+def test_a_brake_pedal_weaker_than_declared_is_told_the_line(car):
     found = identified(car(brake_gain=0.5), profile=pedals())
     assert found.sides.drive.mass == pytest.approx(1000.0, rel=0.02)
     assert found.sides.brake.mass == pytest.approx(2000.0, rel=0.03)

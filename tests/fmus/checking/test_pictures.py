@@ -19,7 +19,7 @@ def trace(speed):
     return Trace(0.05, force, speed, speed, speed, 0.0 * force, ())
 
 
-def test_a_check_shows_the_vehicle_beside_the_model_and_the_steps_halved(car, tmp_path):
+def test_a_check_shows_vehicle_beside_model_and_halved_steps(car, tmp_path):
     figure = check_figure(check(car(), step_size=0.05), title="car")
     assert figure is not None
     labels = {line.get_label() for axes in figure.axes for line in axes.lines}

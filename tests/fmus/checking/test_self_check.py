@@ -57,7 +57,7 @@ def test_the_step_that_is_advised_passes(zoo):
     assert not convergence(opener(zoo, path, step=advised), advised).problem
 
 
-def test_a_diverging_solver_that_leaves_all_bounds_is_named_as_well(zoo):
+def test_a_diverging_solver_that_leaves_all_bounds_is_named(zoo):
     path = zoo.car(euler=True, values={"lag": 0.005})
     result = convergence(opener(zoo, path), STEP)
     assert "its steps of 50 ms do not converge" in result.problem
@@ -72,7 +72,7 @@ def test_an_fmu_that_does_one_step_only_cannot_be_compared(zoo):
     assert not result.problem
 
 
-def test_an_fmu_with_steps_of_its_own_is_compared_with_whole_ones(zoo):
+def test_an_fmu_with_its_own_steps_is_compared_with_whole_ones(zoo):
     path = zoo.car(role="drive_brake")
     result = convergence(opener(zoo, path, step=0.01), 0.01)
     assert result.finer == 0.005

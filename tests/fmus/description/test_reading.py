@@ -116,7 +116,7 @@ def test_fmi3_interfaces(fmu, fmi3_xml):
     assert me.completed_step_needed
 
 
-def test_fmi3_arrays_have_the_extent_of_their_structural_parameters(fmu, fmi3_xml):
+def test_fmi3_arrays_are_as_long_as_structural_parameters_say(fmu, fmi3_xml):
     model = read_model(fmu(fmi3_xml()))
     x = model.variables["x"]
     assert (x.shape, x.size, x.scalar) == ((3, 2), 6, False)

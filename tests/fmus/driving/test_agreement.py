@@ -21,9 +21,7 @@ def cruise(car, seconds, force=400.0):
     ("behaviour", "force"),
     [("position_stands", 400.0), ("speed_stands", -3000.0), ("frozen", 400.0)],
 )
-def test_what_stands_while_the_other_moves_is_a_fault_within_a_second(
-    zoo, open_car, fmi, behaviour, force
-):
+def test_frozen_position_or_speed_is_a_fault_within_a_second(zoo, open_car, fmi, behaviour, force):
     car = open_car(zoo.car(fmi=fmi, behaviour=behaviour, at=1.0))
     car.start(speed=4.0)
     cruise(car, 1.0)
@@ -32,7 +30,7 @@ def test_what_stands_while_the_other_moves_is_a_fault_within_a_second(
     assert 1.0 < car.time <= 2.0
 
 
-def test_a_steady_speed_with_a_standing_position_is_told_with_time_and_way(zoo, open_car):
+def test_steady_speed_at_a_fixed_position_names_time_and_way(zoo, open_car):
     path = zoo.car(behaviour="position_stands", at=0.0)
     car = open_car(path)
     car.start(speed=4.0)
@@ -43,7 +41,7 @@ def test_a_steady_speed_with_a_standing_position_is_told_with_time_and_way(zoo, 
     assert "check the units of both, or leave out [outputs.position]" in message
 
 
-def test_a_speed_that_stays_zero_while_the_position_moves_is_a_fault(zoo, open_car):
+def test_zero_speed_while_the_position_moves_is_a_fault(zoo, open_car):
     car = open_car(zoo.car(behaviour="speed_stands", at=0.0))
     car.start()
     with pytest.raises(FmuOutputError, match="where speed accounts for 0 m"):

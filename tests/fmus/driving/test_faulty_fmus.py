@@ -55,7 +55,7 @@ def test_a_motion_that_no_car_has_is_named_with_its_time(rebuilt, quantity):
 
 
 @pytest.mark.parametrize("status", ["DISCARD", "ERROR", "FATAL"])
-def test_a_step_that_is_not_done_is_reported_with_the_fmus_own_words(rebuilt, status):
+def test_a_failed_step_is_reported_in_the_fmus_own_words(rebuilt, status):
     path = rebuilt(
         "instance.c",
         "    self->now.state = next;",
@@ -92,7 +92,7 @@ def test_a_start_that_gives_no_number_is_refused(rebuilt):
         vehicle.step(0.0)
 
 
-def test_an_fmu_that_cannot_be_instantiated_is_refused_without_a_word_of_its_own(rebuilt):
+def test_an_fmu_without_an_instance_is_refused_even_if_silent(rebuilt):
     path = rebuilt("instance.c", "    if (self->name == NULL) return false;", "    return false;")
     with (
         VehicleFmu(path, step_size=H) as vehicle,

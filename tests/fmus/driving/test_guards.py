@@ -45,7 +45,7 @@ def test_what_no_car_does_is_named_with_variable_and_time(zoo, open_car, fmi, be
     assert car.time == 5 * H
 
 
-def test_after_a_failure_the_vehicle_says_so_until_it_is_started_again(zoo, open_car):
+def test_after_a_failure_the_vehicle_says_so_until_restarted(zoo, open_car):
     car = open_car(zoo.car(behaviour="nan"))
     car.start(speed=4.0)
     with pytest.raises(FmuOutputError):
@@ -122,7 +122,7 @@ def test_a_frozen_car_is_warned_of_once(zoo, open_car):
 
 
 @pytest.mark.parametrize("outputs", [("speed", "position"), ("speed",)])
-def test_a_frozen_car_whose_speed_trembles_by_a_rounding_error_is_warned_of(zoo, open_car, outputs):
+def test_a_frozen_car_with_rounding_noise_in_speed_is_warned_of(zoo, open_car, outputs):
     path = zoo.car(behaviour=[Fault("frozen", at=0.0), Fault("trembles", at=0.0)], outputs=outputs)
     car = open_car(path)
     car.start()

@@ -13,7 +13,7 @@ def drive(vehicle, steps):
 
 
 @pytest.mark.parametrize("kilo", [1000.0, 1 / 0.3048], ids=["km", "ft"])
-def test_a_position_in_another_unit_than_declared_is_found_within_metres(zoo, kilo):
+def test_a_position_in_an_undeclared_unit_is_found_within_metres(zoo, kilo):
     path = zoo.car(spoken={"position": (kilo, 0.0)})
     with VehicleFmu(path, step_size=0.05, profile=make_profile(zoo.profile(path), "t")) as vehicle:
         vehicle.start(speed=4.0)

@@ -154,7 +154,7 @@ def test_it_is_driven_up_to_the_speed(zoo, open_car, role, speed):
         position, before = car.position, car.speed
 
 
-def test_resistance_that_the_controller_does_not_know_of_is_overcome(zoo, open_car):
+def test_resistance_unknown_to_the_controller_is_overcome(zoo, open_car):
     """Twice the mass and quadratic drag: the integrator finds the force that holds the speed."""
     path = zoo.car(initial=(), values={"mass": 2000.0, "drag": 5.0, "lag": 0.2})
     car = open_car(path, inverse_map={"mass": 1000.0, "friction": 100.0})
@@ -231,7 +231,7 @@ def test_a_failure_on_the_way_says_that_it_was_before_the_start(zoo, open_car, b
     car.start()
 
 
-def test_a_car_that_no_force_moves_names_the_inputs_that_nobody_sets(zoo):
+def test_a_car_that_no_force_moves_names_its_unset_inputs(zoo):
     car = zoo.car(initial=(), values={"engaged": 0.0}, extra=("spare_input",))
     values = zoo.profile(car)
     values.pop("initial", None)
@@ -251,7 +251,7 @@ def test_a_car_that_no_force_moves_names_the_inputs_that_nobody_sets(zoo):
         (0.32, -3.125, r"gain = 3.125 in place of gain = -3.125 in \[inputs.force\]"),
     ],
 )
-def test_a_car_with_the_sign_of_its_force_turned_is_told_the_line(zoo, factor, gain, line):
+def test_a_car_with_its_force_sign_turned_is_told_the_line(zoo, factor, gain, line):
     car = zoo.car(initial=(), spoken={"force": (factor, 0.0)})
     values = zoo.profile(car)
     values.pop("initial", None)

@@ -160,7 +160,7 @@ def test_an_fmu_whose_brakes_hold_may_have_all_forces(zoo, open_car):
 
 
 @pytest.mark.parametrize("block", [True, False])
-def test_a_brake_force_on_a_bare_mass_does_not_drive_it_backwards(zoo, open_car, block):
+def test_a_brake_force_does_not_drive_a_bare_mass_backwards(zoo, open_car, block):
     car = open_car(
         zoo.car(role="drive_brake", values={"holds": 0.0}), inputs={"block_reverse": block}
     )

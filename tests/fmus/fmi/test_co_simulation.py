@@ -120,7 +120,7 @@ def test_start_values_of_an_array_whole_or_by_element(zoo, load, start):
         assert car.outputs[0] == pytest.approx(moved(700.0, H)[1], rel=1e-12)
 
 
-def test_an_inputs_start_value_stays_until_something_else_is_written(zoo, version, load, start):
+def test_an_inputs_start_value_stays_until_it_is_overwritten(zoo, version, load, start):
     car = start(load(zoo.car(fmi=version)), {"force": 700.0})
     assert car.inputs[0] == 700.0
     car.tick(0.0, H)
@@ -147,7 +147,7 @@ def test_a_start_value_that_does_not_fit_is_named(zoo, load, start, name, value,
         start(load(path), {name: value})
 
 
-def test_a_start_value_that_the_fmu_refuses_comes_with_its_reason(zoo, version, load, start):
+def test_a_refused_start_value_comes_with_its_reason(zoo, version, load, start):
     path = zoo.car(fmi=version)
     with pytest.raises(
         FmuStartError, match=r"the FMU does not start: .* returned 'error': load: neither"
@@ -180,9 +180,7 @@ def test_structural_parameters_are_set_in_configuration_mode(zoo, load, start):
     ("behaviour", "end"),
     [("error", ["free"]), ("fatal", []), ("terminate", ["terminate", "free"])],
 )
-def test_after_an_error_an_instance_is_only_freed_and_after_a_fatal_one_left(
-    zoo, run, behaviour, end
-):
+def test_an_instance_is_freed_after_an_error_but_not_a_fatal_one(zoo, run, behaviour, end):
     path = zoo.car(fmi="2.0", behaviour=behaviour, calls=True, file=f"order_{behaviour}")
     run(path, {"force": 1.0}, 10).stop()
     words = [word for word in called(path) if word[0].isalpha()]
@@ -204,9 +202,7 @@ def test_every_start_is_a_new_instance(zoo, version, load, start):
 
 
 @pytest.mark.parametrize("behaviour", ["discard_once", "discard_long", "discard_spoiled"])
-def test_a_discarded_step_is_done_from_where_it_came_to_or_in_smaller_ones(
-    zoo, version, run, behaviour
-):
+def test_a_discarded_step_is_resumed_or_done_in_smaller_ones(zoo, version, run, behaviour):
     if version == "1.0" and behaviour != "discard_once":
         pytest.skip("FMI 1.0 cannot return to an earlier state")
     car = run(
@@ -262,7 +258,7 @@ def test_optional_functions_may_be_missing(zoo, run):
 
 @pytest.mark.parametrize("verb", ["DoStep", "Terminate", "EnterInitializationMode"])
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
-def test_a_function_that_every_fmu_has_is_missed_before_the_start(zoo, load, version, verb):
+def test_a_missing_mandatory_function_is_told_before_the_start(zoo, load, version, verb):
     path = zoo.car(fmi=version, without=(f"fmi{version[0]}{verb}",))
     with pytest.raises(FmuPlatformError, match=f"no function fmi{version[0]}{verb}, which"):
         load(path)

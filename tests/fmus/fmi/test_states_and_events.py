@@ -28,7 +28,7 @@ def test_an_fmu_that_keeps_final_steps_only_moves_as_any_other(zoo, version, run
 
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
-def test_a_step_is_final_unless_the_state_before_an_earlier_part_may_be_restored(zoo, version, run):
+def test_a_step_is_final_unless_an_earlier_state_may_be_restored(zoo, version, run):
     path = zoo.car(
         fmi=version, behaviour="discard_spoiled", at=0.05, calls=True, file=f"final{version[0]}"
     )

@@ -32,7 +32,7 @@ def test_a_report_crosses_to_another_process():
     assert end.after_printing == ", after printing 'Öl'"
 
 
-def test_the_last_line_that_is_not_blank_is_kept_printable_and_short():
+def test_the_last_non_blank_line_is_kept_printable_and_short():
     tail = PrintedTail()
     for piece in (b"first\nse", b"cond \x1b[31mred\xff\r\n", b"\n  \n"):
         tail.add(piece)

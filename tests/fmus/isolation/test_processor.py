@@ -49,7 +49,7 @@ def test_a_process_with_threads_keeps_all_processors():
         other.join()
 
 
-def test_the_fmu_is_where_its_vehicle_is_and_the_vehicle_may_go_anywhere(isolated):
+def test_the_fmu_is_beside_its_vehicle_which_may_go_anywhere(isolated):
     usual = os.sched_getaffinity(0)
     vehicle = isolated()
     vehicle.start()

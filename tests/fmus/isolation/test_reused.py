@@ -31,7 +31,7 @@ def drive(vehicle):
     return watchdog_of(vehicle), vehicle.position
 
 
-def test_within_a_block_it_serves_the_next_vehicle_and_at_its_end_it_ends(isolated, nothing_left):
+def test_within_a_block_it_serves_the_next_vehicle_then_ends(isolated, nothing_left):
     with processes_reused():
         with isolated() as first:
             one = drive(first)

@@ -51,7 +51,7 @@ def test_processes_that_no_watchdog_can_end_any_more(crash):
     assert "no answer within 1 s while it was loaded" in crash("ORPHANS", 1.0)
 
 
-def test_so_they_are_where_the_watchdog_has_served_another_vehicle(crash):
+def test_such_processes_are_told_after_another_vehicle_as_well(crash):
     with processes_reused():
         with IsolatedVehicle(bundled_fmu(), step_size=0.05) as vehicle:
             vehicle.start()

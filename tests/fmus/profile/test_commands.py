@@ -103,14 +103,14 @@ def test_friction_alone_does_not_push_a_reversing_car_either():
 
 
 @given(forces, speeds)
-def test_the_car_of_the_inverse_map_moves_as_the_controller_thinks(force, speed):
+def test_the_car_of_the_inverse_map_moves_as_predicted(force, speed):
     """M a + alpha v = u, for an FMU that takes the acceleration."""
     acceleration = apply(command("acceleration", block_reverse=False), force, speed)[0]
     assert M * acceleration + ALPHA * speed == pytest.approx(force, rel=1e-12, abs=1e-8)
 
 
 @given(st.floats(0.0, 20_000.0), speeds)
-def test_a_speed_loop_with_the_lead_accelerates_as_the_controller_thinks(force, speed):
+def test_a_speed_loop_with_the_lead_accelerates_as_predicted(force, speed):
     """v' = (v_set - v) / lead."""
     target = apply(command("setpoint"), force, speed)[0]
     assert target >= 0.0

@@ -106,7 +106,7 @@ def test_the_only_input_may_be_drive_and_brake_by_its_sign(text, gain):
         (["v [m/s]", "der(wind.v) [m/s2]"], "acceleration", None),
     ],
 )
-def test_a_derivative_is_named_after_what_it_is_the_derivative_of(names, role, chosen):
+def test_a_derivative_is_named_after_its_variable(names, role, chosen):
     outputs = drafted(["force [N]"], names).values["outputs"]
     assert outputs.get(role, {}).get("variable") == chosen
 

@@ -193,7 +193,7 @@ def test_a_fixed_internal_step_that_means_nothing_is_none(zoo, open_car, redescr
 
 @pytest.mark.parametrize("only", [0.01, 0.05, 0.1])
 @pytest.mark.parametrize("fmi", ["2.0", "3.0"])
-def test_a_profile_without_a_step_has_that_of_the_default_experiment(
+def test_a_profile_without_a_step_has_the_default_experiments(
     zoo, open_car, redescribed, fmi, only
 ):
     path = zoo.car(fmi=fmi, only_step=only)

@@ -155,7 +155,7 @@ def test_a_conversion_beyond_all_measure_is_mistyped(zoo, axis):
 # ---- variables ----
 
 
-def test_a_missing_variable_is_named_with_the_one_that_may_be_meant(zoo):
+def test_a_missing_variable_is_named_with_the_likely_one(zoo):
     said = refusal(zoo.car(), outputs={"speed": {"variable": "sped"}})
     assert said == "[outputs.speed] no variable 'sped' in the FMU; did you mean 'speed'?"
     said = refusal(zoo.car(), outputs={"speed": {"variable": "v_x"}})

@@ -51,7 +51,7 @@ def test_the_force_is_there_in_initialization_mode(
     assert host.get("force") == force
 
 
-def test_after_a_step_the_outputs_are_those_of_the_step_until_an_input_is_set(
+def test_outputs_stay_those_of_the_step_until_an_input_is_set(
     fmi_version: str, new_host: NewHost, seen: Seen
 ) -> None:
     host = new_host(fmi_version)

@@ -28,9 +28,7 @@ def driven(path):
         return motion
 
 
-def test_an_fmu_with_sources_only_is_compiled_and_drives_as_with_its_own_binary(
-    fmu, remake, tmp_path
-):
+def test_a_source_only_fmu_is_compiled_and_drives_as_its_binary(fmu, remake, tmp_path):
     plain = remake(keep=without_binaries)
     with pytest.raises(FmuPlatformError, match=r"C sources; compile them: giveway fmu compile"):
         driven(plain)
@@ -68,7 +66,7 @@ def test_names_meant_for_static_linking_are_those_of_a_library(remake, tmp_path)
 
 
 @pytest.mark.parametrize("fmi_version", ["2.0"], indirect=True)
-def test_sources_that_do_not_compile_are_one_line_and_leave_nothing(remake, tmp_path, refused):
+def test_sources_that_do_not_compile_are_one_line_without_traces(remake, tmp_path, refused):
     broken = remake(
         keep=without_binaries,
         replace=lambda name: b"int main( {\n" if name == "sources/plant.c" else None,

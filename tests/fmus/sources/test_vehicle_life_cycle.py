@@ -91,7 +91,7 @@ def test_another_builds_token_is_refused(fmu, tmp_path):
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_a_force_that_is_no_number_is_refused_and_changes_nothing(host, value):
+def test_a_force_that_is_nan_is_refused_and_changes_nothing(host, value):
     host.ready(v0=2.0)
     host.set(force=100.0)
     assert host.refuses(host.set, force=value)
@@ -101,7 +101,7 @@ def test_a_force_that_is_no_number_is_refused_and_changes_nothing(host, value):
 @pytest.mark.parametrize(
     ("name", "value"), [("M", 0.0), ("M", -1.0), ("alpha", -0.1), ("v0", -0.1)]
 )
-def test_parameters_without_meaning_are_refused_at_initialisation(host, name, value):
+def test_meaningless_parameters_are_refused_at_initialisation(host, name, value):
     host.instantiate()
     assert host.refuses(host.initialise, **{name: value})
 

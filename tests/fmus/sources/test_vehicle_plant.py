@@ -66,7 +66,7 @@ def free_stop(M, alpha, brake, v0):
 
 
 @pytest.mark.parametrize("reverse", [False, True])
-def test_euler_is_the_papers_recursion_bit_by_bit_over_a_long_run(fmi_version, reverse):
+def test_euler_is_the_papers_recursion_to_the_bit_in_a_long_run(fmi_version, reverse):
     forces = np.random.default_rng(7).uniform(-6000.0, 6000.0, 20_000)
     ours = run(fmi_version, forces, speed=4.0, M=1000.0, alpha=100.0, reverse=reverse)
     assert np.array_equal(ours, euler(1000.0, 100.0, forces, speed=4.0, reverse=reverse))

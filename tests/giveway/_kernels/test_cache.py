@@ -78,9 +78,7 @@ print(f'{value:.6f}', sum(_exp.stats.cache_hits.values()), made_ready)
 """
 
 
-def test_a_callee_that_changes_in_another_file_is_seen_and_code_that_is_there_needs_no_compiler(
-    elsewhere, tmp_path
-):
+def test_a_changed_callee_is_seen_and_a_hit_needs_no_compiler(elsewhere, tmp_path):
     def exponential():
         script = f"sys.path.insert(0, {str(elsewhere)!r}); import giveway; exec({HALF!r})"
         return said(script, tmp_path, PYTHONPATH=str(elsewhere), **kept)
@@ -158,7 +156,7 @@ def said(script: str, home: Path, **more: str) -> str:
     return done.stdout.strip()
 
 
-def test_importing_giveway_imports_no_numba_and_changes_no_environment(tmp_path):
+def test_importing_giveway_imports_no_numba_nor_changes_environ(tmp_path):
     script = (
         "before = dict(os.environ); import giveway; "
         "print('numba' in sys.modules, dict(os.environ) == before)"

@@ -43,7 +43,7 @@ def test_a_type_has_the_size_that_llvm_says(kind, size):
     assert [kind.get_abi_size(data) for _ in range(2)] == [size, size]
 
 
-def test_a_function_with_numbas_helpers_has_an_entry_for_c_and_they_have_none(monkeypatch):
+def test_a_function_has_an_entry_for_c_and_numbas_helpers_none(monkeypatch):
     made, add_as_ever = [], codegen.CPUCodeLibrary.add_ir_module
 
     def add(library, module):

@@ -18,7 +18,7 @@ def library(dispatcher):
     return compiled.library
 
 
-def test_a_function_without_an_entry_for_python_is_linked_into_its_caller_and_no_more():
+def test_a_function_without_python_entry_is_only_linked():
     half = uncached(lambda x: x / 2.0, no_cpython_wrapper=True)
     quarter = uncached(lambda x: half(half(x)))
     assert quarter(3.0) == 0.75
@@ -55,7 +55,7 @@ def test_an_error_in_an_inner_function_reaches_python():
         root(-1.0)
 
 
-def test_an_inner_function_is_a_plain_one_for_python_and_can_be_made_a_kernel():
+def test_an_inner_function_is_plain_python_and_can_be_a_kernel():
     def third(x):
         return x / 3.0
 

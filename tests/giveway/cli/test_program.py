@@ -83,9 +83,7 @@ def test_a_folder_whose_name_is_too_long_is_named(type_here):
     assert "cannot be written (File name too long); name another folder with --out" in done.stderr
 
 
-def test_a_users_file_can_neither_steer_the_terminal_nor_hide_the_rest_of_the_line(
-    type_here, tmp_path
-):
+def test_a_users_file_cannot_steer_the_terminal_or_hide_a_line(type_here, tmp_path):
     (tmp_path / "long.toml").write_text(f'[ego]\nlane = "{"x" * 5000}"\n')
     done = type_here("config", "--config", "long.toml")
     assert done.returncode == 2

@@ -36,7 +36,7 @@ def giveway(*words: object) -> int:
     return int(end.value.code or 0)
 
 
-def test_validate_prints_both_tables_and_writes_csvs_and_pictures(dataset, tmp_path, capsys):
+def test_validate_prints_both_tables_and_writes_csv_and_pictures(dataset, tmp_path, capsys):
     out = tmp_path / "out"
     assert giveway("validate", dataset, *AS_CITR, "--preset", "TABLE2", "--out", out) == 0
     said = capsys.readouterr().out

@@ -50,7 +50,7 @@ def test_a_wrong_ego_entry_is_named(entry: dict, expected: str) -> None:
         build_config([Layer("study.toml", {"egos": [entry]})])
 
 
-def test_contradictory_egos_are_refused_where_one_origin_names_both() -> None:
+def test_contradictory_egos_are_refused_if_one_origin_names_both() -> None:
     flags = {"ego": {"take_over": "5", "route": "a,b"}}
     with pytest.raises(ConfigError, match="--ego and --ego-route: contradict"):
         load([Layer("command line", flags, from_flags=True)])
@@ -67,7 +67,7 @@ def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
     assert load([Layer("again", config.model_dump())])[0] == config
 
 
-def test_settings_of_one_ego_that_do_not_fit_are_told_in_one_line():
+def test_unfit_settings_of_one_ego_are_told_in_one_line():
     entry = {"ego": {"id": "b"}, "perception": {"model": "shy_people:Shy"}}
     with pytest.raises(ValidationError) as caught:
         RunConfig.model_validate({"egos": [entry]})

@@ -32,7 +32,7 @@ def test_kinds_are_drawn_by_their_shares_and_the_rest_are_adults() -> None:
     assert everybody == ("child",) * 5
 
 
-def test_without_a_mixture_nobody_is_of_any_kind_and_nothing_is_drawn() -> None:
+def test_without_a_mixture_there_are_no_kinds_and_no_draws() -> None:
     random = np.random.default_rng(1)
     assert draw_kinds(PeopleConfig(), 3, random) == ("", "", "")
     assert random.random() == np.random.default_rng(1).random()
@@ -57,7 +57,7 @@ def test_each_kind_walks_as_was_measured(kind: str, mean: float, slow: float) ->
     assert speeds.max() <= 2.2
 
 
-def test_who_is_spawned_is_somebody_and_stands_where_an_unmixed_crowd_does() -> None:
+def test_mixed_people_stand_where_an_unmixed_crowd_does() -> None:
     mixed = spawn(CrowdConfig(pedestrians=40, people=PeopleConfig(elderly=0.5)), AXIS, 3)
     plain = spawn(CrowdConfig(pedestrians=40), AXIS, 3)
     assert np.array_equal(mixed.position, plain.position)
@@ -67,7 +67,7 @@ def test_who_is_spawned_is_somebody_and_stands_where_an_unmixed_crowd_does() -> 
     assert mixed.traits["ped0"] == Trait(mixed.kinds[0], "")
 
 
-def test_sizes_of_groups_are_those_of_the_zero_truncated_poisson_distribution() -> None:
+def test_sizes_of_groups_are_zero_truncated_poisson() -> None:
     sizes = np.array(party_sizes(MANY, 0.6, np.random.default_rng(1)))
     grouped = sizes[sizes > 1]
     assert grouped.sum() / sizes.sum() == pytest.approx(0.6, abs=0.02)
@@ -77,14 +77,14 @@ def test_sizes_of_groups_are_those_of_the_zero_truncated_poisson_distribution() 
     assert sum(sizes) == MANY
 
 
-def test_pairs_and_triads_walk_abreast_and_larger_groups_in_two_rows() -> None:
+def test_up_to_three_walk_abreast_and_larger_groups_in_two_rows() -> None:
     for size in (1, 2, 3):
         assert np.ptp(formation(size)[:, 1]) == 0.0
     assert np.ptp(formation(4)[:, 1]) == 1.0
     assert slowest(np.array([1.0, 1.5, 1.2]), [1, 2]).tolist() == [1.0, 1.2, 1.2]
 
 
-def test_groups_start_together_in_the_area_and_share_speed_and_way() -> None:
+def test_groups_start_together_and_share_speed_and_way() -> None:
     config = CrowdConfig(pedestrians=40, groups=0.8, two_sided=True, minimum_spacing=0.5)
     crowd = spawn(config, AXIS, 5)
     x_min, y_min, x_max, y_max = config.spawn_area
@@ -131,7 +131,7 @@ def test_who_is_distracted_feels_no_vehicle_until_it_is_near(model) -> None:
         assert not np.array_equal(feeling.velocity[0], alone.velocity[0])  # and it would matter
 
 
-def test_where_nobody_is_distracted_everybody_feels_what_they_feel() -> None:
+def test_without_distracted_people_the_model_is_unchanged() -> None:
     model = CrowdModel(SIM, STEP)
     plain, wrapped = before_a_car(), before_a_car()
     model.advance(plain, CAR)
@@ -149,7 +149,7 @@ def test_distances_are_those_to_the_rectangle() -> None:
 # --- cohesion ---------------------------------------------------------------------------------
 
 
-def test_the_attraction_is_none_within_the_threshold_and_the_paper_s_far_beyond_it() -> None:
+def test_attraction_is_zero_within_the_threshold_then_the_papers() -> None:
     pair = np.array([[0.0, 0.0], [0.9, 0.0], [50.0, 50.0]])
     groups = np.array([4, 4, -1])
     assert not attraction(pair, groups).any()  # 0.45 m from the middle: the threshold is 0.5 m
@@ -199,7 +199,7 @@ def test_models_have_what_their_people_need_and_nothing_else() -> None:
     ]
 
 
-def test_the_roster_knows_who_is_distracted_and_who_belongs_together() -> None:
+def test_the_roster_knows_distracted_people_and_groups() -> None:
     crowd = Crowd.create([(0, 0), (1, 0), (2, 0)], [(0, 0)] * 3, 1.0, [[(9, 9)]] * 3)
     traits = {"a": Trait("distracted", "a"), "b": Trait("adult", "a")}
     roster = Roster(["a", "b", "c"], crowd, traits)

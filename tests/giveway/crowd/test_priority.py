@@ -59,7 +59,7 @@ def test_it_fades_over_the_first_metre_behind(far):
     ("light", "at_the_kerb", "on_it"),
     [("G", 1.0, 1.0), ("g", 1.0, 1.0), ("r", 0.0, 1.0), ("y", 0.0, 1.0), ("O", 1.0, 1.0)],
 )
-def test_a_light_decides_who_may_enter_and_whoever_is_on_it_may_finish(light, at_the_kerb, on_it):
+def test_a_light_decides_who_may_enter_and_people_on_it_finish(light, at_the_kerb, on_it):
     governed = zebra(system="tls", link=1)
     assert priority_of(walker(-4.0), governed, light=f"r{light}") == at_the_kerb
     assert priority_of(walker(-2.0), governed, light=f"r{light}") == on_it
@@ -72,7 +72,7 @@ def test_where_people_have_to_wait_for_a_gap_nobody_has_priority():
 
 
 @pytest.mark.parametrize(("light", "priority"), [("r", 0.0), ("G", 1.0)])
-def test_who_waits_for_green_a_step_from_the_kerb_is_not_crossing(light, priority):
+def test_waiting_for_green_a_step_from_the_kerb_is_not_crossing(light, priority):
     """A crowd at the kerb pushes its first onto the crossing; they wait all the same."""
     waiting = Crowd.create(
         [[22.0, -3.3]],
@@ -86,7 +86,7 @@ def test_who_waits_for_green_a_step_from_the_kerb_is_not_crossing(light, priorit
     assert priority_of(waiting, governed, light=light) == priority
 
 
-def test_wide_of_the_middle_people_head_for_the_nearest_point_of_the_line():
+def test_off_the_middle_people_head_for_the_nearest_line_point():
     """A way-point in the middle of the zebra's kerb, 2 m aside, is a line across the way."""
     aside = walker(-3.9, x=23.8, to=(22.0, -3.2), passages=[[(0.0, 1.0, 2.0)]])
     assert priority_of(aside) == 1.0

@@ -34,7 +34,7 @@ def test_people_who_walk_over_the_ego_s_way_or_near_it_are_fine(net_file: Path) 
     assert remark(net_file, (40.0, -30.0, 50.0, -20.0), (0.0, 5.0)) == ""
 
 
-def test_an_area_far_from_the_way_is_named_with_the_nearest_place(net_file: Path) -> None:
+def test_an_area_far_from_the_way_is_told_with_the_nearest_place(net_file: Path) -> None:
     text = remark(net_file, (200.0, 235.0, 210.0, 245.0), (0.0, 10.0))
     assert text.startswith("--spawn-area 200,235,210,245: its pedestrians come no nearer than 2")
     assert "the nearest place beside it: --spawn-area=" in text
@@ -47,7 +47,7 @@ def test_an_area_where_nobody_can_walk_is_named(net_file: Path) -> None:
 
 
 @pytest.mark.parametrize("near", [None, (60.0, -900.0), (-500.0, 0.0), (500.0, 0.0)])
-def test_the_place_beside_a_way_is_on_a_walkway_and_people_cross_the_way(
+def test_the_place_beside_a_way_is_walkable_and_people_cross(
     net_file: Path, near: tuple[float, float] | None
 ) -> None:
     network = WalkNetwork.read(net_file)
@@ -67,7 +67,7 @@ def test_the_way_is_the_part_of_the_path_that_is_driven() -> None:
     assert way.tolist() == [[4.0, 0.0], [10.0, 0.0], [10.0, 5.0]]
 
 
-def test_a_run_says_so_and_what_it_advises_brings_people_to_the_ego(small_city: Path) -> None:
+def test_a_run_says_so_and_its_advice_brings_people_to_the_ego(small_city: Path) -> None:
     settings = {
         "scenario": str(small_city),
         "ego": {"route": ("B1C1", "C1D1"), "depart_time": 15.0},

@@ -22,8 +22,8 @@ def test_who_comes_back_has_its_own_name_and_index_but_a_new_row() -> None:
     assert roster.names == ["bob", "eve"]
     roster.take_in(["ann"], at(9.0))
     assert roster.names == ["bob", "eve", "ann"]  # not the order in which they first came
-    assert roster.present.tolist() == [1, 2, 0]
-    assert [roster.ids[i] for i in roster.present] == roster.names
+    assert roster.person_ids.tolist() == [1, 2, 0]
+    assert [roster.ids[i] for i in roster.person_ids] == roster.names
     assert roster.crowd.position[:, 0].tolist() == [2.0, 3.0, 9.0]
 
 

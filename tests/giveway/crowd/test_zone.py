@@ -66,6 +66,6 @@ def test_who_enters_is_kept_so_that_nobody_goes_to_and_fro(
 
 
 @pytest.mark.parametrize("text", ["1e-9", "1e9", "1e308,0 1e308,1 0,0", "-1"])
-def test_a_zone_that_holds_nobody_or_reaches_beyond_the_world_is_refused(text: str) -> None:
+def test_a_zone_that_holds_nobody_or_is_too_large_is_refused(text: str) -> None:
     with pytest.raises(ConfigError, match=f"--zone '{text}': expected"):
         Zone(text, 5.0)

@@ -68,7 +68,7 @@ def test_it_names_vehicles_to_take_and_edges_to_drive(of_city: list[Finding]) ->
     assert "--ego-route=" in ego.remedy
 
 
-def test_it_ranks_egos_routes_and_zones_by_the_people_whom_they_meet(
+def test_it_ranks_egos_routes_and_zones_by_the_people_they_meet(
     of_city: list[Finding], small_city: Path
 ) -> None:
     assert "counted from 10 to 80 s" in about(of_city, "people met").text
@@ -254,7 +254,7 @@ def test_the_command_prints_tables_and_its_exit_code_tells(
     assert "1 error: a run will not work before that is put right." in shown
 
 
-def test_where_runs_draw_the_traffic_the_commands_ask_for_the_trial_s() -> None:
+def test_with_drawn_traffic_the_commands_ask_for_the_trials_one() -> None:
     findings = examine_scenario("junction")
     ranked = [f for f in findings if f.subject in {"best egos", "best routes", "best zones"}]
     assert len(ranked) > 5

@@ -48,7 +48,7 @@ def test_a_replay_in_sumo_is_the_run(run, tmp_path):
     assert np.hypot(both["x_x"] - both["x_y"], both["y_x"] - both["y_y"]).max() < 1e-3
 
 
-def test_no_edge_is_one_inside_a_junction_and_every_type_is_declared(run, tmp_path):
+def test_no_edge_is_inside_a_junction_and_types_are_declared(run, tmp_path):
     file = tmp_path / "run.fcd.xml"
     write_fcd(run, sampled(run), file)
     kinds = {kind.get("id") for kind in ET.parse(tmp_path / "run.types.add.xml").getroot()}

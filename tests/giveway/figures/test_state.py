@@ -178,7 +178,7 @@ def test_a_gap_that_the_ego_closes_is_one_stroke(run):
     assert not np.isnan(strokes(ego, toward, FASTEST_WALK)[1]).any()
 
 
-def test_distances_to_vehicles_and_stops_have_a_panel_of_their_own(run):
+def test_distances_to_vehicles_and_stops_have_their_own_panel(run):
     ego = standing(run, vehicle_gap=np.full(41, 12.0), stop_gap=np.full(41, -0.2))
     figure = state_figure(ego, **DISTANCES, stop_lines=[0.7])
     _, gap, distance, _ = figure.axes

@@ -79,7 +79,7 @@ def test_velocity_ticks_are_a_second_of_walking(run):
     np.testing.assert_allclose(ends, np.column_stack((crowd.vx[here], crowd.vy[here])))
 
 
-def test_six_snapshots_of_the_encounter_the_closest_approach_among_them(run):
+def test_six_snapshots_show_the_encounter_and_closest_approach(run):
     ego, crowd = run(30, 1, "mpc")
     _, snapshots = panels(top_view_figure(ego, crowd, CAR, R))
     times = [float(axes.get_title().split()[2].rstrip(",")) for axes in snapshots]
@@ -109,7 +109,7 @@ def test_late_trajectories_stand_out_on_white_and_lie_on_top(run):
     assert (np.diff(lines.get_array()) >= 0.0).all()
 
 
-def test_crossings_have_stripes_and_stop_lines_the_colour_of_the_light(run):
+def test_crossings_are_striped_and_stop_lines_coloured_by_light(run):
     ego, crowd = run(10, 2, "mpc")
     marks = RoadMarks(
         (Zebra(((30.0, -3.5), (30.0, 3.5)), 4.0), Zebra(((900.0, 0.0), (900.0, 7.0)), 4.0)),
@@ -129,7 +129,7 @@ def test_crossings_have_stripes_and_stop_lines_the_colour_of_the_light(run):
     assert [tuple(colour) for colour in shown] == [to_rgba(LIGHTS["r"]), to_rgba(LIGHTS["G"])]
 
 
-def test_the_overview_holds_every_trajectory_in_the_colour_of_its_time(run):
+def test_the_overview_has_every_trajectory_coloured_by_time(run):
     ego, crowd = run(30, 1, "mpc")
     overview, _ = panels(top_view_figure(ego, crowd, CAR, R))
     left, right = overview.get_xlim()

@@ -75,7 +75,7 @@ def test_repeated_points_are_dropped_and_a_single_point_refused() -> None:
         EgoPath.through([(0, 0), (np.nan, 1)])
 
 
-def test_closest_in_front_is_ahead_of_the_bumper_and_in_the_corridor() -> None:
+def test_closest_in_front_is_before_the_bumper_in_the_corridor() -> None:
     people = np.array([[9.0, 1.3], [12.0, -1.2], [15.0, 0.0], [4.9, 0.0], [5.0, 0.0]])
     closest, reachable = corridor([(0, 0), (100, 0)]).closest_now(people, 5.0)
     assert closest == 12.0
@@ -98,7 +98,7 @@ def test_the_gate_opens_for_whoever_can_walk_into_the_corridor() -> None:
     assert plaza.closest_now(np.array([[5.0 - 0.999 * reach, 0.0]]), 5.0)[1]
 
 
-def test_predicted_people_count_once_they_are_in_front_of_the_moved_bumper() -> None:
+def test_predicted_people_count_in_front_of_the_moved_bumper() -> None:
     plaza = corridor([(0, 0), (100, 0)])
     walking_in = np.array([[[8.0, 2.0]], [[8.0, 1.0]], [[5.3, 0.0]]])
     ahead = plaza.closest_predicted(walking_in, 5.0, 2.0)  # the bumper: 5.1, 5.2, 5.3 m
@@ -142,7 +142,7 @@ def test_who_is_in_front_on_a_path_that_comes_past_twice() -> None:
     assert round_the_block.closest_now(at_the_crossing, 251.0)[0] == math.inf
 
 
-def test_a_vertex_ahead_does_not_bring_somebody_behind_to_the_front() -> None:
+def test_a_vertex_ahead_brings_nobody_behind_to_the_front() -> None:
     straight_in_pieces = corridor([(0, 0), (10, 0), (20, 0)])
     assert straight_in_pieces.closest_now(np.array([[9.5, 0.0]]), 9.8)[0] == math.inf
     assert straight_in_pieces.closest_now(np.array([[9.9, 0.0]]), 9.8)[0] == pytest.approx(9.9)

@@ -62,7 +62,7 @@ def test_constructing_starts_nothing():
         envs[0].step(np.zeros(1, dtype=np.float32))
 
 
-def test_the_same_seed_and_actions_are_the_same_drive_and_the_runs_own(env):
+def test_equal_seed_and_actions_give_the_runs_own_drive(env):
     first, rewards, _, told = drive(env, 3, keep_pace)
     again, same, _, _ = drive(env, 3, keep_pace)
     assert rewards == same
@@ -102,7 +102,7 @@ def test_a_free_drive_reaches_the_goal_and_loses_nothing():
     env.close()
 
 
-def test_standing_is_truncated_at_the_time_limit_and_costs_its_seconds():
+def test_standing_ends_at_the_time_limit_and_costs_its_seconds():
     env = DriveEnv({"crowd": {"pedestrians": 0}, "time_limit": 5.0}, action="force")
     stop = np.array([-1.0], dtype=np.float32)
     _, rewards, terminated, told = drive(env, 1, lambda _: stop)
@@ -114,7 +114,7 @@ def test_standing_is_truncated_at_the_time_limit_and_costs_its_seconds():
     env.close()
 
 
-def test_an_action_is_a_share_of_the_largest_force_or_acceleration():
+def test_an_action_is_a_share_of_largest_force_or_acceleration():
     driven = {}
     for action in ("force", "acceleration"):
         env = DriveEnv({"crowd": {"pedestrians": 0}, "vehicle": {"mass": 2000.0}}, action=action)

@@ -141,7 +141,7 @@ def test_another_versions_journal_is_refused(tmp_path: Path) -> None:
         read_journal(tmp_path)
 
 
-def test_a_run_that_died_while_loading_left_nothing_but_its_pulse(tmp_path: Path) -> None:
+def test_a_run_that_died_while_loading_left_only_its_pulse(tmp_path: Path) -> None:
     Heartbeat(tmp_path).beat(Phase.LOADING)
     contents = read_journal(tmp_path)
     assert (contents.tables, contents.names, contents.meta) == ({}, {}, {})

@@ -24,7 +24,7 @@ def test_who_is_on_it_or_within_a_metre_is_enough():
     assert unreached((), walked((0.0, 0.0))) == ()
 
 
-def test_a_place_that_nobody_comes_to_is_told_with_where_they_walked():
+def test_an_unreached_place_is_told_with_where_people_walked():
     measures = read_measures([{"name": "a", "area": AREA}, {"name": "l", "line": LINE}])
     [remark] = unreached(measures, walked((25.0, -2.0), (25.0, -8.0)))
     assert remark == (

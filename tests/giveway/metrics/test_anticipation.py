@@ -25,9 +25,7 @@ def braking(ego, begin: int, end: int, lowest: float = 1.0):
     return ego(TIME, np.column_stack([x, np.zeros(len(x))]), speed=speed)
 
 
-def test_the_time_to_the_first_person_counts_from_where_it_had_its_speed_last(
-    ego, crowd, walking
-) -> None:
+def test_the_time_to_the_first_person_counts_from_the_last_speed(ego, crowd, walking) -> None:
     # It has 4 m/s last at t = 3.9 s, at x = 15.6 m. Somebody stands at 40 m, skin at 39.7 m.
     people = crowd(walking(TIME, (60.0, 0.0), (0.0, 0.0)), walking(TIME, (40.0, 0.0), (0.0, 0.0)))
     found = met(braking(ego, 40, 60), people)
@@ -65,7 +63,7 @@ def test_slowing_begins_where_it_had_its_free_speed_last(ego, speed, begin) -> N
     assert slowing_begins(ego(time, speed=np.array(speed, dtype=float)), 4.0) == begin
 
 
-def test_after_a_red_light_slowing_begins_no_earlier_than_its_end(ego) -> None:
+def test_after_a_red_light_slowing_begins_after_its_end(ego) -> None:
     speed = np.array([4, 4, 2, 1, 1, 0.5, 0.5])
     stop_gap = np.array([np.inf, 20, 10, 5, np.inf, np.inf, np.inf])
     time, position = 0.5 * np.arange(7), np.array([0, 2, 3.5, 4.25, 4.75, 5.1, 5.4])
@@ -85,9 +83,7 @@ def crossing(walking, x: float, at: float):
     return walking(TIME, (x, -1.3 * at), (0.0, 1.3))
 
 
-def test_it_stands_among_people_from_the_first_to_the_last_on_both_sides(
-    ego, crowd, walking
-) -> None:
+def test_it_stands_among_people_from_the_first_to_the_last(ego, crowd, walking) -> None:
     in_front, behind = crossing(walking, 1.0, 4.03), crossing(walking, -7.0, 9.51)
     found = met(standing(ego), crowd(in_front, behind))
     assert found.time_among_people == pytest.approx(9.51 - 4.03, abs=1e-9)

@@ -41,7 +41,7 @@ def test_the_front_corner_belongs_to_the_front(driving, crowd, walking):
     assert kinds(driving(TIME, 4.0), track) == ["frontal"]
 
 
-def test_who_walks_into_the_side_of_a_driving_car_is_not_moved_into(driving, crowd, walking):
+def test_walking_into_a_moving_cars_side_is_not_moved_into(driving, crowd, walking):
     """He crosses at 1.4 m/s and meets the side 2 m behind the bumper."""
     meets = (1.73 / 1.4) * 4.0 - 2.0
     track = crowd(walking(TIME, (meets, -3.0), (0.0, 1.4)))
@@ -63,7 +63,7 @@ def test_who_walks_into_a_standing_car_is_not_moved_into(ego, crowd, walking):
     assert kinds(ego(TIME, speed=0.0), track) == ["side", "side", "side"]
 
 
-def test_a_car_that_sets_off_into_somebody_at_its_front_moves_into_him(ego, crowd):
+def test_a_car_that_starts_into_somebody_ahead_moves_into_them(ego, crowd):
     """Touched while it stood; then it drives at 0.5 m/s and he does not."""
     speed = np.where(TIME < 2.0, 0.0, 0.5)
     front = np.column_stack((np.append(0.0, np.cumsum(DT * speed[:-1])), np.zeros(TIME.size)))
@@ -142,7 +142,7 @@ def test_every_overlap_is_one_or_the_other_in_any_frame(ego, crowd, walking, see
     assert tables[0]["contact"][0] == tables[1]["contact"][0]
 
 
-def test_a_conflict_is_a_time_to_collision_below_a_second_and_a_half(driving, crowd, walking):
+def test_a_conflict_is_a_time_to_collision_below_1_5_seconds(driving, crowd, walking):
     """At 4 m/s the one 20 m ahead is 1.5 s from contact when the bumper is 6.27 m away."""
     ego = driving(TIME, 4.0)  # it has driven 16 m at the end
     ahead = walking(TIME, (20.0, 0.0), (0.0, 0.0))
@@ -159,7 +159,7 @@ def test_who_walks_up_to_a_standing_car_is_no_conflict(ego, crowd, walking):
     assert conflicts(ego(TIME, speed=0.21), track, CAR, R, 0.2).pedestrians == 1
 
 
-def test_the_smallest_time_to_collision_of_the_moving_ego_tells_the_two_apart(ego, crowd, walking):
+def test_the_least_time_to_collision_tells_the_two_apart(ego, crowd, walking):
     """It stands for the first half, in which somebody walks up to it, and then drives off."""
     speed = np.where(np.arange(TIME.size) < TIME.size // 2, 0.2, 2.0)
     up_to = walking(TIME, (2.0, 0.0), (-1.4, 0.0))

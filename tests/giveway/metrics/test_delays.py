@@ -53,7 +53,7 @@ def test_who_arrives_in_both_has_the_difference_of_the_instants():
     assert found.detour.tolist() == [0.0]
 
 
-def test_others_have_what_was_left_when_both_were_last_on_record_over_the_desired_speed():
+def test_other_delays_are_the_rest_of_way_over_desired_speed():
     run = walked(("a", [0, 1, 2, 3, 4], None))
     twin = walked(("a", [0, 2, 4, 7], 4))
     found = delays(run, twin)
@@ -67,7 +67,7 @@ def test_a_longer_way_is_a_detour():
     assert delays(longer, twin).detour.tolist() == [1.5]
 
 
-def test_people_are_found_by_name_and_those_far_away_do_not_count():
+def test_people_are_found_by_name_and_far_ones_do_not_count():
     run = walked(("a", [0, 9], 2), ("b", [0, 3, 6, 9], 4))
     twin = walked(("b", [0, 4, 9], 3), ("a", [0, 9], 2))
     assert delays(run, twin).delay.tolist() == [0.0, STEP]
@@ -82,7 +82,7 @@ def test_who_is_missing_in_the_twin_has_no_delay():
     assert np.isnan(found.detour).all()
 
 
-def test_of_several_walks_the_last_one_counts_that_both_have_finished():
+def test_of_several_walks_the_last_that_both_finished_counts():
     run, twin = walked(("a", [0, 3, 6], 3)), walked(("a", [0, 5, 9], 3))
     again = {"arrival_step": np.array([3, 9]), "arrival_pedestrian": np.array([0, 0])}
     assert delays(replace(run, **again), replace(twin, arrival_step=np.array([2]))).delay == [STEP]

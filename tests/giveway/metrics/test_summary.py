@@ -244,7 +244,7 @@ def test_every_column_says_what_it_means():
     assert (units["post_encroachment_time"], units["rms_jerk"], units["id"]) == ("s", "m/s^3", None)
 
 
-def test_who_breaks_the_assumption_of_the_safety_layer_is_counted_and_their_contacts_apart(ego):
+def test_assumption_violations_and_their_contacts_are_counted(ego):
     table = pd.DataFrame(
         {name: np.full(4, np.nan) for name in NOBODY.columns}
         | {"contact": ["frontal", "frontal", "", "side"]}

@@ -57,7 +57,7 @@ def test_nor_is_it_in_the_way_of_an_installed_one(installed, tmp_path, monkeypat
     assert load(find("own_driver:Driver")).__name__ == "Driver"
 
 
-def test_a_module_on_the_path_that_nobody_has_installed_is_refused(tmp_path, monkeypatch):
+def test_a_module_on_the_path_that_is_not_installed_is_refused(tmp_path, monkeypatch):
     (tmp_path / "loose_driver.py").write_text("raise SystemExit('imported')\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
     with pytest.raises(ControlError, match=r"loose_driver\.py is not installed"):

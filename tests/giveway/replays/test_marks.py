@@ -31,7 +31,7 @@ def junction(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_lights_have_the_colour_on_record_and_crossings_their_stripes(
+def test_lights_have_their_recorded_colour_and_crossings_stripes(
     watch: Callable[..., Any], junction: Path
 ) -> None:
     watched = watch(junction / "replay.html")

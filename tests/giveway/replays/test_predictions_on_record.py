@@ -27,7 +27,7 @@ SETTINGS: dict[str, Any] = {
 }
 
 
-def test_without_the_option_there_is_no_table_and_every_other_one_is_the_same(
+def test_without_the_option_its_table_is_absent_others_equal(
     recorded: Path, tmp_path: Path
 ) -> None:
     run(SETTINGS, results=tmp_path / "plain", pictures=False)

@@ -32,7 +32,7 @@ def tail(row: Any) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("time", [1.0, DRIVING, STANDING])
-def test_the_ego_is_where_its_row_says_in_the_colour_of_who_drives(
+def test_the_ego_is_where_its_row_says_in_its_drivers_colour(
     watched: Any, ego: pd.DataFrame, time: float
 ) -> None:
     watched.seek(time)
@@ -180,7 +180,7 @@ def test_the_address_can_follow_the_ego(
     watched.until("location.hash === '#t=4&follow'")
 
 
-def test_a_window_of_another_size_shows_the_same_unless_hands_have_moved_it(
+def test_a_resized_window_shows_the_same_unless_moved_by_hand(
     watch: Callable[..., Any], page: Path
 ) -> None:
     watched = watch(page)
@@ -200,7 +200,7 @@ def test_a_window_of_another_size_shows_the_same_unless_hands_have_moved_it(
     assert watched.tab.evaluate("replay.scale") == scale
 
 
-def test_wheel_keys_and_drag_change_the_view_and_follow_keeps_the_ego_in_it(
+def test_wheel_keys_and_drag_change_the_view_follow_keeps_ego(
     watched: Any, ego: pd.DataFrame
 ) -> None:
     scale = watched.tab.evaluate("replay.scale")

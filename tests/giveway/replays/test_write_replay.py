@@ -184,7 +184,7 @@ def numbers(text: str, dtype: str) -> list[float]:
     return np.frombuffer(base64.b64decode(text), dtype).tolist()
 
 
-def test_who_left_and_came_back_is_two_tracks_and_who_is_far_stays_to_the_end() -> None:
+def test_a_return_makes_two_tracks_and_far_people_stay_on() -> None:
     near = walk([0.0, 0.05, 0.1], "near")
     back = walk([0.0, 1.0, 8.0, 9.0], "back")
     rows = pd.concat([near, back]).sort_values("time", kind="stable", ignore_index=True)
@@ -196,7 +196,7 @@ def test_who_left_and_came_back_is_two_tracks_and_who_is_far_stays_to_the_end() 
     assert until == pytest.approx([0.15, 1.05, 9.55])
 
 
-def test_thinning_keeps_the_ends_of_every_track_and_far_people_whole() -> None:
+def test_thinning_keeps_the_ends_of_tracks_and_far_people_whole() -> None:
     times = [round(0.05 * k, 6) for k in range(201)]
     rows = pd.concat([walk(times, "near"), walk([0.0, 1.0, 2.0, 3.0], "far")], ignore_index=True)
     assert thinning(rows, 0.05, most=1000) == 0.0
@@ -290,7 +290,7 @@ def test_the_command_makes_the_run_again_for_its_predictions(
     assert made["egos"] == content(write_replay(folder, folder / "own.html"))["egos"]
 
 
-def test_predictions_of_a_run_that_went_differently_are_not_shown(
+def test_predictions_of_a_run_that_differed_are_not_shown(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "predictions.csv").unlink()

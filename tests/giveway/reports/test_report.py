@@ -248,7 +248,7 @@ def test_a_study_without_runs_has_a_report(study, tmp_path, parsed):
     assert "There is no pair of finished runs to compare." in page.text
 
 
-def test_a_study_that_never_reaches_a_goal_is_compared_by_its_waits(changed, parsed):
+def test_a_study_without_goals_reached_is_compared_by_its_waits(changed, parsed):
     def stuck(record):
         rows = ({**row, "completed": False, "completion_time": math.nan} for row in record.rows)
         return replace(record, rows=tuple(rows))

@@ -34,7 +34,7 @@ def test_the_events_of_all_egos_stand_in_order_of_time():
     assert list(ledger_table([]).columns) == list(table.columns)
 
 
-def test_other_egos_are_vehicles_like_any_other_and_oneself_is_none():
+def test_other_egos_are_vehicles_like_any_but_oneself_is_none():
     one, two = ego((0.2, 0.0)), ego((0.1, 0.0), front=50.0)
     long = VehicleShape(12.0, 2.5)
     egos = [
@@ -59,7 +59,7 @@ def test_the_places_of_each_way_are_numbered():
     assert list(table["time"]) == [0.0, 0.0, 0.0, 0.0, 0.7]
 
 
-def test_a_scene_keeps_the_ways_and_says_nothing_of_them_where_there_are_none(tmp_path):
+def test_a_scene_keeps_the_ways_if_there_are_any(tmp_path):
     place = CrossingOnWay(":c0", ((0.0, 1.0), (0.0, 8.0)), 4.0, True, "", -1)
     way = EgoWay("ego", ((0.0, 0.0), (9.0, 0.0)), 2.0, (place,), (StopLine(4.0, "tls", 0),))
     scene = Scene((((0.0, 0.0), (1.0, 1.0)),), {"ego": (5.0, 2.0)}, (way,))

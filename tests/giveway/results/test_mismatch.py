@@ -54,7 +54,7 @@ def test_what_the_controller_allows_for_is_no_mismatch():
     assert remark(drive(1500.0, 100.0), H, 1.0) == ""
 
 
-def test_an_identified_vehicle_is_not_sent_to_be_identified_again():
+def test_an_identified_vehicle_is_not_identified_again():
     text = remark(drive(2500.0, 100.0), H, 0.05)
     assert "0.05 m as identified" in text
     assert "giveway fmu check fmi2" in text

@@ -33,7 +33,7 @@ def config(tmp_path: Path) -> Callable[[str], Path]:
     return write
 
 
-def test_sections_flat_options_short_names_and_text_mean_the_same(
+def test_sections_flat_options_short_names_and_text_are_equal(
     config: Callable[[str], Path],
 ) -> None:
     by_section = """<configuration>

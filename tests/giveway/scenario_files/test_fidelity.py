@@ -60,7 +60,7 @@ def test_a_city_of_cars_and_persons(small_city: Path, same_fcd: Callable[..., by
     assert fcd.count(b"<person ") > 1000
 
 
-def test_the_seed_asked_for_is_the_seed_that_plain_sumo_would_take(
+def test_the_seed_is_the_one_that_plain_sumo_would_take(
     small_city: Path, same_fcd: Callable[..., bytes]
 ) -> None:
     assert same_fcd(small_city, 40, "--seed", "7", seed=7) != same_fcd(small_city, 40)

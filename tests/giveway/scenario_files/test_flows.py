@@ -27,7 +27,7 @@ def due(tmp_path: Path, text: str, until: float, step: float = 1.0) -> list[Flow
         ('begin="triggered"', set(range(13))),
     ],
 )
-def test_a_flow_is_due_in_the_steps_in_which_sumo_makes_a_vehicle(
+def test_a_flow_is_due_in_the_steps_of_sumos_departures(
     tmp_path: Path, timing: str, departures: set[int]
 ) -> None:
     flow = f'<flow id="f" from="ab" to="cd" {timing}/>'

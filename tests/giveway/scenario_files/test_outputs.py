@@ -94,7 +94,7 @@ def tree(folder: Path) -> dict[str, bytes]:
     }
 
 
-def test_every_output_of_a_scenario_in_a_read_only_folder_goes_elsewhere(
+def test_outputs_of_a_read_only_scenario_go_elsewhere(
     everything: Path, tmp_path: Path, run_started: Callable[..., dict[str, Any]]
 ) -> None:
     before = tree(everything.parent)
@@ -173,7 +173,7 @@ def test_a_prefix_with_a_folder_does_not_lead_out(
     assert any("'../elsewhere/a_'" in remark for remark in seen["remarks"])
 
 
-def test_what_the_user_wants_is_added_and_what_the_scenario_has_is_kept(
+def test_the_users_outputs_are_added_and_the_scenarios_kept(
     small_scenario: Callable[..., Path], tmp_path: Path, run_started: Callable[..., dict[str, Any]]
 ) -> None:
     config = small_scenario('<fcd-output value="own.xml"/>')

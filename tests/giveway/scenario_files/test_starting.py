@@ -166,7 +166,7 @@ def held(small_city: Path, tmp_path: Path) -> Iterator[None]:
     libsumo.close()
 
 
-def test_a_taken_over_vehicle_keeps_class_route_and_place_and_is_never_stuck(held: None) -> None:
+def test_a_taken_vehicle_keeps_class_route_and_place_unstuck(held: None) -> None:
     vehicle = libsumo.vehicle
     route, place = vehicle.getRoute("bus"), vehicle.getPosition("bus")
     vehicle.setType("bus", ego_type(vehicle.getVehicleClass("bus")))
@@ -208,7 +208,7 @@ def test_there_is_a_type_for_every_class_on_the_road(held: None) -> None:
         ego_type("rail")
 
 
-def test_an_option_of_the_window_alone_does_not_stop_a_headless_run(
+def test_an_option_of_the_window_does_not_stop_a_headless_run(
     small_scenario: Callable[..., Path], tmp_path: Path
 ) -> None:
     scenario = read_scenario(small_scenario('<gui_only><osg-view value="true"/></gui_only>'))

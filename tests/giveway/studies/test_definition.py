@@ -24,7 +24,7 @@ def cells(text):
     return [cell.label for cell in design(parsed(text), "mine.toml").cells]
 
 
-def test_a_study_of_three_lines_compares_two_controllers_a_hundred_times():
+def test_a_study_in_three_lines_compares_two_controllers():
     definition = parsed(MINIMAL)
     assert definition.replications == 100
     assert definition.comparison.factor == "controller"
@@ -252,7 +252,7 @@ def test_files_that_are_no_study(tmp_path):
         read_definition(broken)
 
 
-def test_without_a_controller_among_them_the_last_factor_is_compared():
+def test_without_a_controller_factor_the_last_one_is_compared():
     from giveway.studies.plan import plan
 
     text = 'name = "mine"\n[factors]\n"crowd.pedestrians" = [1, 2]\n"mpc.horizon" = [15, 30]\n'
@@ -260,7 +260,7 @@ def test_without_a_controller_among_them_the_last_factor_is_compared():
     assert (comparison.factor, comparison.baseline) == ("mpc.horizon", "30")
 
 
-def test_the_study_of_controllers_compares_all_of_them_in_every_scene():
+def test_the_study_of_controllers_compares_all_in_every_scene():
     from giveway.studies.plan import plan
 
     planned = plan(read_definition(find_study("controllers")), "controllers")
@@ -294,6 +294,6 @@ def test_a_study_of_crowds_has_somebody_in_every_cell(factor):
         planned(f'name = "m"\n[factors]\n{factor}\n')
 
 
-def test_nobody_need_be_added_to_a_scenarios_own_people_or_where_no_crowd_is_compared(tmp_path):
+def test_a_scenarios_own_people_or_no_crowd_suffice(tmp_path):
     planned(MINIMAL + "[run]\ncrowd.pedestrians = 0\n")
     planned('name = "m"\n[run]\nscenario = "junction"\n[factors]\n"crowd.pedestrians" = [0, 5]\n')

@@ -35,7 +35,7 @@ def test_other_settings_make_other_keys(small_study, small_study_text):
     )
 
 
-def test_where_the_scenario_lies_does_not_matter_but_what_it_holds_does(small_study_text, tmp_path):
+def test_a_scenarios_place_does_not_matter_but_its_contents_do(small_study_text, tmp_path):
     import shutil
 
     from giveway.studies.definition import parse_definition

@@ -38,7 +38,7 @@ def test_an_interrupted_study_goes_on_where_it_was(
     assert tables_of(whole.path) == tables_of(small_study.path)
 
 
-def test_ctrl_c_twice_while_the_tables_are_made_is_still_one_line(
+def test_ctrl_c_twice_while_tables_are_made_is_one_line(
     small_study, study_of, small_study_text, tables_of, tmp_path, monkeypatch
 ):
     import shutil
@@ -206,7 +206,7 @@ def test_a_comparison_of_half_a_study_is_not_taken_for_the_whole(
 
 
 @pytest.mark.parametrize("name", ["runs.csv", "study.toml", "manifest.json", "datapackage.json"])
-def test_a_kill_while_a_file_is_written_does_not_keep_it_from_going_on(
+def test_a_study_killed_while_writing_a_file_can_be_resumed(
     small_study, study_of, small_study_text, tables_of, tmp_path, monkeypatch, name
 ):
     import shutil

@@ -70,7 +70,7 @@ def test_the_number_of_workers_does_not_matter(
     assert tables_of(two.path) == tables_of(small_study.path)
 
 
-def test_failed_runs_are_listed_with_the_command_that_repeats_them(study_of, tmp_path):
+def test_failed_runs_are_listed_with_the_command_to_repeat_them(study_of, tmp_path):
     """An ego that the scenario never lets depart."""
     text = """
         name = "lost"

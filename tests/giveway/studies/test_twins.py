@@ -41,7 +41,7 @@ def bytes_of(path):
     return {name: (path / f"{name}.csv").read_bytes() for name in TABLES}
 
 
-def test_the_levels_are_the_means_of_the_runs_and_these_of_their_people(study):
+def test_levels_are_means_of_runs_and_runs_of_their_people(study):
     runs, levels = study.runs, study.levels
     for metric in ("people_delay", "mean_people_delay", "share_gave_way"):
         for cell in study.design.cells:
@@ -64,7 +64,7 @@ def test_what_the_twins_took_is_kept(study):
     assert (study.computing["twin"] > 0.0).all()
 
 
-def test_an_interrupted_study_with_twins_goes_on_to_the_same_bytes(study, study_of, tmp_path):
+def test_an_interrupted_study_with_twins_resumes_to_equal_bytes(study, study_of, tmp_path):
     def interrupt(progress):
         if progress.made == 5:
             raise KeyboardInterrupt
@@ -81,7 +81,7 @@ def test_two_processes_give_the_same_bytes(study, study_of, tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
-def test_a_study_whose_workers_are_killed_amid_runs_and_twins_has_the_same_bytes(study, tmp_path):
+def test_workers_killed_amid_runs_and_twins_change_no_bytes(study, tmp_path):
     file, out = tmp_path / "twins.toml", tmp_path / "out"
     file.write_text(TEXT, encoding="utf-8")
     command = [sys.executable, "-m", "giveway", "study", str(file), "--out", str(out)]

@@ -42,7 +42,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache"
 
 
-def test_a_network_that_kills_sumo_is_one_line_also_in_the_callers_own_process(deadly) -> None:
+def test_a_network_that_kills_sumo_is_one_line_in_process_too(deadly) -> None:
     program = (
         "import giveway, sys\n"
         "try:\n    giveway.run({'scenario': sys.argv[1], 'time_limit': 1.0})\n"

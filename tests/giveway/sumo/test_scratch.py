@@ -22,7 +22,7 @@ def test_each_session_has_a_folder_of_its_own_which_goes_with_it():
     assert not Path(first.name).exists()
 
 
-def test_a_worker_keeps_one_folder_which_each_session_leaves_empty():
+def test_a_worker_keeps_one_folder_that_sessions_leave_empty():
     scratch.keep_scratch()
     first = scratch.scratch()
     folder = Path(first.name)

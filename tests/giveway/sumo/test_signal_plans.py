@@ -82,7 +82,7 @@ def test_greens(phases, phase, expected):
     assert SignalPlans(lights(phases, phase)).greens("tls", 7) == ()  # no such movement
 
 
-def test_the_junction_s_lights_are_green_when_they_were_said_to_be():
+def test_the_junctions_lights_are_green_when_predicted():
     libsumo.start(["sumo", "-c", str(find("junction").config_file), "--no-step-log"])
     try:
         plans = SignalPlans(libsumo)

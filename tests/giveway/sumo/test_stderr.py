@@ -7,7 +7,7 @@ MIXED = "Warning: Collision of person 'flow.1' and person 'walker', lane='gate_0
 OTHER = "Warning: Vehicle 'bus' performs emergency braking on lane 'a_0'.\n"
 
 
-def test_collisions_in_sumos_books_among_people_whom_we_move_are_no_news():
+def test_sumos_collisions_among_people_we_move_are_not_reported():
     assert of_others(OTHER + OURS + MIXED, {"flow.1", "flow.2"}) == OTHER + MIXED
     assert of_others(OURS, set()) == OURS
     assert of_others("", {"flow.1"}) == ""

@@ -87,7 +87,7 @@ def test_near_is_who_comes_near_within_the_horizon(tmp_path, write_clip, straigh
     assert near["mean"].tolist() == pytest.approx([0, 0, 0], abs=1e-9)
 
 
-def test_a_cart_that_drives_at_a_walker_touches_constant_velocity_but_not_the_model(
+def test_a_cart_hits_constant_velocity_walkers_not_the_model(
     tmp_path, write_clip, straight_walks
 ) -> None:
     """The data step aside and back; constant velocity, and the model without f_v, do not."""
@@ -106,7 +106,7 @@ def test_a_cart_that_drives_at_a_walker_touches_constant_velocity_but_not_the_mo
     assert contacts.loc["CV", "closest"] == pytest.approx(-SIM.body_radius)
 
 
-def test_clips_without_a_vehicle_have_no_contacts_and_nobody_near(
+def test_clips_without_a_vehicle_have_no_contacts_and_none_near(
     tmp_path, write_clip, straight_walks
 ) -> None:
     x, v = straight_walks(180, [[0, 0]], [[1, 0]])

@@ -50,7 +50,7 @@ def test_people_walk_on_the_lane_that_is_theirs_alone(written: Callable[..., Pat
     np.testing.assert_array_equal(lane.shape, [[0.0, 6.0], [50.0, 6.0]])
 
 
-def test_else_on_the_first_they_may_use_which_is_as_wide_as_sumo_says(
+def test_else_on_the_first_usable_lane_as_wide_as_sumo_says(
     written: Callable[..., Path],
 ) -> None:
     lane = survey(written(EDGES)).edges["lane"].lane

@@ -114,7 +114,7 @@ def test_an_edge_named_twice_is_walked_once(grid: WalkNetwork) -> None:
     np.testing.assert_array_equal(twice.waypoints, walk(grid, AVENUE).waypoints)
 
 
-def test_crossings_and_walkingareas_among_the_edges_change_nothing(grid: WalkNetwork) -> None:
+def test_crossings_and_walkingareas_among_edges_change_nothing(grid: WalkNetwork) -> None:
     named = walk(grid, ["A1B1", ":B1_w3", ":B1_c2", ":B1_w2", "B1C1"])
     np.testing.assert_array_equal(named.waypoints, walk(grid, AVENUE).waypoints)
 
@@ -203,7 +203,7 @@ def test_who_is_on_a_crossing_goes_on_without_waiting(grid: WalkNetwork) -> None
     assert (np.diff(np.concatenate([[position[0]], route.waypoints[:, 0]])) > 0).all()
 
 
-def test_on_the_way_back_the_same_crossing_is_left_at_its_other_end(grid: WalkNetwork) -> None:
+def test_on_the_way_back_a_crossing_is_left_at_its_other_end(grid: WalkNetwork) -> None:
     crossing = grid.signals[max(walk(grid, AVENUE).signals)].crossing
     position = (118.0, 114.8)
     route = walk(grid, ["B1C1", "A1B1"], position=position, lane=f"{crossing}_0", side=None)
@@ -259,7 +259,7 @@ def test_unknown_edges_are_gaps(grid: WalkNetwork) -> None:
     assert grid.route([], position=(3.0, 4.0), lane="", arrival_position=0.0).gaps == 1
 
 
-def test_without_walkingareas_one_goes_straight_over_the_junction(bare: WalkNetwork) -> None:
+def test_without_walkingareas_people_go_straight_over_junctions(bare: WalkNetwork) -> None:
     route = walk(bare, AVENUE)
     assert route.gaps == 0
     assert (route.signals == -1).all()

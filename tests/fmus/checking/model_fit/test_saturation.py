@@ -26,7 +26,7 @@ def identified(opener, force_limit):
     )
 
 
-def test_rolling_resistance_is_not_taken_for_a_drive_that_falls_short(car):
+def test_rolling_resistance_is_not_taken_for_a_weak_drive(car):
     found = identified(car(**TRUCK), 8_000.0)  # its weakest tests do not even move it
     assert (found.drive_limit, found.brake_limit) == (None, None)
     assert found.model.mass == pytest.approx(18_000.0, rel=0.1)
@@ -55,7 +55,7 @@ def test_all_four_resistances_come_back(car):
     assert found.force(speed, zero) == pytest.approx(40.0 * 10 + 200.0 + 80.0, rel=0.02)
 
 
-def test_forces_too_small_for_a_truck_are_said_with_the_flag_that_helps(car):
+def test_forces_too_small_for_a_truck_are_told_with_the_flag(car):
     force = {"inputs": {"force": {"variable": "F"}}, "outputs": {"speed": {"variable": "v"}}}
     profile = make_profile(force, "test")
     report = check(car(**TRUCK), step_size=0.05, profile=profile)
@@ -78,7 +78,7 @@ def test_a_set_point_without_a_lead_is_told_its_lead(zoo):
     assert finding(report, "force limits").verdict == "pass"
 
 
-def test_a_gearbox_that_passes_less_on_in_higher_gears_is_no_limit(zoo):
+def test_a_gearbox_that_is_weaker_in_higher_gears_is_no_limit(zoo):
     values = {"gear_speed": 3.0, "gear_ratio": 0.6}
     path = zoo.car(fmi="2.0", kind="model-exchange", values=values)
     profile = make_profile(zoo.profile(path), "test")

@@ -56,7 +56,7 @@ def test_what_has_no_pair_is_one_line(small_study, printed):
     assert "In no pair on both sides: completion time (general)" in text
 
 
-def test_few_pairs_have_their_mean_and_the_seeds_that_intervals_need(
+def test_few_pairs_have_a_mean_and_the_seeds_intervals_need(
     study_of, small_study_text, printed, tmp_path
 ):
     study = study_of(small_study_text.replace("minimum_pairs = 4", "minimum_pairs = 12"), tmp_path)
@@ -153,7 +153,7 @@ def test_what_control_steps_took_is_told_by_cell(of_levels):
         assert cell["control_max"] == own["control_max"].max()
 
 
-def test_levels_and_computing_are_files_that_the_data_package_describes(of_levels):
+def test_levels_and_computing_are_described_by_the_data_package(of_levels):
     package = json.loads((of_levels.path / "datapackage.json").read_text("utf-8"))
     by_name = {entry["name"]: entry for entry in package["resources"]}
     for name in ("levels", "computing"):

@@ -82,7 +82,7 @@ def test_a_run_refuses_a_preset_that_is_not_there(settings, said) -> None:
         load([as_layer(settings)])
 
 
-def test_a_file_beside_the_configuration_is_found_from_any_folder(preset, tmp_path) -> None:
+def test_a_file_beside_the_configuration_is_found_from_anywhere(preset, tmp_path) -> None:
     preset(SIM)
     config = tmp_path / "run.toml"
     config.write_text('[crowd]\npreset = "mine.toml"\n[perception]\npreset = "mine.toml"\n')

@@ -48,7 +48,7 @@ def test_every_reader_says_it_in_one_line(tmp_path: Path, refused, read, error, 
         read(file)
 
 
-def test_what_is_deep_is_refused_before_anything_walks_through_it() -> None:
+def test_deep_nesting_is_refused_before_anything_walks_it() -> None:
     def text(levels: int) -> str:
         return f"a = {'[{b = ' * levels}1{'}]' * levels}"
 

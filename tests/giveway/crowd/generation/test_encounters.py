@@ -29,7 +29,7 @@ def delays(people: Spawned) -> np.ndarray:
     return walked / people.desired_speed - (place[:, 0] - FRONT) / 4.0
 
 
-def test_the_same_seed_draws_the_same_people_and_another_seed_others() -> None:
+def test_equal_seeds_draw_equal_people_and_others_other_people() -> None:
     first, again, other = drawn(24, 5), drawn(24, 5), drawn(24, 6)
     assert first.position.tobytes() == again.position.tobytes()
     assert first.ids == tuple(f"ped{i}" for i in range(24))
@@ -37,7 +37,7 @@ def test_the_same_seed_draws_the_same_people_and_another_seed_others() -> None:
 
 
 @pytest.mark.parametrize("people", [1, 12, 24, 48])
-def test_as_many_as_asked_for_keep_apart_and_come_from_both_sides(people: int) -> None:
+def test_the_number_asked_for_keeps_apart_and_has_both_sides(people: int) -> None:
     for seed in range(1, 11):
         crowd = drawn(people, seed, minimum_spacing=0.6)
         assert len(crowd.position) == len(crowd.desired_speed) == people
@@ -48,7 +48,7 @@ def test_as_many_as_asked_for_keep_apart_and_come_from_both_sides(people: int) -
             assert set(np.sign(crowd.position[:, 1])) == {-1.0, 1.0}
 
 
-def test_everybody_crosses_the_way_and_somebody_when_the_free_ego_comes() -> None:
+def test_everybody_crosses_and_somebody_meets_the_free_ego() -> None:
     for seed in range(1, 31):
         crowd = drawn(12, seed)
         assert (np.sign(crowd.position[:, 1]) == -np.sign(crowd.destination[:, 1])).all()
@@ -89,7 +89,7 @@ def test_too_many_for_the_way_are_refused() -> None:
         drawn(400, 1, minimum_spacing=5.0)
 
 
-def test_mixed_people_meet_in_groups_that_walk_as_their_slowest_member_likes() -> None:
+def test_mixed_groups_walk_at_the_speed_of_their_slowest_member() -> None:
     old, mixed = (
         [
             spawn(

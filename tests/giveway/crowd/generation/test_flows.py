@@ -32,7 +32,7 @@ def entries(stream: Flows, until: float) -> list[tuple[int, str]]:
     return [(step, name) for step in steps for names in stream.enter(step) for name in names]
 
 
-def test_they_come_at_the_rate_with_the_headways_of_a_poisson_process() -> None:
+def test_they_come_at_the_rate_with_poisson_headways() -> None:
     stream, _ = flows(WIDE, minimum_spacing=0.0)
     came = np.array([step for step, _ in entries(stream, 2000.0)]) * STEP
     assert len(came) == pytest.approx(2000, abs=3 * np.sqrt(2000))  # three standard deviations
@@ -56,7 +56,7 @@ def state(roster: Roster) -> list[bytes]:
     return [array.tobytes() for array in (*crowd.state, *crowd.fixed_arrays)]
 
 
-def test_who_comes_depends_on_the_seed_alone_and_not_on_other_flows_or_people() -> None:
+def test_arrivals_depend_on_the_seed_alone_not_on_other_flows() -> None:
     alone, roster = flows({**WIDE, "name": "a"})
     both, others = flows({**WIDE, "name": "a"}, {**NARROW, "name": "b"})
     again, same = flows({**WIDE, "name": "a"})
@@ -87,7 +87,7 @@ def test_nobody_comes_twice_at_one_step() -> None:
     assert len(roster) == len(came)
 
 
-def test_nobody_enters_on_somebody_else_and_it_is_said_that_it_backs_up() -> None:
+def test_nobody_enters_on_somebody_and_the_backing_up_is_told() -> None:
     stream, roster = flows({**NARROW, "name": "tight"}, minimum_spacing=0.8)
     came = entries(stream, 60.0)  # nobody walks on
     offsets = roster.crowd.position[:, None] - roster.crowd.position[None]
@@ -112,7 +112,7 @@ def test_who_waited_for_room_comes_in_when_there_is_some() -> None:
     assert len(roster) == 0
 
 
-def test_before_the_start_they_are_on_their_way_where_they_would_have_walked_to() -> None:
+def test_early_parties_start_where_they_would_have_walked_to() -> None:
     straight = {"from": [0.0, 0.0, 3.0, 2.0], "to": [0.0, 40.0, 3.0, 42.0], "rate": 3600.0}
     stream, roster = flows({**straight, "begin": -3600.0}, minimum_spacing=0.0)
     stream.enter(0)
@@ -145,7 +145,7 @@ def test_they_walk_through_what_lies_on_the_way() -> None:
     assert crossed == corner == set(roster.ids)
 
 
-def test_who_has_passed_the_first_part_of_the_way_before_the_start_goes_on_from_there() -> None:
+def test_early_parties_that_passed_a_gate_go_on_from_there() -> None:
     through = {**WIDE, "via": [[[-500.0, 20.0], [500.0, 20.0]]], "begin": -60.0}
     stream, roster = flows(through, minimum_spacing=0.0)
     stream.enter(0)
@@ -171,7 +171,7 @@ def test_lines_face_away_from_where_the_flow_comes_from() -> None:
 
 
 @pytest.mark.parametrize("back", [False, True])
-def test_they_wait_at_the_kerb_for_their_light_and_walk_when_it_is_green(back: bool) -> None:
+def test_they_wait_at_the_kerb_until_their_light_is_green(back: bool) -> None:
     """A crossing from y = 10 to 17 m, walked over either way."""
     crossing = LitCrossing(np.array([1.5, 10.0]), np.array([0.0, 1.0]), 7.0, 2.0, 0)
     way = {**NARROW, "from": NARROW["to"], "to": NARROW["from"]} if back else NARROW
@@ -230,7 +230,7 @@ def test_the_ledger_counts_them_as_added() -> None:
     assert "ann" not in roster.added
 
 
-def test_a_flow_that_has_been_going_on_for_long_is_looked_at_from_the_slowest_on() -> None:
+def test_an_old_flow_is_drawn_from_the_slowest_possible_walk_on() -> None:
     """Nobody who came 90 s ago is still on a way of 45 m at 0.5 m/s or more."""
     way = {"from": [0.0, 0.0, 3.0, 2.0], "to": [0.0, 40.0, 3.0, 42.0], "rate": 50_000.0}
     streams = [flows({**way, "begin": begin}, minimum_spacing=0.0) for begin in (-90.0, -3600.0)]

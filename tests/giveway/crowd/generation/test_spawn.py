@@ -11,7 +11,7 @@ from giveway.geometry.path import EgoPath
 AXIS = EgoPath.through([(-20, 0), (100, 0)])
 
 
-def test_the_same_seed_draws_the_same_crowd_and_another_seed_another() -> None:
+def test_equal_seeds_draw_equal_crowds_and_others_other_crowds() -> None:
     first, again, other = (spawn(CrowdConfig(pedestrians=30), AXIS, seed) for seed in (1, 1, 2))
     assert np.array_equal(first.position, again.position)
     assert np.array_equal(first.desired_speed, again.desired_speed)
@@ -68,7 +68,7 @@ def test_two_sided_keeps_the_spacing_across_the_axis() -> None:
         assert distance.min() >= 0.5
 
 
-def test_two_sided_mirrors_about_the_path_beside_the_area_not_about_its_start() -> None:
+def test_two_sided_mirrors_about_the_path_beside_the_area() -> None:
     bend = EgoPath.through([(0, 0), (50, 0), (50, 100)])
     config = CrowdConfig(spawn_area=(55, 60, 60, 70), walk=(-20, 0), two_sided=True)
     crowd = spawn(config, bend, 1)

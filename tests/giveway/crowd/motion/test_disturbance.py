@@ -50,13 +50,13 @@ def test_a_push_within_the_limits_is_added_as_it_is():
     assert crowd.position - place == pytest.approx(0.5 * DT * np.array([[0.1, -0.05]]))
 
 
-def test_a_push_beyond_the_acceleration_limit_keeps_its_direction():
+def test_a_push_beyond_the_limit_keeps_its_direction():
     crowd = make_crowd(np.array([[0.0, 1.0]]))
     pushed(CrowdModel(SIM, DT), crowd, crowd.velocity.copy(), np.array([[3.0, 4.0]]))
     assert crowd.velocity == pytest.approx(np.array([[0.15, 1.2]]))  # 0.25 m/s of (0.6, 0.8)
 
 
-def test_it_is_drawn_for_everybody_so_that_who_has_left_changes_nothing_for_the_others():
+def test_it_is_drawn_for_all_so_that_leaving_changes_no_others():
     pushes = []
     for present in ([0, 1, 2, 3], [1, 3]):
         crowd = make_crowd(np.tile(WALKING, (len(present), 1)))
@@ -71,7 +71,7 @@ def test_it_is_drawn_for_everybody_so_that_who_has_left_changes_nothing_for_the_
         assert np.abs(pushes[0][person]).max() > 0.0
 
 
-def test_its_size_is_that_of_a_normal_number_cut_off_at_two_deviations():
+def test_its_size_is_that_of_a_normal_cut_at_two_deviations():
     crowd = make_crowd(np.tile(WALKING, (400, 1)))
     model, after = CrowdModel(SIM, DT), crowd.copy()
     model.advance(after, Vehicles.empty())
@@ -81,7 +81,7 @@ def test_its_size_is_that_of_a_normal_number_cut_off_at_two_deviations():
     assert added.std() == pytest.approx(0.5 * 0.8796, rel=0.05)
 
 
-def test_runs_with_it_are_the_same_each_time_and_differ_from_those_without(run_once):
+def test_runs_with_it_repeat_and_differ_from_those_without(run_once):
     people = {"pedestrians": 5, "spawn_area": (12.0, -6.0, 20.0, -2.0)}
     shaken = people | {"acceleration_noise": 0.5}
     plain = run_once(seed=4, time_limit=2.0, crowd=people).crowd_track

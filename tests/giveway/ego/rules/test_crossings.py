@@ -104,7 +104,7 @@ def test_who_will_have_passed_when_the_ego_comes_costs_no_stop():
         ("O", True, True),
     ],
 )
-def test_a_light_decides_who_may_enter_and_whoever_is_on_it_may_finish(letter, at_the_kerb, on_it):
+def test_a_light_decides_who_may_enter_and_people_on_it_finish(letter, at_the_kerb, on_it):
     assert (stop_of(crossings(light=letter), NEAR, 4.0, walker(-4.0)) < math.inf) == at_the_kerb
     assert (stop_of(crossings(light=letter), NEAR, 4.0, walker(-2.0)) < math.inf) == on_it
 

@@ -90,7 +90,7 @@ class TestDifferences:
         assert "no difference" in legend(figure)
         assert "no difference" not in legend(self.draw(panel([-1.0, 2.0])))
 
-    def test_zero_mean_interval_and_published_mean_stand_where_they_are(self):
+    def test_zero_mean_interval_and_published_mean_are_in_place(self):
         one = panel(self.values, mean=-1.1, low=-1.4, high=-0.8, published=-2.5)
         figure = self.draw(one)
         axes = figure.axes[0]

@@ -140,7 +140,7 @@ def test_each_stop_counts_once():
     assert judged(track=twice).summary.stops_without_cause == 2
 
 
-def test_on_a_way_that_comes_by_twice_a_leader_is_where_the_ego_is():
+def test_on_a_way_that_passes_twice_a_leader_is_near_the_ego():
     twice = (
         (20.0, -1.75),
         (90.0, -1.75),

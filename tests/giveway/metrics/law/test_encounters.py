@@ -73,7 +73,7 @@ def test_a_way_that_comes_by_again_has_an_area_each_time():
         walker(-4.3, since=3.6, x=20.1),  # at the crossing's edge
     ],
 )
-def test_who_drives_through_fails_to_yield_and_who_waits_does_not(person):
+def test_an_ego_that_drives_through_fails_to_yield_a_waiting_not(person):
     wrong = judged(THROUGH, person)
     assert kinds(wrong) == ["failure to yield"]
     assert (wrong.summary.encounters, wrong.summary.failures_to_yield) == (1, 1)
@@ -129,7 +129,7 @@ def test_who_needs_longer_than_four_seconds_is_not_met(seconds, encounters):
 
 
 @pytest.mark.parametrize(("beyond", "encounters"), [(0.95, 1), (1.05, 0)])
-def test_who_stands_farther_than_a_metre_from_the_kerb_is_not_met(beyond, encounters):
+def test_people_over_a_metre_from_the_kerb_are_not_met(beyond, encounters):
     assert judged(THROUGH, walker(SOUTH - beyond, speed=0.0)).summary.encounters == encounters
 
 
@@ -166,7 +166,7 @@ def test_who_does_not_head_for_the_crossing_is_not_met(way):
     assert judged(THROUGH, walker(-4.0, speed=0.0, way=way)).summary.encounters == 0
 
 
-def test_a_way_that_leads_round_a_corner_onto_the_crossing_counts():
+def test_a_way_round_a_corner_onto_the_crossing_counts():
     way = ((22.0, -3.6), (22.0, 3.6), (60.0, 5.0))
     assert judged(THROUGH, walker(-4.2, speed=0.0, x=20.5, way=way)).summary.encounters == 1
 
@@ -197,7 +197,7 @@ def test_their_light_decides_on_priority(lights, since, encounters):
     assert found.summary.failures_to_yield == encounters
 
 
-def test_who_enters_when_the_light_turns_red_loses_priority_before_the_ego_comes():
+def test_entering_as_the_light_turns_red_loses_priority():
     person = Person([(22.0, -4.3)] * 300, way=((22.0, 20.0),))  # stays at the kerb
     lights = [(0.0, "G"), (4.0, "r")]
     found = judged(THROUGH, person, crossings=[SIGNALLED], lights=lights)
@@ -231,7 +231,7 @@ def test_who_is_pushed_back_is_found(back, rows):
         assert (event.other, event.y, event.value) == ("ped0", pytest.approx(1.0), 0.5)
 
 
-def test_only_people_with_priority_are_pushed_back_and_only_by_an_ego_that_is_near():
+def test_only_a_near_ego_pushes_back_people_with_priority():
     t = np.arange(200) * 0.05
     y = np.interp(t, [0.0, 3.0, 4.0, 9.0], [4.4, 1.0, 1.5, 1.5])
     person = Person(np.column_stack([np.full(200, 22.0), y]), way=((22.0, -20.0),))

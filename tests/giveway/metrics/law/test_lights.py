@@ -33,7 +33,7 @@ def judged(track, *lights, **keywords):
         ([], 0),
     ],
 )
-def test_the_letter_at_the_line_decides_and_at_yellow_whether_it_could_stop(lights, runs):
+def test_the_light_at_the_line_decides_and_at_yellow_the_stop(lights, runs):
     found = judged(THROUGH, *lights)
     assert found.summary.red_lights_run == runs
     assert [event.kind for event in found.violations] == ["red light"] * runs

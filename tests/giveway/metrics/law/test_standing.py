@@ -85,7 +85,7 @@ def test_a_junction_is_kept_free_but_for_its_waiting_places(front, seconds, bloc
     assert (summary.blocked_crossings, summary.blocked_junctions) == (0, blocked)
 
 
-def test_a_crossing_that_is_closed_to_people_is_blocked_for_who_is_on_it_only():
+def test_a_closed_crossing_is_blocked_only_for_people_on_it():
     signals = {"crossings": (SIGNALLED,), "lights": ((0.0, "r"),)}
     assert judged(22.0, 4.0, **signals)[0] == []
     late = Person([(22.0, 1.0)] * 600, way=((22.0, 20.0),))
@@ -110,7 +110,7 @@ def test_who_crosses_at_red_ahead_is_let_pass_as_well():
     assert judged(24.0, 4.0, late, **both)[0] == []
 
 
-def test_where_it_may_wait_inside_a_junction_it_blocks_no_crossing_with_its_rear():
+def test_at_a_waiting_place_in_a_junction_it_blocks_nothing():
     turning = {"junctions": (JUNCTION._replace(waiting=(23.5,)),)}
     assert judged(22.0, 4.0, **turning)[0] == []
     found, _ = judged(26.0, 4.0, **turning)

@@ -86,7 +86,7 @@ def test_nobody_comes(empty_cluster, task, refused):
     assert len(told) == 1
 
 
-def test_a_scheduler_that_ends_is_an_error_and_what_is_finished_stays(task, refused):
+def test_a_scheduler_that_ends_is_an_error_and_results_stay(task, refused):
     made = []
     cluster = distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50

@@ -210,9 +210,7 @@ def test_a_file_that_changes_while_the_study_is_at_work_ends_it(
     assert 1 <= len(made) < 4
 
 
-def test_a_scenario_that_is_not_on_the_workers_machine_is_no_runs_failure(
-    tmp_path, task, refused, left_behind
-):
+def test_a_scenario_missing_on_the_worker_is_no_runs_failure(tmp_path, task, refused, left_behind):
     there = tmp_path / "theirs"
     shutil.copytree(find("shared_space").config_file.parent, there)
     planned = task("a", scenario=str(there))

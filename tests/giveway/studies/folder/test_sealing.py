@@ -153,7 +153,7 @@ def test_a_broken_comparison_is_not_reported(small_study, tables_of, copy, capsy
     assert tables_of(copy) == tables_of(small_study.path)
 
 
-def test_a_study_of_an_earlier_giveway_is_read_and_its_runs_are_made_again(
+def test_a_study_of_an_earlier_giveway_is_read_and_rerun(
     small_study, study_of, small_study_text, tables_of, copy, capsys
 ):
     """It has sealed nothing."""

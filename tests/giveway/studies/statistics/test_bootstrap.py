@@ -91,7 +91,7 @@ def test_equal_numbers_have_themselves_as_interval() -> None:
 
 
 @pytest.mark.filterwarnings("error")
-def test_percentile_where_every_resample_is_on_one_side_of_the_mean() -> None:
+def test_percentile_if_every_resample_is_on_one_side_of_the_mean() -> None:
     """One number of 200 is not zero: three resamples often all miss it, and show no bias."""
     sample = np.zeros(200)
     sample[17] = 1.0
@@ -174,7 +174,7 @@ def test_95_percent_cover_the_mean_of_100_pairs(draw, true: float, least: float)
     assert least <= hits / 2000 <= 0.96
 
 
-def test_side_by_side_there_are_the_same_intervals_in_the_same_order():
+def test_side_by_side_the_intervals_and_their_order_are_equal():
     several = [np.random.default_rng(n).normal(size=50 + n).round(3) for n in range(40)]
     several[7] = np.array([1.0] * 9 + [1.001])  # of which scipy would say that it varies too little
 

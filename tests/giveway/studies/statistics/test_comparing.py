@@ -125,7 +125,7 @@ def test_controllers_that_do_the_same_show_no_difference(two_controllers) -> Non
     assert (found.p_value, found.q_value, found.verdict) == (1.0, 1.0, "no difference shown")
 
 
-def test_equal_differences_share_a_rank_whatever_binary_makes_of_them(two_controllers) -> None:
+def test_equal_differences_share_a_rank_despite_rounding(two_controllers) -> None:
     """0.3 - 0.1 and 0.4 - 0.2 are not the same number in binary; to six decimals they are."""
     treated = {"total_wait": [0.3, 0.4, 1.2, 9.95]}
     based = {"total_wait": [0.1, 0.2, 1.0, 9.75]}
@@ -166,7 +166,7 @@ def test_no_verdict_where_most_pairs_and_the_mean_disagree(two_controllers) -> N
     assert found.verdict == "no difference shown"
 
 
-def test_every_level_is_compared_with_the_baseline_in_every_context(new_study) -> None:
+def test_each_level_is_compared_with_the_baseline_everywhere(new_study) -> None:
     factors = {"crowd.pedestrians": [30, 10], "gains": {"low": {}, "off": {}, "high": {}}}
     comparison = {"factor": "gains", "baseline": "off", "resamples": 99, "minimum_pairs": 3}
     study = new_study(factors, comparison=comparison)

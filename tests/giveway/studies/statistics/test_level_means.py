@@ -52,7 +52,7 @@ def test_runs_without_the_number_count_as_runs_only(table):
     assert (row["runs"], row["n"], row["mean"]) == (4, 3, 12.0)
 
 
-def test_runs_without_a_result_do_not_count_and_few_have_no_interval(table):
+def test_runs_without_a_result_do_not_count_few_have_no_interval(table):
     row = row_of(table, 10, "pid-paper", "completion_time")
     assert (row["runs"], row["n"], row["mean"], row["interval"]) == (2, 2, 9.0, "")
     assert np.isnan(row["ci_low"])

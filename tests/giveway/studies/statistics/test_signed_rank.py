@@ -55,7 +55,7 @@ def test_many_differences_with_ties_and_zeros_follow_pratt() -> None:
 
 
 @pytest.mark.parametrize("n", [10, 30, 100])
-def test_where_all_differences_are_tied_p_is_no_less_than_half_the_exact_one(n: int) -> None:
+def test_if_all_differences_are_tied_p_is_at_least_half_exact(n: int) -> None:
     """The worst case of the approximation; with one rank for all, the exact test is binomial."""
     for negative in range(n // 2):
         exact = 2 * sum(math.comb(n, k) for k in range(negative + 1)) / 2**n

@@ -37,7 +37,7 @@ def test_shares_of_the_pairs_that_are_not_lost(new_study) -> None:
     }
 
 
-def test_a_run_without_the_ego_is_no_pair_and_a_failed_one_a_lost_pair(new_study) -> None:
+def test_without_the_ego_there_is_no_pair_a_failed_run_loses_it(new_study) -> None:
     study = new_study({"controller": ["mpc", "pid"]})
     study.add("mpc", stops=[0, 0, 0]).add("pid", stops=[0], seeds=[1])
     study.add("pid", stops=[0], seeds=[2], ego="other").lose("pid", seeds=[3])

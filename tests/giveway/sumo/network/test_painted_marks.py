@@ -8,7 +8,7 @@ from giveway.sumo.session import SumoSession
 from sumo_scenarios import find
 
 
-def test_a_junction_has_a_crossing_on_each_arm_and_stop_lines_before_them() -> None:
+def test_a_junction_has_crossings_on_its_arms_with_stop_lines() -> None:
     files = read_scenario(find("junction").config_file)
     with SumoSession(files, StartOptions(), "<additional/>") as session:
         marks = road_marks(session.lanes)

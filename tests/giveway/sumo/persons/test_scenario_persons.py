@@ -91,13 +91,13 @@ def test_edges_that_are_behind_a_walker_are_not_told(look: Look) -> None:
     assert seen["edges"] == ["B1C1", "C1C2"]
 
 
-def test_a_walk_that_comes_by_twice_is_told_from_where_the_walker_is(look: Look) -> None:
+def test_a_walk_that_passes_twice_is_told_by_the_walkers_place(look: Look) -> None:
     round_trip = '<walk edges="A1B1 B1B2 B2A2 A2A1 A1B1 B1C1"/>'
     assert len(look("take", "bare", person(round_trip), time=30.0)["edges"]) == 6
     assert len(look("take", "bare", person(round_trip), time=320.0)["edges"]) == 2
 
 
-def test_a_walk_that_sumo_finds_no_way_for_is_told_from_the_nearest_edge(look: Look) -> None:
+def test_a_walk_without_a_way_is_told_from_the_nearest_edge(look: Look) -> None:
     """SUMO walks on across a junction without a footpath, but cannot say how far it is."""
     round_trip = '<walk edges="A1B1 B1B2 B2A2 A2A1 A1B1 B1C1"/>'
     assert len(look("take", "islands", person(round_trip), time=30.0)["edges"]) == 6
@@ -111,9 +111,7 @@ def test_a_walk_that_sumo_finds_no_way_for_is_told_from_the_nearest_edge(look: L
         ('<walk edges="A1B1" arrivalPos="70" duration="100"/>', 0.6),
     ],
 )
-def test_a_walk_with_a_speed_of_its_own_is_as_fast_as_the_scenario_says(
-    look: Look, walk: str, speed: float
-) -> None:
+def test_a_walk_with_its_own_speed_keeps_it(look: Look, walk: str, speed: float) -> None:
     assert look("take", "signals", person(walk), time=5.0)["desired_speed"] == pytest.approx(speed)
 
 
@@ -165,7 +163,7 @@ LAST = {
 
 @pytest.mark.parametrize("own_speed", ["", 'speed="0.9"'], ids=["any speed", "its own speed"])
 @pytest.mark.parametrize(("edges", "arrival", "lane", "place"), LAST.values(), ids=LAST.keys())
-def test_who_is_handed_back_walks_to_its_own_destination_at_its_own_speed(
+def test_people_handed_back_keep_their_destination_and_speed(
     look: Look,
     edges: str,
     arrival: float,
@@ -221,7 +219,7 @@ def test_who_has_more_to_do_goes_on_and_can_be_taken_over_again(look: Look) -> N
     }  # fmt: skip
 
 
-def test_cars_do_not_wait_at_a_crossing_that_a_held_person_has_left(look: Look) -> None:
+def test_cars_do_not_wait_at_a_crossing_a_held_person_has_left(look: Look) -> None:
     traffic = '<vType id="car" sigma="0"/>'
     for start, end in (("B0B1", "B1B2"), ("B2B1", "B1B0")):  # over the crossing, both ways
         traffic += f'<flow id="{start}" type="car" begin="0" end="200" period="20" '
@@ -231,7 +229,7 @@ def test_cars_do_not_wait_at_a_crossing_that_a_held_person_has_left(look: Look) 
     assert seen["cars"] == 20
 
 
-def test_people_do_not_walk_round_the_spot_where_somebody_was_taken_over(look: Look) -> None:
+def test_people_do_not_avoid_the_spot_of_a_person_taken_over(look: Look) -> None:
     flow = '<personFlow id="f" begin="12" end="60" period="9"><walk edges="A1B1"/></personFlow>'
     plans = person(EAST_AND_NORTH, 30.0) + flow
     without = look("followers", "signals", plans, taken=False)
@@ -246,7 +244,7 @@ def test_to_ask_for_positions_changes_no_byte_of_sumos_output(look: Look, tmp_pa
     assert without_header(tmp_path / "True.xml") == without_header(tmp_path / "False.xml")
 
 
-def test_taking_over_and_handing_back_does_not_touch_cars_that_meet_nobody(look: Look) -> None:
+def test_taking_over_and_handing_back_leaves_far_cars_unchanged(look: Look) -> None:
     plans = cars(100.0) + people(150)
     held = look("vehicles", "bare", plans, holding=True, seconds=100.0)
     alone = look("vehicles", "bare", plans, holding=False, seconds=100.0)
@@ -276,7 +274,7 @@ def test_a_roaming_zone_loses_nobody(
         assert tags == (["walk", "stop", "walk"] if i % 3 == 0 else ["walk"])
 
 
-def test_a_trip_that_sumo_splits_into_several_stages_is_begun_at_its_beginning(look: Look) -> None:
+def test_a_trip_that_sumo_splits_into_stages_starts_at_its_start(look: Look) -> None:
     plan = '<walk edges="A1B1" arrivalPos="60"/><personTrip from="A1B1" to="C2C3" modes="public"/>'
     bus = """<busStop id="near" lane="B1C1_1" startPos="20" endPos="40"/>
         <busStop id="far" lane="C2C3_1" startPos="20" endPos="40"/>

@@ -63,13 +63,13 @@ def test_who_has_none_is_given_none(speeds: WalkSpeeds, name: str) -> None:
     assert speeds.speed(name, stage("b"), 1) is None
 
 
-def test_a_trip_that_sumo_has_split_is_not_taken_for_the_walk_before_it(speeds: WalkSpeeds) -> None:
+def test_a_split_trip_is_not_taken_for_the_walk_before_it(speeds: WalkSpeeds) -> None:
     assert speeds.speed("trip", stage("b"), 2) == 0.7
     assert speeds.speed("trip", stage("x"), 2) is None  # the first of the trip's two walks
     assert speeds.speed("trip", stage("x"), 3) is None
 
 
-def test_files_that_are_missing_or_broken_are_sumos_to_complain_about(tmp_path: Path) -> None:
+def test_missing_or_broken_files_are_left_to_sumo(tmp_path: Path) -> None:
     broken = tmp_path / "broken.rou.xml"
     broken.write_text('<routes><person id="a"><walk speed="1"')
     assert WalkSpeeds([tmp_path / "missing.xml", broken]).speed("a", stage("b"), 1) is None

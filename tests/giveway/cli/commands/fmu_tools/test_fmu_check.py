@@ -110,7 +110,7 @@ def test_the_mass_and_damper_of_openmodelica_is_no_success(checked, tmp_path):
     assert "50 ms do not converge" in " ".join(out.split())
 
 
-def test_a_wrong_unit_of_the_pedals_fails_by_the_class_of_the_ego(checked, zoo):
+def test_a_wrong_unit_of_pedals_fails_by_the_class_of_the_ego(checked, zoo):
     spoken = {"throttle": (0.01, 0.0), "brake": (0.01, 0.0)}
     path = zoo.car(role="throttle_brake", spoken=spoken)
     profile = path.with_suffix(".toml")

@@ -27,7 +27,7 @@ def compiled(monkeypatch, capsys, tmp_path):
     return run
 
 
-def test_a_copy_with_a_binary_is_written_and_not_replaced_unasked(compiled, tmp_path):
+def test_a_copy_with_a_binary_is_written_but_not_replaced(compiled, tmp_path):
     code, out, err = compiled("car.fmu", "-o", "here.fmu")
     assert code == 0, err
     assert "Compiled binaries/" in out
