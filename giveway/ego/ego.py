@@ -209,7 +209,7 @@ class Ego:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
         rules, leader, vehicles = self.rules, NO_LEADER, None
-        to_clear = rules.to_clear(front)
+        to_clear = rules.keep_clear_distance(front)
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed, self.beside)
         rules.look(front, speed, crowd, leader)
@@ -218,7 +218,7 @@ class Ego:
             merging = rules.leader.station + rules.leader.speed * self._times
             vehicles = merging if vehicles is None else np.minimum(vehicles, merging)
         if vehicles is not None:
-            spared = self._following.given_up(leader, vehicles, front, speed, to_clear)
+            spared = self._following.gap_relaxation(leader, vehicles, front, speed, to_clear)
             ahead = np.minimum(ahead, vehicles + spared)
         if rules.latest < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = rules.latest + self._origin
@@ -279,7 +279,7 @@ class Ego:
         rules = self.rules
         vehicle_ahead, limit = math.inf, rules.speed
         if not seen.stop == math.inf == leader.station:
-            vehicle_ahead = self._following.station(leader, front, seen.to_clear)
+            vehicle_ahead = self._following.leader_station(leader, front, seen.to_clear)
             braking = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
             limit = min(limit, braking)
         if self._controller.foresees:
