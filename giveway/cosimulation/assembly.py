@@ -1,4 +1,4 @@
-"""From a configuration to the parts of a run, each set up and at its initial state."""
+"""Assembles the parts of a run from its configuration, each at its initial state."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
@@ -42,7 +42,7 @@ from sumo_scenarios import available
 
 
 class Driven(NamedTuple):
-    """How the egos of a run drove."""
+    """The drives of the egos of a run."""
 
     tracks: Mapping[str, EgoTrack]  # by their ids
     horizon: int  # steps that anybody looked ahead
@@ -52,7 +52,7 @@ class Driven(NamedTuple):
 
 @dataclass(frozen=True)
 class Parts:
-    """What a run is made of."""
+    """The parts of a run."""
 
     config: RunConfig
     sumo: SumoSession
@@ -214,7 +214,7 @@ def _driven_part(way: EgoPath, config: RunConfig) -> Array:
 def _priority(
     config: RunConfig, egos: Sequence[EgoRunConfig], sumo: SumoSession
 ) -> PriorityOnFoot | None:
-    """Tells people of their priority, where any ego gives way; None: there is none to tell."""
+    """Make the part that tells people of their priority; None if no ego gives way."""
     heeding = [driver for driver in egos or (config,) if driver.heeds("crossings")]
     if not heeding:
         return None

@@ -1,4 +1,4 @@
-"""What the tables need besides tracks to be judged by the law of the road.
+"""The records, besides tracks, by which a run is judged by the law of the road.
 
 The network's crossings, stop lines and junctions on each ego's way, the states of the traffic
 lights there, and where people mean to walk. Nothing of it depends on what the ego heeds.
@@ -34,17 +34,17 @@ def way_of(
     junctions: Sequence[JunctionOnWay] = (),
     stops: Sequence[Stop] = (),
 ) -> EgoWay:
-    """What stands on an ego's way.
+    """The crossings, lights, junctions and stops on an ego's path.
 
     Args:
         ego_id: SUMO's.
         path: the ego's.
         departure: station [m] of the front bumper where the ego's position is 0.
-        length: of the ego's body [m].
-        crossings: of the network.
-        lights: on the path.
-        junctions: on the path.
-        stops: that it serves.
+        length: Length of the ego's body [m].
+        crossings: Crossings of the network.
+        lights: Traffic lights on the path.
+        junctions: Junctions on the path.
+        stops: Scheduled stops that it serves.
     """
     return EgoWay(
         ego=ego_id,
@@ -129,7 +129,7 @@ class LawRecords:
         self._states |= dict.fromkeys(sorted(way.systems - self._states.keys()), "")
 
     def signals(self, time: float) -> None:
-        """Once after each SUMO step, at ``time`` [s]: which lights have changed."""
+        """Record the lights that changed in a SUMO step, at ``time`` [s]."""
         for system, before in self._states.items():
             state = self._session.light_state(system)
             if state != before:
@@ -137,7 +137,7 @@ class LawRecords:
                 self._recorder.signal(time, system, state)
 
     def walks(self, roster: Roster) -> None:
-        """Once at each control instant: who has joined the crowd, and means to walk where."""
+        """Record, at each control instant, the people who joined the crowd and their goals."""
         if not self.ruled or not roster.newcomers:
             return
         crowd, recorder = roster.crowd, self._recorder

@@ -54,8 +54,8 @@ class Loop:
         follow: note how people and traffic get on, for :meth:`follow_up`.
 
     Attributes:
-        endings: of each ego that has left the road or was on it when the run ended.
-        remarks: what the user should know of how it went.
+        endings: Ending of each ego that has left the road or was on it when the run ended.
+        remarks: Remarks on how the run went, one sentence each.
         followed: what is noted for :meth:`follow_up`; None: nothing.
     """
 
@@ -119,8 +119,8 @@ class Loop:
         """Go on without egos until those who came close have arrived; no row is recorded.
 
         Args:
-            ending: of the run.
-            interrupt: looked at between two steps.
+            ending: Ending of the run.
+            interrupt: Flag that is read between two steps.
 
         Returns:
             Whether it came to its end without an interrupt.
@@ -185,7 +185,7 @@ class Loop:
             self._advance()
 
     def _nobody_comes(self) -> bool:
-        """Whether a scenario without an end has nobody left, and no ego is to be inserted."""
+        """Return whether a scenario without an end is empty, and no ego is to be inserted."""
         sumo, waiting = self._parts.sumo, self._parts.departures.waiting
         if sumo.end < np.inf or sumo.expects_more or not all(ego.taken_over for ego in waiting):
             return False

@@ -33,8 +33,8 @@ class Mirror:
 
     Args:
         session: the running simulation.
-        time_step: of the control [s].
-        substeps: control steps per SUMO step.
+        time_step: Control step [s].
+        substeps: Control steps per SUMO step.
         horizon: N, the most steps that any ego looks ahead.
 
     Attributes:
@@ -86,7 +86,7 @@ class Mirror:
         """Read where the background vehicles are now.
 
         Args:
-            egos: on the road, in the order of their rows.
+            egos: Egos on the road, in the order of their rows.
             pedestrians: (n, 2) [m] positions now.
 
         Raises:
@@ -189,7 +189,7 @@ class Mirror:
 def _close(
     vehicles: BackgroundVehicles, near: NDArray[np.int64], egos: Sequence[Ego]
 ) -> NDArray[np.bool_]:
-    """(rows,) whether each of the vehicles ``near`` may soon meet an ego that keeps to the law."""
+    """(rows,) flags of the vehicles ``near`` that may soon meet an ego that keeps to the law."""
     close = np.zeros(len(near), dtype=np.bool_)
     for ego in egos:
         if not ego.config.heeds("right_of_way"):

@@ -76,7 +76,7 @@ def control_step(config: RunConfig, files: ScenarioFiles) -> float:
 
 
 def substeps_of(time_step: float, step_length: float) -> int:
-    """How many control steps [s] make one SUMO step [s].
+    """The number of control steps in one SUMO step.
 
     Raises:
         ConfigError: they do not fit a whole number of times.

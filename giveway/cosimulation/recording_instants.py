@@ -1,4 +1,4 @@
-"""What is recorded of people and background vehicles at an instant: all near an ego, some far."""
+"""Selects the people and background vehicles to record: all near an ego, some far."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,8 @@ def looks_ahead(period: float | None, time_step: float) -> int:
     """The steps of look-ahead between two predictions that are kept; 0: none is kept.
 
     Args:
-        period: between them [s]; None: none is kept.
-        time_step: [s].
+        period: Time between recorded instants [s], or None if none is kept.
+        time_step: Control step [s].
     """
     return 0 if period is None else max(1, round(period / time_step))
 
@@ -65,9 +65,9 @@ class Instants:
 
         Args:
             k: the instant.
-            time: of it [s], SUMO's.
-            background: the vehicles.
-            places: as for :meth:`crowd`.
+            time: Time [s] of the instant on SUMO's clock.
+            background: Background vehicles.
+            places: Stations of the egos, as for :meth:`crowd`.
         """
         within = self._near
         if k - self._far_background >= self._far_steps:

@@ -17,14 +17,14 @@ class Standstill:
 
     @property
     def remark(self) -> str:
-        """What the user is told."""
+        """The sentence for the user."""
         return (
             f"no ego moved for {LONGEST:g} s in a scenario without an end, so that the run was "
             "ended; set its end with --time-limit or --sumo-end"
         )
 
     def too_long(self, egos: Sequence[Ego], time: float) -> bool:
-        """Whether all egos on the road stand for too long already at ``time`` [s]."""
+        """Return whether all egos on the road have stood for too long at ``time`` [s]."""
         driven = sum(ego.vehicle.position for ego in egos)
         if not egos or abs(driven - self._driven) > _MOVED:
             self._driven, self._since = driven, time

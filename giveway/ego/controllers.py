@@ -43,9 +43,9 @@ def make_controller(
     """The controller of one ego.
 
     Args:
-        config: of the ego.
-        time_step: of the co-simulation [s].
-        fastest: its v_r [m/s] where the lanes say how fast it drives; None: before that is known.
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+        fastest: Reference speed [m/s] from the lanes' limits, or None before it is known.
 
     Raises:
         ControlError: its parameters contradict each other, or its solver is missing.
@@ -67,9 +67,9 @@ def filled(kind: type[Parameters], *tables: Section, **own: Any) -> Parameters:
     """Parameters of a controller, taken from the tables' options of the same names.
 
     Args:
-        kind: a dataclass; what no table has keeps its default.
-        tables: of the configuration; the first that has an option counts.
-        own: the parameters that are no option as they stand.
+        kind: Dataclass of the parameters; a field that no table has keeps its default.
+        tables: Tables of the configuration; the first that has an option counts.
+        own: Parameters that are not taken from an option.
     """
     for field in dataclasses.fields(kind):
         for table in tables:
@@ -121,7 +121,7 @@ def manoeuvres_of(style: StyleName, own: Section, margin: float = 0.0) -> Manoeu
     Args:
         style: Driving style.
         own: Options of the planner.
-        margin: [m] kept to people for what the vehicle's model lacks.
+        margin: Distance [m] kept to people for the errors of the vehicle's model.
     """
     weighed = {
         name: usual if getattr(own, name) is None else getattr(own, name)

@@ -164,7 +164,7 @@ class Ego:
         """
         own, seen, front = self._own, self._seen, self.front
         own.pose, own.speed, own.row = self.pose, self.vehicle.speed, row
-        seen.poses, seen.row, seen.to_clear = poses, row, self.rules.to_clear(front)
+        seen.poses, seen.row, seen.to_clear = poses, row, self.rules.keep_clear_distance(front)
         self._people.look(seen, truth, person_ids, surroundings, own, front)
         self._heed(seen, front, own.speed)
         return seen
@@ -182,7 +182,7 @@ class Ego:
             merging = rules.leader.station + rules.leader.speed * self._times
             vehicles = merging if vehicles is None else np.minimum(vehicles, merging)
         if vehicles is not None:
-            spared = self._following.given_up(leader, vehicles, front, speed, seen.to_clear)
+            spared = self._following.gap_relaxation(leader, vehicles, front, speed, seen.to_clear)
             seen.ahead = np.minimum(seen.ahead, vehicles + spared)
         if rules.latest < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = rules.latest + self._origin
@@ -226,7 +226,7 @@ class Ego:
         stop += self.config.regulation.safe_distance
         vehicle_ahead, limit = math.inf, rules.speed
         if not seen.stop == math.inf == leader.station:
-            vehicle_ahead = self._following.station(leader, front, seen.to_clear)
+            vehicle_ahead = self._following.leader_station(leader, front, seen.to_clear)
             braking = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
             limit = min(limit, braking)
         if self._controller.foresees:

@@ -1,4 +1,4 @@
-"""A controller FMU as a plug-in: what an observation tells its inputs, what its output means."""
+"""A controller FMU as a plug-in: from observations to its inputs, from its output to a command."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class FmuPlugIn:
     """Driven by an FMU, in a process of its own that starts with the first question.
 
     Args:
-        prepared: the controller.
+        prepared: Controller FMU, examined and unpacked.
     """
 
     def __init__(self, prepared: PreparedController) -> None:
@@ -44,14 +44,14 @@ class FmuPlugIn:
 
     @property
     def warnings(self) -> list[str]:
-        """What the user should know of the FMU."""
+        """The warnings about the FMU, one sentence each."""
         return self._fmu.warnings
 
     def control(self, seen: Observation) -> Force | Acceleration | Speed:
-        """Its answer.
+        """Ask the FMU for its command.
 
         Raises:
-            PlugInError: it does not give one.
+            PlugInError: the FMU gives no command.
         """
         told = [tell(seen) for tell in self._single]
         if self.horizon:

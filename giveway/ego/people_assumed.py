@@ -1,15 +1,15 @@
-"""What the safety layer takes people to be able to do, by the name in ``[safety] people``."""
+"""The worst motion of people that the safety layer assumes, by the name in ``[safety] people``."""
 
 from controller import PeopleName, WorstMotion, worst_motion
 from giveway.config.files.presets import parameters_of
 
 
 def people_at_worst(people: PeopleName, preset: str) -> WorstMotion:
-    """What a safety layer takes people to be able to do.
+    """Return the worst motion of people that a safety layer assumes.
 
     Args:
-        people: as in ``[safety] people``.
-        preset: that they walk by.
+        people: Name of the assumption, as in ``[safety] people``.
+        preset: Preset of the walking model.
 
     Raises:
         ConfigError: the preset cannot be used.

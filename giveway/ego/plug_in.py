@@ -1,4 +1,4 @@
-"""Somebody else's controller, from the configuration: found, imported, given its options."""
+"""Makes the plugged-in controller that a configuration names, with its options."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from giveway.plug_ins.sockets import CONTROLLER
 
 
 def plugged_in(config: EgoRunConfig, time_step: float) -> PluggedIn:
-    """The controller of one ego that somebody else has written.
+    """The plugged-in controller of one ego.
 
     Args:
-        config: of the ego; its reference speed is a number.
-        time_step: of the co-simulation [s].
+        config: Configuration of the ego; its reference speed is a number.
+        time_step: Control step of the co-simulation [s].
 
     Raises:
         ConfigError: its options cannot be used.
@@ -30,10 +30,10 @@ def plugged_in(config: EgoRunConfig, time_step: float) -> PluggedIn:
 
 
 def maker(config: EgoRunConfig) -> Callable[[Setup], object]:
-    """What makes the controller of one ego, with its options.
+    """Return the function that makes the controller of one ego, with its options.
 
     Args:
-        config: of the ego.
+        config: Configuration of the ego.
 
     Raises:
         ConfigError: its options cannot be used.

@@ -1,4 +1,4 @@
-"""How an ego is made ready before it departs: its vehicle FMU, its predictor, its safety layer."""
+"""Preparing an ego before it departs: its vehicle FMU, its predictor and its safety layer."""
 
 from contextlib import ExitStack
 from math import sqrt
@@ -28,10 +28,10 @@ def make_waiting_ego(
     """Load one ego's vehicle FMU and join it with its controller.
 
     Args:
-        config: of the ego.
-        controller: decides on its force.
-        time_step: of the co-simulation [s].
-        stack: closes the FMU.
+        config: Configuration of the ego.
+        controller: Controller, which decides on the force.
+        time_step: Control step of the co-simulation [s].
+        stack: Exit stack that closes the FMU.
 
     Raises:
         VehicleError: the FMU cannot be loaded.
@@ -54,9 +54,9 @@ def recorded_ego(config: EgoRunConfig, track: EgoTrack, time_step: float) -> Wai
     """An ego that will drive as it did in a run that is over.
 
     Args:
-        config: of the ego.
-        track: its rows.
-        time_step: of the co-simulation [s].
+        config: Configuration of the ego.
+        track: Recorded rows of the ego.
+        time_step: Control step of the co-simulation [s].
     """
     vehicle = RecordedVehicle(track, time_step)
     fastest = parameters_of(config.crowd.preset).max_speed
@@ -67,8 +67,8 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
     """The limits that the safety layer counts on; the body's width is not known yet.
 
     Args:
-        config: of the ego.
-        time_step: of the co-simulation [s].
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
     """
     safety, walking = config.safety, parameters_of(config.crowd.preset)
     worst = people_at_worst(safety.people, config.crowd.preset)

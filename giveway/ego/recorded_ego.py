@@ -11,7 +11,7 @@ class RecordedVehicle(Vehicle):
     """A vehicle whose motion is known.
 
     Args:
-        track: of the ego, from its departure on. At its end the vehicle stays where it is.
+        track: Recorded rows of the ego, from its departure on; at the end the vehicle stands.
     """
 
     def __init__(self, track: EgoTrack, time_step: float) -> None:
@@ -44,7 +44,7 @@ class RecordedVehicle(Vehicle):
 
 
 class NoController:
-    """In the place of the controller of an ego whose motion is known; it is never asked."""
+    """Stands in for the controller of a recorded ego; it is never asked for a force."""
 
     horizon = 0
     foresees = False

@@ -31,10 +31,12 @@ from giveway.errors import VehicleError
 from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EGO_COLUMNS
 
-_CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
-_SAME_STEP = 1e-6  # relative
-_OTHER_SIZE = 2.0  # times as heavy, or as light, as the defaults' car
-_sound: set[tuple[str, str, float, float, float]] = set()  # what has passed in this process
+_CHECK_FORCE = 4000.0  # force [N] of the self-check; the force limit if that is lower
+_SAME_STEP = 1e-6  # relative tolerance for two equal step sizes
+_OTHER_SIZE = 2.0  # ratio of masses from which the defaults for a car no longer fit
+_sound: set[tuple[str, str, float, float, float]] = (
+    set()
+)  # FMUs that passed the self-check in this process
 
 
 def fmu_path(settings: VehicleConfig) -> Path:
@@ -47,8 +49,8 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
     """Make sure, before anything runs, that every FMU can be read and its profile fits.
 
     Args:
-        egos: the configuration of each.
-        time_step: of the co-simulation [s].
+        egos: Configuration of each ego.
+        time_step: Control step of the co-simulation [s].
 
     Raises:
         VehicleError: one cannot be driven.
@@ -71,14 +73,14 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
 def open_for(
     config: EgoRunConfig, time_step: float, stack: ExitStack
 ) -> tuple[Vehicle, dict[str, object]]:
-    """The vehicle of one ego, and what the manifest says of it.
+    """The vehicle of one ego, and its description for the manifest.
 
     An FMU that is not ours is first driven for some seconds in full and in half steps.
 
     Args:
-        config: of the ego.
-        time_step: of the co-simulation [s].
-        stack: closes the vehicle.
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+        stack: Exit stack that closes the vehicle.
 
     Raises:
         FmuError: it cannot be loaded, its steps do not converge, or it goes the wrong way.
@@ -160,14 +162,14 @@ def _require_sound(
 
 
 def model_margin(config: EgoRunConfig, time_step: float) -> float:
-    """What the MPC keeps beyond the safe distance [m]: what the identified model is wrong by.
+    """The distance [m] kept in addition to the safe distance, for the identified model's error.
 
     Over a horizon longer than the fit's it grows with the square of the horizon, as does the
     distance driven under an acceleration that is not accounted for.
 
     Args:
-        config: of the ego.
-        time_step: of the co-simulation [s].
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
 
     Raises:
         VehicleError: the profile cannot be read.
@@ -182,7 +184,7 @@ def identified_reaction_time(config: EgoRunConfig) -> float:
     """The dead time and the lag of the actuator [s], as the profile knows them.
 
     Args:
-        config: of the ego.
+        config: Configuration of the ego.
 
     Raises:
         VehicleError: the profile cannot be read.
@@ -192,11 +194,11 @@ def identified_reaction_time(config: EgoRunConfig) -> float:
 
 
 def model_remark(config: EgoRunConfig, time_step: float) -> str:
-    """What the controller knows of its vehicle by identification; empty if nothing.
+    """The remark on the identified vehicle model; empty if no model was identified.
 
     Args:
-        config: of the ego.
-        time_step: of the co-simulation [s].
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
     """
     model = _model(config)
     if model is None:

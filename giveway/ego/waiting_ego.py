@@ -16,11 +16,11 @@ class WaitingEgo:
     """An ego that has not departed yet: its vehicle FMU is loaded, its controller is set up.
 
     Attributes:
-        config: of the ego.
-        vehicle: its FMU.
-        description: of the FMU, for the manifest.
-        controller: decides on its force.
-        predictor: of the crowd; None: the controller looks at the present only.
+        config: Configuration of the ego.
+        vehicle: Vehicle FMU.
+        description: Description of the FMU, for the manifest.
+        controller: Controller, which decides on the force.
+        predictor: Predictor of the crowd, or None for a controller that does not predict.
     """
 
     config: EgoRunConfig
@@ -28,8 +28,8 @@ class WaitingEgo:
     description: dict[str, object]
     controller: Controller
     predictor: CrowdPredictor | None
-    walking_speed_limit: float  # [m/s]
-    safety: SafetyParameters | None  # None: nothing watches over the controller
+    walking_speed_limit: float  # highest walking speed [m/s]
+    safety: SafetyParameters | None  # limits of the safety layer, or None without one
 
     @property
     def id(self) -> str:
@@ -38,19 +38,19 @@ class WaitingEgo:
 
     @property
     def taken_over(self) -> bool:
-        """Whether the vehicle is the scenario's."""
+        """Return whether the ego takes over a vehicle of the scenario."""
         return bool(self.config.ego.take_over)
 
     @property
     def recorded(self) -> bool:
-        """Whether it will drive as it did in a run that is over."""
+        """Return whether it will drive as it did in a run that is over."""
         return isinstance(self.vehicle, RecordedVehicle)
 
     def start(self, speed: float) -> None:
-        """Set the FMU to where it departs.
+        """Start the FMU at the departure, with ``speed`` [m/s].
 
         Raises:
-            VehicleError: it fails.
+            VehicleError: the FMU cannot be started.
         """
         try:
             self.vehicle.start(position=0.0, speed=speed)
@@ -59,7 +59,7 @@ class WaitingEgo:
 
     @property
     def warnings(self) -> list[str]:
-        """What the user should know of its FMUs."""
+        """The warnings about its FMUs, one sentence each."""
         own = self.controller.warnings if isinstance(self.controller, PluggedIn) else []
         return [*self.vehicle.warnings, *own]
 
@@ -72,7 +72,7 @@ class WaitingEgo:
     def clearance(self) -> float:
         """The distance that the safety layer keeps to pedestrians' bodies [m].
 
-        What it adds for the errors of tracked positions is in none: they differ.
+        The allowance for errors of tracked positions is left out: it differs by person.
         """
         if self.safety is None:
             return 0.0
@@ -81,12 +81,12 @@ class WaitingEgo:
 
     @property
     def worst(self) -> WorstMotion:
-        """What people are taken to do at worst, with or without a safety layer."""
+        """The worst motion assumed of people, with or without a safety layer."""
         if self.safety is not None:
             return self.safety.worst
         return people_at_worst(self.config.safety.people, self.config.crowd.preset)
 
     @property
     def horizon(self) -> int:
-        """Steps that are looked ahead; the first one in any case."""
+        """The prediction horizon [steps]; at least 1, also for controllers that do not predict."""
         return max(1, self.controller.horizon)

@@ -40,7 +40,7 @@ _alone: OrderedDict[bytes, CrowdAlone] = OrderedDict()
 
 @dataclass(frozen=True)
 class Twin:
-    """What became of people whom no ego impressed.
+    """The fate of the people in the counterfactual run.
 
     Attributes:
         walks: how they got on, up to the control step at which following ends.
@@ -71,8 +71,8 @@ def twin_of(
         checked: the run.
         followed: how its people got on.
         driven: how its egos drove.
-        heartbeat: tells another process that all is well.
-        interrupt: looked at between two steps.
+        heartbeat: Function that tells another process that this one is alive.
+        interrupt: Flag that is read between two steps.
         native_log: file for what SUMO prints; None: a temporary one.
 
     Returns:
@@ -112,7 +112,7 @@ def _again(
     heartbeat: Heartbeat,
     native_log: Path | None,
 ) -> TrafficNotes | None:
-    """Go through a run again up to the control step ``last``; None: it was interrupted."""
+    """Repeat a run up to the control step ``last``; None if it was interrupted."""
     with ExitStack() as stack:
         parts = assemble(checked, stack, native_log=native_log, driven=driven)
         log = None if driven.absent else walks  # nobody asks how people got on without egos

@@ -17,8 +17,8 @@ class CrowdAlone:
         walking: its step.
         walks: notes how people get on.
         step: the control step that has been reached.
-        flows: of people who come in; None: nobody does.
-        every: control steps between two instants at which they do: those of one SUMO step.
+        flows: Flows of people who come in, or None if nobody does.
+        every: Control steps between two arrivals: those of one SUMO step.
     """
 
     def __init__(
@@ -48,8 +48,8 @@ class CrowdAlone:
 
         Args:
             last: the control step.
-            names: of the people who count.
-            heartbeat: tells another process that all is well.
+            names: Ids of the people who count.
+            heartbeat: Function that tells another process that this one is alive.
         """
         while self._k < last and self._awaited(names):
             heartbeat.step(self._k, 0.0)
@@ -58,7 +58,7 @@ class CrowdAlone:
             self._note()
 
     def _awaited(self, names: frozenset[str]) -> bool:
-        """Whether any of those named is on the way, or yet to come in."""
+        """Return whether any of those named is on the way, or yet to come in."""
         roster = self._roster
         if not names.isdisjoint(roster.names):
             return True

@@ -35,10 +35,10 @@ class Beginning(NamedTuple):
 
 
 class Followed:
-    """What is noted of a run for its twin.
+    """The notes of a run for its counterfactual run.
 
     Args:
-        parts: of the run, at its initial state.
+        parts: Parts of the run, at its initial state.
 
     Attributes:
         beginning: the people that giveway adds, at first and later.
@@ -93,8 +93,8 @@ class Followed:
             mirror: the run's.
             step: the last one of the run.
             start: SUMO's clock [s] at step 0.
-            heartbeat: tells another process that all is well.
-            interrupt: looked at between two steps.
+            heartbeat: Function that tells another process that this one is alive.
+            interrupt: Flag that is read between two steps.
 
         Returns:
             Whether it came to its end without an interrupt.

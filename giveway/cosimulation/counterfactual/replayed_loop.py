@@ -24,7 +24,7 @@ _SAME_INSTANT = 1e-6  # [s]
 
 
 class Standing(NamedTuple):
-    """Where a run stands."""
+    """The state of a run."""
 
     mirror: Mirror
     step: int  # control step
@@ -40,9 +40,9 @@ class ReplayedLoop:
         walking: the crowd's step.
         walks: notes how people get on, and knows who counts.
         traffic: notes what the background vehicles do.
-        heartbeat: tells another process that all is well.
+        heartbeat: Function that tells another process that this one is alive.
         since: where a run that is to be gone on with stands; None: at its beginning.
-        driven: of egos that are not there, but round which the zone lies; None: they are there.
+        driven: Recorded egos round which the zone lies, or None if the egos drive.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class ReplayedLoop:
 
         Args:
             last: the control step.
-            interrupt: looked at between two steps.
+            interrupt: Flag that is read between two steps.
             to_the_end: whoever is on the way, up to ``last``.
 
         Returns:

@@ -1,1 +1,1 @@
-"""How egos enter the road."""
+"""The entry of egos onto the road."""

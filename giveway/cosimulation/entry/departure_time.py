@@ -1,4 +1,4 @@
-"""When an inserted ego is to enter: at its time, or at one drawn from the run's seed."""
+"""The departure time of an inserted ego: given, or drawn from the run's seed."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ def departure_time(config: EgoRunConfig) -> float:
     departs at the same instant.
 
     Args:
-        config: of the ego.
+        config: Configuration of the ego.
     """
     times = config.ego.depart_time
     if isinstance(times, float):

@@ -1,4 +1,4 @@
-"""When each ego enters the road, and how: inserted by us or by SUMO, or taken over as it departs.
+"""The departures of egos: inserted by us or by SUMO, or taken over as they depart.
 
 An ego that is to be inserted enters at its time if there is room for it. Otherwise SUMO inserts it,
 by its own check, as soon as there is, and it is taken over there.
@@ -34,14 +34,14 @@ class Departures:
     """Watches SUMO for the departure of each waiting ego.
 
     Args:
-        egos: with their FMUs loaded.
+        egos: Waiting egos with their FMUs loaded.
         session: the running simulation.
         config_file: the scenario, for messages.
         time_step: [s] of the co-simulation.
         network: where people can walk; None: nobody asks.
 
     Attributes:
-        times: at which each ego that is to be inserted is due [s], by its id.
+        times: Departure times [s] of the egos that are to be inserted, by their ids.
 
     Raises:
         ScenarioError, ConfigError: an ego to be inserted has no route, or no file declares one that
@@ -132,7 +132,7 @@ class Departures:
         return all(ego.taken_over for ego in self.waiting)
 
     def note(self) -> None:
-        """Once after each SUMO step, while anybody waits: who departed in it."""
+        """Take note, after each SUMO step, of the vehicles that departed in it."""
         departed = self._session.vehicles.departed()
         if departed and len(self._departed) < _NAMES_KEPT:
             self._departed.update(dict.fromkeys(departed))
@@ -160,7 +160,7 @@ class Departures:
             raise ScenarioError(self._never(self.waiting[0]))
 
     def _is_due(self, ego: WaitingEgo, entered: Sequence[Ego] = ()) -> bool:
-        """Whether an ego enters the road now; ``entered``: those that do so at this instant."""
+        """Return whether an ego enters the road now; ``entered`` are those that just did."""
         if ego.taken_over or ego.id in self._queued:
             return self._is_free_to_take(ego)
         if self._session.time < self.times[ego.id] - 1e-9:
@@ -175,7 +175,7 @@ class Departures:
         return False
 
     def _is_free_to_take(self, ego: WaitingEgo) -> bool:
-        """Whether SUMO has the vehicle on a road, and nobody overlaps it.
+        """Return whether SUMO has the vehicle on a road, and nobody overlaps it.
 
         Raises:
             ScenarioError: it has had no room for too long.
@@ -191,7 +191,7 @@ class Departures:
         return False
 
     def _overlapped(self, ego: WaitingEgo) -> bool:
-        """Whether another vehicle on the road overlaps the one that is to be taken over."""
+        """Return whether another vehicle on the road overlaps the one that is to be taken over."""
         vehicles = self._session.vehicles
         state, others = vehicles.state(ego.id), vehicles.everybody_but(ego.id)
         if not others.ids:
@@ -202,7 +202,7 @@ class Departures:
         return any(not vehicles.parked(others.ids[i]) for i in touched)
 
     def _may_meet(self, ego: WaitingEgo, entered: Sequence[Ego]) -> bool:
-        """Whether SUMO may insert somebody now where an ego is to be inserted."""
+        """Return whether SUMO may insert a vehicle now where an ego is to be inserted."""
         session = self._session
         edge = ego.config.ego.route[0]
         near = {edge, *ego.config.ego.route[:2], *session.lanes.edges_before(edge)}

@@ -1,4 +1,4 @@
-"""How a waiting ego enters the road: inserted where its route says, or taken over where it is."""
+"""The entrance of a waiting ego: inserted where its route says, or taken over where it is."""
 
 import math
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class Entrance:
 
     Attributes:
         remarks: what the user should know.
-        ways: of those that have entered, by their ids.
+        ways: Paths of the egos that have entered, by their ids.
     """
 
     def __init__(
@@ -52,8 +52,8 @@ class Entrance:
         """Put an ego where its route begins.
 
         Args:
-            ego: before its departure.
-            path: of it.
+            ego: Ego before its departure.
+            path: Path of the ego.
             lane_path: that the path was made of.
         """
         settings = ego.config.ego
@@ -188,9 +188,9 @@ def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
     """Make sure that an ego's way is as long as it is to drive.
 
     Args:
-        ego: before its departure.
-        path: of it.
-        departure: station [m] at which it enters.
+        ego: Ego before its departure.
+        path: Path of the ego.
+        departure: Station [m] at which it enters.
 
     Raises:
         ScenarioError: it is not.

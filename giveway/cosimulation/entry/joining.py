@@ -1,4 +1,4 @@
-"""How a vehicle that is taken over beside its lane's centre line joins it."""
+"""Joins a vehicle that is taken over beside its lane's centre line to that line."""
 
 from dataclasses import replace
 
@@ -6,8 +6,8 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.vehicles import VehicleState
 
-_ON_THE_LINE = 0.01  # [m]
-_MERGE = 20.0  # [m] along which it joins the line
+_ON_THE_LINE = 0.01  # lateral offset [m] up to which a vehicle is on the line
+_MERGE = 20.0  # distance [m] along which it joins the line
 
 
 def join(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
@@ -17,8 +17,8 @@ def join(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, Lane
     lanes, or is moved by SUMO's sublane model) joins the line within 20 m.
 
     Args:
-        lane_path: of its route.
-        state: of it in SUMO.
+        lane_path: Lanes of its route.
+        state: State of the vehicle in SUMO.
     """
     path = EgoPath.through(lane_path.points)
     station, lateral = path.locate(state.x, state.y, near=state.lane_position)

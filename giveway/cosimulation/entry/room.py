@@ -1,4 +1,4 @@
-"""Whether an ego finds room on the road: its place is free, and everybody could brake in time."""
+"""Checks that an ego has room on the road: its place is free, and all could brake in time."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -22,7 +22,7 @@ _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 
 
 class Entry(NamedTuple):
-    """How an ego is going to enter the road."""
+    """The planned entry of an ego: its path, place, body, speed and braking."""
 
     path: EgoPath
     lane: str  # that it enters on
@@ -39,12 +39,12 @@ class Entry(NamedTuple):
 
 
 def has_room(entry: Entry, vehicles: SumoVehicles, entered: Sequence[Ego]) -> bool:
-    """Whether nobody is where the ego enters, and it and whoever follows it can brake in time.
+    """Return whether the ego's place is free, and it and its followers can brake in time.
 
     Args:
-        entry: of the ego.
-        vehicles: of the running simulation.
-        entered: egos that enter at this instant, and are not on SUMO's road yet.
+        entry: Planned entry of the ego.
+        vehicles: Vehicles of the running simulation.
+        entered: Egos that enter at this instant, and are not on SUMO's road yet.
     """
     for ego in entered:
         there = np.array([*ego.pose, ego.shape.length, ego.shape.width])
@@ -59,7 +59,7 @@ def has_room(entry: Entry, vehicles: SumoVehicles, entered: Sequence[Ego]) -> bo
 
 
 def _can_stop_behind(entry: Entry, others: BackgroundVehicles) -> bool:
-    """Whether the ego could stop behind everybody in front of it."""
+    """Return whether the ego could stop behind all vehicles in front of it."""
     path, v = entry.path, entry.speed
     first, last = window(path.stations, entry.station, BEHIND)
     for x, y, heading, speed, length, width in zip(
@@ -80,7 +80,7 @@ def _can_stop_behind(entry: Entry, others: BackgroundVehicles) -> bool:
 
 
 def _can_be_followed(entry: Entry, others: BackgroundVehicles, vehicles: SumoVehicles) -> bool:
-    """Whether everybody whose way leads to where the ego enters could stop behind it."""
+    """Return whether all vehicles that drive towards the ego's place could stop behind it."""
     x, y, _ = entry.path.pose(entry.station)
     for i, name in enumerate(others.ids):
         speed = float(others.speed[i])

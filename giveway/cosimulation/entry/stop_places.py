@@ -19,8 +19,8 @@ def placed(stops: Sequence[PlannedStop], state: VehicleState) -> dict[int, int]:
     """The stops that lie on the rest of a vehicle's route: which stop on which edge, by number.
 
     Args:
-        stops: in the order in which the vehicle comes to them.
-        state: of the vehicle.
+        stops: Planned stops in the order in which the vehicle comes to them.
+        state: State of the vehicle.
     """
     places = {}
     at, behind = 0, state.lane_position - _PASSED
@@ -51,11 +51,11 @@ def on_path(
     """The stops as stations of the ego's path.
 
     Args:
-        places: of those that are served, as :func:`placed` has them.
-        stops: all of the vehicle's.
-        path: the ego's.
-        lane_path: that it was made of.
-        lanes: of the network.
+        places: Edge index of each served stop, as :func:`placed` returns it.
+        stops: All stops of the vehicle.
+        path: Path of the ego.
+        lane_path: Lanes that the path was made of.
+        lanes: Lanes of the network.
     """
     found = []
     for number, at in places.items():

@@ -1,1 +1,1 @@
-"""How people enter a run."""
+"""The entry of people into a run."""

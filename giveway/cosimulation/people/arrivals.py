@@ -24,7 +24,7 @@ class Arrivals:
         self._hosts = tuple(hosts)
 
     def update(self, step: int) -> None:
-        """Once after each SUMO step, at the control step ``step``: who comes in."""
+        """Return the people who come in after a SUMO step, at the control step ``step``."""
         for names, host in zip(self.flows.enter(step), self._hosts, strict=True):
             if names:
                 self._session.add_persons(names, host)

@@ -8,13 +8,13 @@ from giveway.geometry.path import EgoPath
 
 
 def free_drive(config: RunConfig, path: EgoPath | None) -> FreeDrive | None:
-    """The free drive along ``path``; None: there is no path.
+    """The free drive along ``path``; None if there is no path.
 
     Where the lanes say how fast, the speed at departure stands for the reference speed.
 
     Args:
-        config: of the run; also of one in which nobody drives.
-        path: of the first ego that is inserted, or would be.
+        config: Configuration of the run, with or without egos.
+        path: Path of the first ego that is inserted, or would be.
     """
     if path is None:
         return None

@@ -34,8 +34,8 @@ def people_at_first(
 
     Args:
         config: the run's.
-        departures: of its egos.
-        way: that an ego would have, where none drives.
+        departures: Departures of its egos.
+        way: Path that an ego would have, where none drives.
         sumo: the running simulation, to which they are added.
         net_file: the network's.
         network: where people can walk, if it is known already.
@@ -67,13 +67,13 @@ def people_to_come(
     net_file: Path,
     network: WalkNetwork | None,
 ) -> Arrivals | None:
-    """The people who are going to come in; None: nobody is.
+    """The people who are going to come in; None if nobody is.
 
     Args:
         config: the run's.
         roster: the crowd that they join.
-        time_step: of the co-simulation [s].
-        sumo: the running simulation, to which they are going to be added.
+        time_step: Control step of the co-simulation [s].
+        sumo: Running simulation, to which they are going to be added.
         net_file: the network's.
         network: where people can walk, if it is known already; with lights it has to be.
 
@@ -96,7 +96,7 @@ def people_to_come(
 
 
 def _middle(config: RunConfig, drive: FreeDrive | None) -> tuple[float, float]:
-    """Where the added people are about: x, y [m] of the middle of their area or of the drive."""
+    """The point (x, y) [m] in the middle of the added people's area or of the drive."""
     if drive is not None:
         pose = drive.path.pose(drive.departure + drive.distance / 2.0)
         return pose.x, pose.y

@@ -1,1 +1,1 @@
-"""How background vehicles, egos and people interact."""
+"""The interaction of background vehicles, egos and people."""

@@ -22,9 +22,9 @@ class Bends:
     """Follows the background vehicles whose lanes bend before them.
 
     Args:
-        vehicles: of the running simulation.
-        time_step: of the control [s].
-        substeps: control steps per SUMO step.
+        vehicles: Vehicles of the running simulation.
+        time_step: Control step [s].
+        substeps: Control steps per SUMO step.
         horizon: N, the most steps that any ego looks ahead.
     """
 
@@ -43,7 +43,7 @@ class Bends:
         near: NDArray[np.int64],
         looked_at: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Once after each SUMO step: find those that turn.
+        """Find the vehicles that turn, after each SUMO step.
 
         Args:
             background: the background vehicles now.
@@ -80,7 +80,7 @@ class Bends:
 
     @staticmethod
     def _path(background: BackgroundVehicles, i: int, onwards: Array) -> EgoPath:
-        """From the vehicle's rear over its front, and on as far beside its lanes as it is now."""
+        """The path from the vehicle's rear over its front, and on at its present lateral offset."""
         front = np.array([background.x[i], background.y[i]])
         heading, length = background.heading[i], background.length[i]
         rear = front - length * np.array([np.cos(heading), np.sin(heading)])
@@ -103,14 +103,14 @@ class Bends:
 def sideways(
     heading: Array, position: Array, number: Indices, pool: LanePathPool, reach: Array
 ) -> Array:
-    """(m,) [m] how far off the straight line lanes lead vehicles; 0 off any lane.
+    """(m,) lateral offsets [m] by which lanes lead vehicles off a straight line; 0 off any lane.
 
     Args:
         heading: (m,) of each [rad].
         position: (m,) [m] on its first lane, in SUMO's metres.
         number: (m,) of its lane path; -1: none.
-        pool: of the lane paths.
-        reach: (m,) [m] that it drives.
+        pool: Pool of the lane paths.
+        reach: (m,) distances [m] that the vehicles drive.
     """
     points, along, start, first, nominal = pool
     off = np.zeros(len(number))

@@ -1,4 +1,4 @@
-"""Where egos and other vehicles meet: at junctions, where lanes become one, and on the road.
+"""The places where egos and other vehicles meet: junctions, merge points and the road.
 
 Egos take note of lights and traffic; background vehicles let those egos go first that may, keep
 behind those that merge, and brake for pedestrians.
@@ -46,7 +46,7 @@ class Meetings:
         Args:
             background: the background vehicles.
             crowd: the pedestrians.
-            egos: on the road.
+            egos: Egos on the road.
         """
         rooms = self._look_ahead(background, egos)
         merging = [ego.rules.keeps_behind for ego in egos if ego.rules.situation.merging]

@@ -1,4 +1,4 @@
-"""Who approaches the junctions on the egos' ways: SUMO's vehicles and the egos themselves."""
+"""The vehicles that approach the junctions on the egos' paths, egos included."""
 
 from collections.abc import Mapping, Sequence, Set
 from typing import NamedTuple
@@ -38,11 +38,11 @@ class TrafficWatch:
         self._stands: dict[str, float] = {}  # since when [s]
 
     def of(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> Traffic:
-        """Who approaches the junctions ahead of egos, egos included; the nearest first.
+        """The vehicles that approach the junctions ahead of egos, egos included; nearest first.
 
         Args:
             background: the background vehicles now.
-            egos: on the road now.
+            egos: Egos on the road now.
         """
         found: dict[str, list[Approach]] = {}
         for ego in egos:
@@ -121,7 +121,7 @@ class TrafficWatch:
                     found[own.junction].append(approach)
 
     def _standing(self, name: str, speed: float) -> float:
-        """For how long [s] somebody has stood."""
+        """The time [s] for which a vehicle has stood."""
         if speed >= _STANDING:
             self._stands.pop(name, None)
             return 0.0

@@ -26,7 +26,7 @@ _CELL = 20.0  # [m] of the grid in which pedestrians are looked up
 
 
 class _Known(NamedTuple):
-    """What is remembered of one vehicle."""
+    """The remembered lanes of one vehicle."""
 
     lane: str
     route: str
@@ -57,7 +57,7 @@ class LanePaths:
     """The lane paths of the background vehicles.
 
     Args:
-        vehicles: of the running simulation.
+        vehicles: Vehicles of the running simulation.
 
     Attributes:
         pool: all lane paths so far, with room for more.

@@ -1,4 +1,4 @@
-"""Who merges with an ego: the vehicles whose lanes lead onto one that the ego comes to as well."""
+"""The vehicles that merge with an ego: their lanes lead onto a lane of the ego's route."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from giveway.cosimulation.traffic.lane_paths import LanePaths
 from giveway.ego.ego import Ego
-from giveway.ego.rules.merge_places import Place, Rival
+from giveway.ego.rules.merge_points import MergePoint, MergingVehicle
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
@@ -18,8 +18,8 @@ class Merging:
     """Finds those who merge with egos, once after each SUMO step.
 
     Args:
-        vehicles: of the running simulation.
-        lanes: of its network.
+        vehicles: Vehicles of the running simulation.
+        lanes: Lanes of its network.
     """
 
     def __init__(self, vehicles: SumoVehicles, lanes: Lanes) -> None:
@@ -29,7 +29,7 @@ class Merging:
 
     def of(
         self, background: BackgroundVehicles, ego: Ego, egos: Sequence[Ego]
-    ) -> dict[Place, dict[str, Rival]]:
+    ) -> dict[MergePoint, dict[str, MergingVehicle]]:
         """The vehicles that an ego merges with, at each place in sight.
 
         Args:
@@ -57,10 +57,12 @@ class Merging:
         return near + [(other.id, other.vehicle.speed, other.shape.length) for other in others]
 
     def _rivals(
-        self, places: Sequence[Place], near: Sequence[tuple[str, float, float]]
-    ) -> dict[Place, dict[str, Rival]]:
+        self, places: Sequence[MergePoint], near: Sequence[tuple[str, float, float]]
+    ) -> dict[MergePoint, dict[str, MergingVehicle]]:
         """Those whose lanes lead onto the lane that begins at each place."""
-        rivals: dict[Place, dict[str, Rival]] = {place: {} for place in places}
+        merging_vehicles: dict[MergePoint, dict[str, MergingVehicle]] = {
+            place: {} for place in places
+        }
         names = [name for name, _, _ in near]
         numbers, positions = self._lane_paths.of(names, [_NEAR] * len(names))
         self._lane_paths.forget(names)
@@ -75,5 +77,5 @@ class Merging:
                     continue
                 before = sum(map(self._lanes.length, lanes[:k]))
                 position = share * self._lanes.length(lanes[0]) - before
-                rivals[place][name] = Rival(position, speed, length)
-        return rivals
+                merging_vehicles[place][name] = MergingVehicle(position, speed, length)
+        return merging_vehicles

@@ -24,9 +24,9 @@ def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[
     """The room [m] that those have who have to wait for an ego, by their names.
 
     Args:
-        ego: on the road.
-        states: of each light system, one letter per movement (SUMO's).
-        traffic: who approaches each junction.
+        ego: Ego on the road.
+        states: State of each light system, one of SUMO's letters per movement.
+        traffic: Vehicles that approach each junction.
     """
     found: dict[str, float] = {}
     for place in ego.rules.junctions:
@@ -59,7 +59,7 @@ def _gives_way(
     states: Mapping[str, str],
     ego: Ego,
 ) -> bool:
-    """Whether somebody has to let the ego go first, and the two would meet."""
+    """Return whether a vehicle has to let the ego go first, and the two would meet."""
     movement = place.movements[other.number]
     if ego.front - ego.shape.length > where.leave:
         return False

@@ -1,4 +1,4 @@
-"""What the background traffic of a run did, second by second, to be compared with its twin's."""
+"""The background traffic of a run, second by second, for the counterfactual run."""
 
 from collections.abc import Mapping
 
@@ -27,7 +27,7 @@ class TrafficNotes:
         self._losses: dict[str, float] = {}
 
     def note(self, background: BackgroundVehicles) -> None:
-        """Once after each of SUMO's steps."""
+        """Record the traffic after each of SUMO's steps."""
         self._looks += 1
         if (self._looks - 1) % self._every:
             return
@@ -38,16 +38,16 @@ class TrafficNotes:
 
     @property
     def time_loss(self) -> float:
-        """[s] that all background vehicles lost so far, by SUMO's reckoning."""
+        """The time [s] that all background vehicles have lost so far, as SUMO counts it."""
         return float(sum(self._losses.values()))
 
     @property
     def vehicles(self) -> int:
-        """How many background vehicles there were."""
+        """The number of background vehicles."""
         return len(self._losses)
 
     def differ_from(self, other: "TrafficNotes") -> bool:
-        """Whether lights or vehicles ever did anything else while both were looked at."""
+        """Return whether lights or vehicles ever differed while both runs were recorded."""
         if any(a != b for a, b in zip(self._lights, other._lights, strict=False)):
             return True
         return any(not _same(a, b) for a, b in zip(self._vehicles, other._vehicles, strict=False))

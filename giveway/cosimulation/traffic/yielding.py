@@ -21,7 +21,7 @@ import numpy as np
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
 from giveway.cosimulation.traffic.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
 from giveway.ego.ego import Ego
-from giveway.ego.rules.merge_places import Behind
+from giveway.ego.rules.merge_points import FollowingConstraint
 from giveway.geometry.kernel import Array
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.sumo.background import BackgroundVehicles
@@ -45,7 +45,7 @@ class Yielding:
     """Slows background vehicles down for pedestrians.
 
     Args:
-        vehicles: of the running simulation.
+        vehicles: Vehicles of the running simulation.
         step_length: SUMO's step [s], in which a limit holds.
 
     Attributes:
@@ -67,7 +67,7 @@ class Yielding:
 
     @property
     def report(self) -> dict[str, float]:
-        """How many vehicles ever yielded, and for how long [s] in all."""
+        """The number of vehicles that ever yielded, and the sum of their times [s]."""
         return {"vehicles_that_yielded": len(self._ever), "time_yielding": round(self._time, 6)}
 
     def update(
@@ -76,14 +76,14 @@ class Yielding:
         crowd: Crowd,
         egos: Sequence[Ego] = (),
         rooms: Mapping[str, float] = NOBODY,
-        merging: Sequence[Mapping[str, Behind]] = (),
+        merging: Sequence[Mapping[str, FollowingConstraint]] = (),
     ) -> None:
-        """Once after each SUMO step: limit vehicles with somebody ahead, release the others.
+        """Limit vehicles with somebody ahead after each SUMO step, and release the others.
 
         Args:
             background: the background vehicles now.
             crowd: the pedestrians now.
-            egos: on the road now.
+            egos: Egos on the road now.
             rooms: [m] up to the lines of those that wait there for an ego, by their names.
             merging: who keeps behind each ego that they come onto one lane with.
         """
@@ -213,7 +213,7 @@ class Yielding:
     def _merging(
         self,
         background: BackgroundVehicles,
-        merging: Sequence[Mapping[str, Behind]],
+        merging: Sequence[Mapping[str, FollowingConstraint]],
     ) -> dict[str, float]:
         """The speed limit [m/s] of each vehicle that lets an ego merge before it."""
         limits: dict[str, float] = {}
@@ -236,7 +236,7 @@ class Yielding:
 
 
 def _expected(crowd: Crowd) -> Array:
-    """(k, 2) [m] where people are and where they are expected to be."""
+    """(k, 2) present and expected positions [m] of people."""
     places = [crowd.position, crowd.position + _LOOK_AHEAD * crowd.velocity]
     relying = np.flatnonzero(crowd.priority)
     if len(relying):
@@ -254,7 +254,7 @@ def _safe_speed(room: float, leader: float, deceleration: float, reaction: float
 
 
 def _are_stuck(ego: Ego, background: BackgroundVehicles, i: int) -> bool:
-    """Whether the vehicle ``i`` has to go on for the ego to get away from it."""
+    """Return whether the vehicle ``i`` has to go on for the ego to get away from it."""
     x, y, heading = ego.pose
     own = np.array([x, y, heading, ego.shape.length, ego.shape.width])
     if rectangles_overlap(own, background.bodies[i]):

@@ -36,14 +36,14 @@ from giveway.ego.rules.yielding import (
 from giveway.sumo.signal_plans import ChangeOf, untold
 from pedestrian_model import Crowd
 
-_BEFORE = 1.0  # [s] between the ego and whoever passes its way before or after it
-_AFTER = 0.5  # [s] instead, behind whoever it has waited for: else it would stop for them again
-_PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
-_CLEAR = 0.3  # [m] before the crossing it stops at the latest
-_LAST = 2.0  # [m] before the crossing; farther away a stop at it counts as in time, as by the law
-_SURE = 1.0  # [s] in addition, before it starts again; else it would creep on bit by bit
-_PULL_AWAY = 1.5  # [m/s^2] of the ego that has waited
-_SIGHT = 60.0  # [m] before a crossing from which on people are looked at
+_BEFORE = 1.0  # time margin [s] between the ego and a pedestrian who crosses before or after it
+_AFTER = 0.5  # time margin [s] behind a pedestrian for whom the ego has already waited
+_PATIENCE = 4.5  # time [s] to the ego's path, up to which a pedestrian always counts
+_CLEAR = 0.3  # least distance [m] of a stop before the crossing
+_LAST = 2.0  # distance [m]; farther away, a stop at the very edge of the crossing still counts
+_SURE = 1.0  # additional time margin [s] before the ego starts again, so that it does not creep
+_PULL_AWAY = 1.5  # acceleration [m/s^2] of an ego that has waited
+_SIGHT = 60.0  # sight distance [m] ahead of a crossing
 
 
 class Crossings:
@@ -79,8 +79,8 @@ class Crossings:
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
         self._latest = math.inf
-        self._waits_for: int | None = None  # a crossing, before the next one
-        self._place = math.inf  # [m] where it does, or did before; inf: it has not
+        self._waits_for: int | None = None  # index of the crossing that it waits for
+        self._place = math.inf  # station [m] at which it waits or has waited; inf: it has not
         self._states: Mapping[str, str] = {}
         self.needs = Needs(
             frozenset(place.system for place in self._crossings if place.system),
@@ -162,7 +162,7 @@ class Crossings:
         return math.inf
 
     def _stops_before(self, number: int, front: float) -> list[int]:
-        """Before which crossings to stop for one: if it would stand on others, before these."""
+        """Crossings before which to stop for one: earlier ones if it would block them."""
         stops = [number]
         while stops[-1] > self._next:
             stop = self._crossings[stops[-1]].entry - STOP_BEFORE
@@ -173,7 +173,7 @@ class Crossings:
         return stops[::-1]
 
     def _is_wanted(self, number: int, front: float, speed: float, crowd: Crowd) -> bool:
-        """Whether somebody with priority and the ego would be on its way over it together."""
+        """Return whether the ego would meet somebody with priority on the crossing."""
         place = self._crossings[number]
         if not len(crowd):
             return False
@@ -207,7 +207,7 @@ class Crossings:
         return bool((coming & (to_leave > 0.0) & ~first & ~later).any())
 
     def _open_for(self, place: PathCrossing) -> float:
-        """How long [s] a crossing is open to people yet, as far as anybody can tell."""
+        """The time [s] for which a crossing stays open to people; inf if no change is announced."""
         change = self._change_of(place.system) if place.system else None
         if change is None or is_open(change.state, place.link, zebra=place.zebra):
             return math.inf
@@ -216,7 +216,7 @@ class Crossings:
     def _own_times(
         self, place: PathCrossing, front: float, speed: float, starts: bool
     ) -> tuple[float, float]:
-        """When [s] the ego would enter the crossing and have left it, if it went on, or started."""
+        """The times [s] at which the ego would enter and leave the crossing if it drove on."""
         entry, left = place.entry - front, place.exit + self._length - front
         if not starts:
             return entry / speed, left / speed

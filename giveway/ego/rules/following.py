@@ -1,32 +1,32 @@
-"""How an ego follows and approaches the vehicle in front of it."""
+"""Following and approaching the vehicle in front of the ego."""
 
 from math import inf, sqrt
 
 from giveway.ego.perception.leader import Leader
 from giveway.geometry.kernel import Array
 
-_KEPT, _LEAST = 0.5, 0.25  # of d_safe that a plan keeps to vehicles, and that it keeps at least
-CLOSEST = 2.0  # [m] behind one who stands, where the ego would block a crossing or junction else
-FIRM = 3.0  # [m/s^2] of braking that the share in between may cost
-_BUILD_UP = 0.2  # [s] until the brake has it
-_APPROACHED = 0.5  # [m] before the safe distance at which the approach to a vehicle ends
-_RECOVERY = 2.0  # [s] in which a lost safe distance is to be regained
-_REACTION = 1.0  # [s] in which a planning controller follows a leader's speed (Gipps 1981)
+_KEPT, _LEAST = 0.5, 0.25  # usual and least share of d_safe that a plan keeps to vehicles
+CLOSEST = 2.0  # gap [m] to a standing vehicle where the ego would else block a crossing
+FIRM = 3.0  # firm braking [m/s^2] that a plan accepts to keep more than the least share
+_BUILD_UP = 0.2  # time [s] in which the brake builds up
+_APPROACHED = 0.5  # distance [m] before d_safe at which the approach to a vehicle ends
+_RECOVERY = 2.0  # time [s] in which a lost safe distance is regained
+_REACTION = 1.0  # lag [s] of a planning controller behind a leader's speed (Gipps 1981)
 
 
 class Following:
-    """How an ego follows and approaches vehicles.
+    """Bounds of an ego that follows or approaches a vehicle.
 
-    Ours follow with a headway. A planning controller plans no hard stop for a little less of the
-    distance to a vehicle that it keeps on the average; the tuned PID, which brakes for a distance
-    alone, is shown how far it is to where the vehicle in front could stop.
+    Giveway's controllers follow with a headway. A planning controller accepts a little less than
+    the usual distance to a vehicle rather than plan a hard stop. The tuned PID brakes for a
+    distance alone, so it is shown the distance to where the vehicle in front could stop.
 
     Args:
-        safe_distance: d_safe [m] to a vehicle.
-        origin: of the distance to who is in front, ahead of the front bumper [m].
-        comfortable: deceleration [m/s^2] of an approach.
-        plans: a planning controller drives.
-        tuned: the tuned PID does.
+        safe_distance: Safe distance d_safe [m] to a vehicle.
+        origin: Point from which gaps are measured, ahead of the front bumper [m].
+        comfortable: Deceleration [m/s^2] of an approach.
+        plans: Whether a planning controller drives.
+        tuned: Whether the tuned PID drives.
     """
 
     def __init__(
@@ -38,50 +38,51 @@ class Following:
         self._firmly = 2.0 * FIRM if tuned else inf
         self._spare = max(0.0, safe_distance + origin - CLOSEST)
 
-    def closes_up(self, station: float, front: float, to_clear: float) -> float:
-        """How much [m] of the safe distance it gives up, rather than block a place.
+    def keep_clear_relaxation(self, ahead: float, station: float, keep_clear: float) -> float:
+        """The gap relaxation [m] that lets the ego leave a keep-clear zone.
 
         Args:
-            station: of the vehicle in front [m].
-            front: station of the front bumper [m].
-            to_clear: [m] to be driven on to leave the place.
+            ahead: Station of the vehicle in front [m].
+            station: Station of the ego's front bumper [m].
+            keep_clear: Keep-clear distance [m], which is left to drive until the zone is free.
         """
-        if to_clear <= 0.0:
+        if keep_clear <= 0.0:
             return 0.0
-        left = station - front - to_clear - _APPROACHED  # where it would have left it
+        left = ahead - station - keep_clear - _APPROACHED  # gap [m] behind the zone
         return min(max(0.0, self._spare + CLOSEST - left), self._spare)
 
-    def given_up(
-        self, leader: Leader, ahead: Array, front: float, speed: float, to_clear: float
+    def gap_relaxation(
+        self, leader: Leader, ahead: Array, station: float, speed: float, keep_clear: float
     ) -> float:
-        """What a plan may give up of the safe distance [m]; arguments of :func:`given_up`."""
-        station = min(leader.station, float(ahead.min(initial=inf)))
-        spared = self.closes_up(station, front, to_clear)
+        """The gap relaxation [m] of a plan; arguments as for :func:`gap_relaxation`."""
+        closest = min(leader.station, float(ahead.min(initial=inf)))
+        relaxation = self.keep_clear_relaxation(closest, station, keep_clear)
         if not self._plans:
-            return spared
-        return max(spared, given_up(leader, ahead, front, speed, self._safe_distance, self._origin))
+            return relaxation
+        usual = gap_relaxation(leader, ahead, station, speed, self._safe_distance, self._origin)
+        return max(relaxation, usual)
 
-    def station(self, leader: Leader, front: float, to_clear: float) -> float:
+    def leader_station(self, leader: Leader, station: float, keep_clear: float) -> float:
         """The station [m] of the vehicle in front that a controller is to keep its distance to."""
-        spared = self.closes_up(leader.station, front, to_clear)
-        return leader.station + leader.speed**2 / self._firmly + spared
+        relaxation = self.keep_clear_relaxation(leader.station, station, keep_clear)
+        return leader.station + leader.speed**2 / self._firmly + relaxation
 
-    def speed_limit(self, leader: Leader, stop: float, front: float, to_clear: float) -> float:
+    def speed_limit(self, leader: Leader, stop: float, station: float, keep_clear: float) -> float:
         """The speed [m/s] that comfortable braking allows before a stop or behind a leader.
 
         Args:
-            leader: the closest vehicle in front.
-            stop: station [m] at which the front bumper has to stop; inf: nowhere.
-            front: its station [m].
-            to_clear: [m] to be driven on to leave what it would block.
+            leader: Closest vehicle in front.
+            stop: Station [m] at which the front bumper has to stop; inf: nowhere.
+            station: Station of the front bumper [m].
+            keep_clear: Keep-clear distance [m].
         """
         b, limit = self._comfortable, inf
         if stop < inf:
-            limit = sqrt(2.0 * b * max(0.0, stop - front))
+            limit = sqrt(2.0 * b * max(0.0, stop - station))
         if leader.station < inf:
             v = leader.speed
-            room = leader.station - front - self._origin - self._safe_distance - _APPROACHED
-            room += self.closes_up(leader.station, front, to_clear)
+            room = leader.station - station - self._origin - self._safe_distance - _APPROACHED
+            room += self.keep_clear_relaxation(leader.station, station, keep_clear)
             if room <= 0.0:
                 behind = v + room / _RECOVERY
             else:
@@ -90,30 +91,30 @@ class Following:
         return limit
 
 
-def given_up(
+def gap_relaxation(
     leader: Leader,
     ahead: Array,
-    front: float,
+    station: float,
     speed: float,
     safe_distance: float,
     origin: float,
 ) -> float:
-    """What a plan may give up of the safe distance to vehicles [m], so as not to brake hard for it.
+    """The part of the safe distance [m] that a plan gives up so as not to brake hard for a vehicle.
 
-    That is half of it; and as much as to a quarter where a vehicle that cuts in, stops at once or
-    comes from the side leaves no room for firm braking to half of it.
+    As a rule a plan keeps half of the safe distance. It keeps down to a quarter where a vehicle
+    that cuts in, stops at once or comes from the side leaves no room for firm braking.
 
     Args:
-        leader: the closest vehicle in front.
-        ahead: (N,) stations [m] of the closest at steps 1 ... N.
-        front: the front bumper's station [m].
-        speed: of the ego [m/s].
-        safe_distance: d_safe [m].
-        origin: of the distance to who is in front, ahead of the front bumper [m].
+        leader: Closest vehicle in front.
+        ahead: (N,) stations [m] of the closest vehicle at steps 1 ... N.
+        station: Station of the front bumper [m].
+        speed: Speed of the ego [m/s].
+        safe_distance: Safe distance d_safe [m].
+        origin: Point from which gaps are measured, ahead of the front bumper [m].
     """
     kept = _KEPT * safe_distance + origin
     coming = float(ahead.min())  # before the leader: from the side
-    gap = min(leader.station, coming) - front
+    gap = min(leader.station, coming) - station
     if gap < inf:
         its_speed = leader.speed if leader.station <= coming else 0.0
         closing = max(0.0, speed - its_speed)

@@ -1,7 +1,7 @@
-"""Which gap in the traffic with priority a driver takes, and how long things take.
+"""Gap acceptance: the headways that drivers accept in the traffic with priority.
 
-The critical gap is the time to the next vehicle with priority that a driver wants at the line, so
-as to go first; the follow-up gap is the time after which the next driver goes through the same gap.
+The critical headway is the smallest gap [s] in the stream with priority that a driver accepts at
+the line. The follow-up headway is the time after which the next driver uses the same gap.
 Both are the Highway Capacity Manual's (HCM 2010): exhibits 19-10 and 19-11 for stop and give-way
 lines on two-lane roads (base values), chapter 18 for left turns against oncoming traffic at lights.
 """
@@ -15,10 +15,10 @@ _LEFT, _RIGHT = "lLt", "rR"  # SUMO's letters; a turn back crosses what a left t
 
 
 class Gap(NamedTuple):
-    """What drivers want of the traffic with priority."""
+    """The headways that drivers accept in the traffic with priority."""
 
-    critical: float  # [s]
-    follow_up: float  # [s]
+    critical: float  # critical headway [s]
+    follow_up: float  # follow-up headway [s]
 
 
 MAJOR_LEFT = Gap(4.1, 2.2)
@@ -29,12 +29,12 @@ PERMITTED = Gap(4.5, 2.5)  # at lights
 
 
 def gap_of(movement: Movement, *, at_lights: bool, major: bool) -> Gap:
-    """What drivers of a movement want.
+    """The headways that drivers of a movement accept.
 
     Args:
-        movement: the link through a junction.
-        at_lights: which show a green letter that has to give way.
-        major: it comes from a road with priority.
+        movement: Link through a junction.
+        at_lights: Whether a light shows it green, but it has to give way.
+        major: Whether it comes from a road with priority.
     """
     if at_lights:
         return PERMITTED
@@ -46,13 +46,13 @@ def gap_of(movement: Movement, *, at_lights: bool, major: bool) -> Gap:
 
 
 def travel_time(distance: float, speed: float, acceleration: float, fastest: float) -> float:
-    """How long [s] a vehicle takes that goes on, and speeds up where it is slower than it may be.
+    """The travel time [s] of a vehicle that speeds up until it is as fast as it may be.
 
     Args:
-        distance: [m]; at most 0: it is there.
-        speed: at first [m/s].
-        acceleration: [m/s^2], positive.
-        fastest: [m/s] that it wants to drive.
+        distance: Distance [m]; at most 0 if the vehicle is there already.
+        speed: Initial speed [m/s].
+        acceleration: Acceleration [m/s^2], positive.
+        fastest: Highest speed [m/s] of the vehicle.
     """
     if distance <= 0.0:
         return 0.0

@@ -1,4 +1,4 @@
-"""The junctions on an ego's path: whose ways cross or join its own, and where."""
+"""The junctions on an ego's path, and the movements that cross or join it."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -57,11 +57,11 @@ def junctions_on(
     """The junctions on a path at which vehicles may meet, in its order.
 
     Args:
-        path: the ego's.
-        passages: of its lane path.
-        width: of its body [m].
-        junctions: the network's.
-        lanes: likewise.
+        path: Path of the ego.
+        passages: Junction passages of its lane path.
+        width: Width of its body [m].
+        junctions: Junctions of the network.
+        lanes: Lanes of the network.
     """
     found = []
     for passage in passages:
@@ -109,7 +109,7 @@ def _on_path(where: Conflict, entry: float, joins: bool) -> Conflict:
 
 
 def _is_major(own: Movement, movements: Mapping[int, Movement]) -> bool:
-    """Whether who goes straight on from the same edge has priority."""
+    """Return whether vehicles that go straight on from the same edge have priority."""
     edge = own.source.rpartition("_")[0]
     return any(
         other.direction == "s" and other.state == "M" and other.source.rpartition("_")[0] == edge

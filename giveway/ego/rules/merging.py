@@ -1,4 +1,4 @@
-"""Merging: the ego and whoever comes onto the same lane from another one go one behind the other.
+"""Merging: the ego and vehicles that come onto its lane from another one go in an order.
 
 Where lanes become one (a zipper) or the ego changes lanes, whoever is ahead at the place goes
 first, and the other keeps behind it as if it drove in front already: "vehicles in the through lane
@@ -13,22 +13,27 @@ import math
 from collections.abc import Mapping
 
 from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.rules.merge_places import Behind, Place, Rival, places_of
+from giveway.ego.rules.merge_points import (
+    FollowingConstraint,
+    MergePoint,
+    MergingVehicle,
+    merge_points_of,
+)
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.yielding import HARDEST
 
-_BEFORE = 1.0  # [m] before the place that a short vehicle waits for another one
-_SHORT, _SWEPT = 4.0, 0.5  # [m] of length, beyond which this share of it cuts the corner
-_GAP = 1.0  # [m] between two vehicles where the ways are one
-_OPENING = 0.25  # [m] of that which may still be missing, per metre before the place
-_ASKED = 2.0  # [m/s^2] that it may ask of them
-_FIRM = 3.0  # [m/s^2] for an ego that has waited, or of somebody who brakes for it already
-_PATIENCE = 5.0  # [s] that it waits before
-_REACTION = 0.5  # [s] in which they do not brake yet
-_SLOWEST = 1.0  # [m/s] of an ego that is on its way
-_STANDING = 0.2  # [m/s]
-_LATER = 2.0  # [s] after the ego, somebody who waits comes to the place
+_BEFORE = 1.0  # distance [m] before the merge point at which a short vehicle waits
+_SHORT, _SWEPT = 4.0, 0.5  # length [m] of a short vehicle; share of the excess that cuts the corner
+_GAP = 1.0  # gap [m] between two vehicles behind the merge point
+_OPENING = 0.25  # part of the gap [m] that may be missing per metre before the merge point
+_ASKED = 2.0  # deceleration [m/s^2] that the ego may demand of a merging vehicle
+_FIRM = 3.0  # the same [m/s^2] after a long wait, or of a vehicle that brakes for it already
+_PATIENCE = 5.0  # time [s] that counts as a long wait
+_REACTION = 0.5  # reaction time [s] of a merging vehicle
+_SLOWEST = 1.0  # speed [m/s] from which on an ego is no longer waiting
+_STANDING = 0.2  # speed [m/s] below which a vehicle stands
+_LATER = 2.0  # time [s] after the ego, from which on a vehicle arrives too late to matter
 
 
 class Merging:
@@ -40,14 +45,14 @@ class Merging:
 
     Attributes:
         needs: The places where lanes become one.
-        keeps_behind: What each vehicle that goes after the ego has to heed, by its id.
+        keeps_behind: Following constraint of each vehicle that goes after the ego, by its id.
     """
 
-    def __init__(self, places: tuple[Place, ...], length: float) -> None:
+    def __init__(self, places: tuple[MergePoint, ...], length: float) -> None:
         self._length = length
-        self._first: list[tuple[Place, Rival]] = []  # vehicles that go before the ego
+        self._first: list[tuple[MergePoint, MergingVehicle]] = []  # vehicles that go before the ego
         self._waited = 0.0  # time [s] for which the ego has waited
-        self.keeps_behind: dict[str, Behind] = {}
+        self.keeps_behind: dict[str, FollowingConstraint] = {}
         self.needs = Needs(merges=places)
 
     @classmethod
@@ -56,7 +61,7 @@ class Merging:
         if not (route.heeds("merging") and route.heeds("following")):
             return None
         found = route.session.lanes.mergings(route.lane_path)
-        places = places_of(route.path, route.shape.width / 2, found, route.departure)
+        places = merge_points_of(route.path, route.shape.width / 2, found, route.departure)
         return cls(places, route.shape.length) if places else None
 
     def update(self, situation: Situation) -> None:
@@ -68,47 +73,52 @@ class Merging:
         if situation.merging:
             self._see(situation.merging, situation.station, situation.speed)
 
-    def _see(self, rivals: Mapping[Place, Mapping[str, Rival]], front: float, speed: float) -> None:
+    def _see(
+        self,
+        merging_vehicles: Mapping[MergePoint, Mapping[str, MergingVehicle]],
+        front: float,
+        speed: float,
+    ) -> None:
         """Take note of the others at each place in sight, and of those that go after the ego."""
         self._first.clear()
         asks = _FIRM if self._waited > _PATIENCE else _ASKED
-        behind: dict[str, Behind] = {}
-        for place, others in rivals.items():
-            for name, rival in others.items():
+        behind: dict[str, FollowingConstraint] = {}
+        for place, others in merging_vehicles.items():
+            for name, other in others.items():
                 asked = _FIRM if name in self.keeps_behind else asks
-                if not self._goes_first(place, front, speed, rival, asked):
-                    self._first.append((place, rival))
+                if not self._goes_first(place, front, speed, other, asked):
+                    self._first.append((place, other))
                     continue
                 ahead = place.entry - front
                 opening = _OPENING if ahead > 0.0 else 0.0
-                room = self._room(place, front, rival) + opening * ahead
+                room = self._room(place, front, other) + opening * ahead
                 moves = (1.0 - opening) * speed
-                to_wait = _to_place(place, rival) - _before(self._length)
-                here = Behind(moves, room, to_wait, asks if ahead > 0.0 else math.inf)
+                to_wait = _to_place(place, other) - _before(self._length)
+                here = FollowingConstraint(moves, room, to_wait, asks if ahead > 0.0 else math.inf)
                 if name not in behind or here.room < behind[name].room:
                     behind[name] = here
         self.keeps_behind = behind
 
-    def _room(self, place: Place, front: float, rival: Rival) -> float:
-        return front - place.origin - self._length - rival.position - _GAP
+    def _room(self, place: MergePoint, front: float, other: MergingVehicle) -> float:
+        return front - place.origin - self._length - other.position - _GAP
 
     def _goes_first(
-        self, place: Place, front: float, speed: float, rival: Rival, asked: float
+        self, place: MergePoint, front: float, speed: float, other: MergingVehicle, asked: float
     ) -> bool:
-        """Whether the ego goes before another vehicle, which may have to brake as ``asked``."""
-        to_go, its_way = place.entry - front, _to_place(place, rival)
-        ahead = rival.position - (front - place.origin)
+        """Return whether the ego goes first if the vehicle may have to brake with ``asked``."""
+        to_go, its_way = place.entry - front, _to_place(place, other)
+        ahead = other.position - (front - place.origin)
         if to_go <= 0.0 or its_way <= 0.0:
             return ahead < 0.0
         time = to_go / max(speed, _SLOWEST)
-        later = its_way > (time + _LATER) * max(rival.speed, _STANDING)
+        later = its_way > (time + _LATER) * max(other.speed, _STANDING)
         if later or ahead >= 0.0:
             return later
-        to_stop = its_way - _before(self._length) - rival.speed * _REACTION
-        if rival.speed * rival.speed <= 2.0 * asked * max(to_stop, 0.0):
+        to_stop = its_way - _before(self._length) - other.speed * _REACTION
+        if other.speed * other.speed <= 2.0 * asked * max(to_stop, 0.0):
             return True
-        room = self._room(place, front, rival) + _OPENING * to_go
-        closing = max(0.0, rival.speed - (1.0 - _OPENING) * speed)
+        room = self._room(place, front, other) + _OPENING * to_go
+        closing = max(0.0, other.speed - (1.0 - _OPENING) * speed)
         if room > closing * _REACTION:
             return closing * closing <= 2.0 * asked * (room - closing * _REACTION)
         shortage = closing * time - room
@@ -124,16 +134,16 @@ class Merging:
             return None
         front, speed = situation.station, situation.speed
         leader, stop = NO_LEADER, math.inf
-        for place, rival in self._first:
+        for place, other in self._first:
             to_go = place.entry - front
             if to_go <= 0.0:
                 continue  # whoever is ahead is in the ego's corridor
-            rear = place.origin + rival.position - rival.length + _OPENING * to_go
+            rear = place.origin + other.position - other.length + _OPENING * to_go
             if rear >= front + _GAP:
                 # as the place comes closer, less of the gap may be missing
-                leader = min(leader, Leader(rear, max(0.0, rival.speed - _OPENING * speed)))
+                leader = min(leader, Leader(rear, max(0.0, other.speed - _OPENING * speed)))
             elif speed * speed <= 2.0 * HARDEST * to_go:
-                place_to_wait = place.entry - _before(rival.length)
+                place_to_wait = place.entry - _before(other.length)
                 stop = min(stop, max(place_to_wait, min(front, place.entry)))
         return Demand(stop, YIELD, leader=leader)
 
@@ -150,16 +160,16 @@ class Merging:
         elif speed < _STANDING:
             self._waited += time_step
         self._first = [
-            (place, rival._replace(position=rival.position + rival.speed * time_step))
-            for place, rival in self._first
+            (place, other._replace(position=other.position + other.speed * time_step))
+            for place, other in self._first
         ]
 
 
 def _before(length: float) -> float:
-    """How far [m] before the place one waits for a vehicle of this length to go first."""
+    """The distance [m] before the merge point at which others wait for a vehicle of this length."""
     return _BEFORE + _SWEPT * max(0.0, length - _SHORT)
 
 
-def _to_place(place: Place, rival: Rival) -> float:
-    """How far [m] a vehicle is from where it would be in the ego's way."""
-    return place.entry - place.origin - rival.position
+def _to_place(place: MergePoint, other: MergingVehicle) -> float:
+    """The distance [m] of a vehicle from where it would be in the ego's way."""
+    return place.entry - place.origin - other.position

@@ -15,9 +15,9 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, fine_near
 from giveway.sumo.network.pedestrian_crossings import Crossing
 
-_SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
-_GRAIN = 0.5  # [m] between the points of its outline, at most
-_BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
+_SAMPLE, _COARSE = 0.1, 2.0  # fine and coarse spacing [m] of the sampled stations
+_GRAIN = 0.5  # largest spacing [m] of the points of the outline
+_BESIDE = 0.8  # distance [m] from the ego's side to the centre of a person who is not in its way
 
 
 class PathCrossing(NamedTuple):
@@ -42,9 +42,9 @@ def crossings_on(
     """The crossings that a path leads over, in its order.
 
     Args:
-        path: the ego's.
-        shape: of its body.
-        crossings: of the network.
+        path: Path of the ego.
+        shape: Length and width of its body [m].
+        crossings: Crossings of the network.
     """
     if not crossings:
         return ()

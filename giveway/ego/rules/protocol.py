@@ -1,4 +1,4 @@
-"""What a rule of the road is: it is shown a `Situation` and answers with a `Demand`.
+"""The protocol of a rule of the road: it is shown a `Situation` and answers with a `Demand`.
 
 A rule is a class of one file. It is made once for each ego, by a factory that looks at the
 `RouteContext`, and asked at each control step. The members of `RULES` and the rules of other
@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.junctions import PathJunction, Traffic
-from giveway.ego.rules.merge_places import Place, Rival
+from giveway.ego.rules.merge_points import MergePoint, MergingVehicle
 from giveway.ego.rules.yielding import at_rest
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
@@ -25,16 +25,18 @@ LIGHT, STOP, YIELD = "light", "stop", "yield"
 
 
 class Told(NamedTuple):
-    """What happens in SUMO, as far as an ego's rules want to be told."""
+    """The events in SUMO that an ego's rules want to be told of."""
 
     signals: Mapping[str, str] = MappingProxyType({})  # state of each signal system, by its id
     traffic: Traffic = MappingProxyType({})  # vehicles that approach each junction, by its id
-    merging: Mapping[Place, Mapping[str, Rival]] = MappingProxyType({})  # at each place in sight
+    merging: Mapping[MergePoint, Mapping[str, MergingVehicle]] = MappingProxyType(
+        {}
+    )  # at each place in sight
 
 
 @dataclass(slots=True)
 class Situation:
-    """What an ego's rules know at one instant; one object for each ego, refilled in place."""
+    """The state that an ego's rules know at one instant; one object per ego, refilled in place."""
 
     time: float = 0.0  # SUMO's clock [s]
     station: float = 0.0  # station [m] of the front bumper along the path
@@ -46,7 +48,7 @@ class Situation:
         default_factory=dict
     )  # one letter per movement of each system
     traffic: Traffic = field(default_factory=dict)  # vehicles that approach each junction
-    merging: Mapping[Place, Mapping[str, Rival]] = field(
+    merging: Mapping[MergePoint, Mapping[str, MergingVehicle]] = field(
         default_factory=dict
     )  # vehicles at each place
 
@@ -56,7 +58,7 @@ class Situation:
 
 
 class Demand(NamedTuple):
-    """What one rule demands at one instant; what it does not demand is infinite or nothing."""
+    """The demands of one rule at one instant; a field without a demand is infinite or empty."""
 
     stop: float = inf  # station [m] at which the front bumper has to stop
     cause: str = ""  # reason of the stop, for the column `waits_for`
@@ -68,11 +70,11 @@ class Demand(NamedTuple):
 
 
 class Needs(NamedTuple):
-    """What a rule wants to be told of; it does not change during the drive."""
+    """The events that a rule wants to be told of; they do not change during the drive."""
 
     systems: frozenset[str] = frozenset()  # SUMO's ids of signal systems
     junctions: tuple[PathJunction, ...] = ()  # junctions whose traffic matters
-    merges: tuple[Place, ...] = ()  # places where lanes become one, in the path's order
+    merges: tuple[MergePoint, ...] = ()  # places where lanes become one, in the path's order
     keep_clear: tuple[tuple[float, float], ...] = ()  # stations [m] at which no ego may stand
 
 
@@ -93,4 +95,4 @@ class Rule(Protocol):
     """
 
     def demand(self, situation: Situation, /) -> Demand | None:
-        """What the rule demands at this control step; None if it demands nothing."""
+        """The demand of the rule at this control step; None if it demands nothing."""

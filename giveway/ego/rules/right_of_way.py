@@ -42,20 +42,19 @@ from giveway.ego.rules.yielding import (
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.network.junction_links import Movement
 
-_PULL_AWAY, _BRISK = 1.5, 3.0  # [m/s^2] of the ego: no less, no more
-_COMING = 1.0  # [m/s^2] of others, who may speed up
-_GOING = 0.3  # [s] to whoever passes after it, for an ego that has decided to go
-_STAYS = 3.0  # [s] after which one who stands and need not will go on standing
-_BOXED_IN = 1.0  # [s] the same for one who has no room to go on
-_CLOSE = 3.0  # [m] behind who stands ahead, from which on there is none
-_BRIEFLY = 1.0  # [s] in which one who crawls up to there is as good as there
-_STANDING = 0.2  # [m/s]
-_AT_LINE = 4.0  # [m] before the line a vehicle stands at it
-_DECIDED = 10.0  # [m] before the line the ego keeps to its decision to go
-_STOPS_AT_YELLOW = 2.5  # [m/s^2] of braking with which others stop at yellow
-_NOBODY = frozenset(
-    "GZ"
-)  # with priority, or a zip, whose order :mod:`giveway.ego.rules.merging` knows
+_PULL_AWAY, _BRISK = 1.5, 3.0  # least and largest acceleration [m/s^2] of the ego
+_COMING = 1.0  # acceleration [m/s^2] of other vehicles
+_GOING = 0.3  # time margin [s] to a vehicle that passes after an ego that has decided to go
+_STAYS = 3.0  # time [s] after which a vehicle that stands without need is taken to stay
+_BOXED_IN = 1.0  # the same [s] for a vehicle that has no room to go on
+_CLOSE = 3.0  # gap [m] to a standing vehicle ahead, below which there is no room
+_BRIEFLY = 1.0  # time [s] within which a crawling vehicle counts as having closed that gap
+_STANDING = 0.2  # speed [m/s] below which a vehicle stands
+_AT_LINE = 4.0  # distance [m] before the line, within which a vehicle stands at it
+_DECIDED = 10.0  # distance [m] before the line, within which the ego keeps its decision to go
+_STOPS_AT_YELLOW = 2.5  # deceleration [m/s^2] with which others stop at yellow
+# Letters of movements that yield to nobody: priority, or a zipper, which the rule Merging orders.
+_NOBODY = frozenset("GZ")
 
 
 class RightOfWay:
@@ -191,7 +190,7 @@ class RightOfWay:
     def _note(
         self, place: PathJunction, front: float, speed: float, passed: float, traffic: Traffic
     ) -> None:
-        """Has the ego stood at the line or behind it; has the vehicle before it gone over?"""
+        """Take note of the ego's wait at the line, and of a vehicle before it that crosses it."""
         stands = place.entry - front <= _AT_LINE and speed < _STANDING
         self._stood = self._stood + passed if stands and passed < math.inf else 0.0
         self._halted = self._halted or (stands and front <= place.entry)
@@ -250,7 +249,7 @@ class RightOfWay:
     def _stays(
         self, place: PathJunction, other: Approach, states: Mapping[str, str], traffic: Traffic
     ) -> bool:
-        """Whether it could have gone on for some time and has not, or cannot, behind who stands."""
+        """Return whether a vehicle that could go on keeps standing, or is boxed in."""
         if other.standing <= 0.0:
             self._staying.discard(other.name)
             return other.speed < CRAWLING and _is_boxed_in(place, other, traffic)
@@ -276,7 +275,7 @@ class RightOfWay:
         states: Mapping[str, str],
         traffic: Traffic,
     ) -> bool:
-        """Whether the ego has to let it go first."""
+        """Return whether the ego has to let the vehicle go first."""
         movement = place.movements[other.number]
         named = other.number in place.movement.yields_to
         if other.distance <= 0.0:  # it is in the junction already
@@ -307,7 +306,7 @@ class RightOfWay:
         critical: float,
         margin: float,
     ) -> bool:
-        """Whether the ego, going on, would find it in its way."""
+        """Return whether the ego would meet the vehicle if it went on."""
         fastest = max(self._fastest, speed)
         line, clear = (
             travel_time(station - front, speed, _PULL_AWAY, fastest)
@@ -327,12 +326,12 @@ class RightOfWay:
 
 
 def _has_to_wait(movement: Movement, traffic: Traffic) -> bool:
-    """Whether anybody is about whom its vehicles let go first, the ego included."""
+    """Return whether a vehicle is near to which this movement yields, the ego included."""
     return any(one.number in movement.yields_to for one in traffic.get(movement.junction, ()))
 
 
 def _is_boxed_in(place: PathJunction, other: Approach, traffic: Traffic) -> bool:
-    """Whether somebody who stands right ahead of it, maybe to turn, keeps it from going on."""
+    """Return whether a standing vehicle right ahead keeps another one from going on."""
     source = place.movements[other.number].source
     return any(
         ahead.standing > _BOXED_IN

@@ -1,4 +1,4 @@
-"""What the rules of one ego are made from: its route, its vehicle and the running simulation."""
+"""The context that an ego's rules are made from: route, vehicle and running simulation."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _LEAST_GAP = 1.0  # distance [m] left behind a standing vehicle at least
 
 
 class Stop(NamedTuple):
-    """Where the front bumper is to halt at a scheduled stop, and for how long."""
+    """A scheduled stop: the stations at which the front bumper may halt, and the times."""
 
     start: float  # station [m] from which on a halt counts
     end: float  # station [m] that the ego drives up to
@@ -38,7 +38,7 @@ class Stop(NamedTuple):
 
 @dataclass(frozen=True)
 class RouteContext:
-    """What the rules of one ego are made from.
+    """The context that the rules of one ego are made from.
 
     Attributes:
         ego: Ego before its departure.
@@ -73,7 +73,7 @@ class RouteContext:
         return self.session.time
 
     def heeds(self, rule: str) -> bool:
-        """Whether the ego heeds the rule of this name: by its key in ``[rules]`` or by default."""
+        """Return whether the ego heeds the rule of this name, by ``[rules]`` or by default."""
         return self.config.heeds(rule)
 
     @property

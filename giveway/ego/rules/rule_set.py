@@ -9,8 +9,8 @@ from typing import Any
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.crossings import Crossings
 from giveway.ego.rules.junctions import SIGHT
-from giveway.ego.rules.merge_places import SIGHT as MERGE_SIGHT
-from giveway.ego.rules.merge_places import Behind, Place
+from giveway.ego.rules.merge_points import SIGHT as MERGE_SIGHT
+from giveway.ego.rules.merge_points import FollowingConstraint, MergePoint
 from giveway.ego.rules.merging import Merging
 from giveway.ego.rules.plug_ins.plug_in import plugged_in_rules
 from giveway.ego.rules.protocol import LIGHT, NO_NEEDS, Rule, Situation, Told
@@ -102,9 +102,9 @@ class RuleSet:
         return frozenset[str]().union(*(getattr(rule, "beside", ()) for rule in self._rules))
 
     @property
-    def keeps_behind(self) -> dict[str, Behind]:
-        """What each vehicle that keeps behind the ego where lanes merge has to heed, by its id."""
-        found: dict[str, Behind] = {}
+    def keeps_behind(self) -> dict[str, FollowingConstraint]:
+        """The following constraint of each vehicle that merges behind the ego, by its id."""
+        found: dict[str, FollowingConstraint] = {}
         if not self.situation.merging:
             return found  # no place is in sight
         for rule in self._rules:
@@ -113,7 +113,7 @@ class RuleSet:
 
     @property
     def remarks(self) -> list[str]:
-        """What the user should know of how the drive went."""
+        """The remarks on how the drive went, one sentence each."""
         return [said for rule in self._rules for said in getattr(rule, "remarks", ())]
 
     def near_junctions(self, station: float) -> set[str]:
@@ -128,7 +128,7 @@ class RuleSet:
             if place.exit >= station and place.entry - station <= SIGHT
         }
 
-    def near_merges(self, station: float) -> tuple[Place, ...]:
+    def near_merges(self, station: float) -> tuple[MergePoint, ...]:
         """The places in sight where lanes become one.
 
         Args:
@@ -138,7 +138,7 @@ class RuleSet:
             p for p in self._merges if p.end > station and p.entry - station <= MERGE_SIGHT
         )
 
-    def to_clear(self, station: float) -> float:
+    def keep_clear_distance(self, station: float) -> float:
         """The distance [m] to drive on until the ego has left what it has to keep clear.
 
         Args:

@@ -54,7 +54,7 @@ class ScheduledStops:
 
     @property
     def remarks(self) -> list[str]:
-        """What the user should know of how the drive went."""
+        """The remarks on how the drive went, one sentence each."""
         if not self.missed:
             return []
         return [f"it drove past {self.missed} of its stops, which were too near to halt at"]

@@ -34,19 +34,19 @@ _PREVIEW = 0.3  # [s] in which a controller follows a falling reference
 
 
 class SpeedProfile:
-    """How fast an ego is to drive at each station of its path, if nothing is in its way.
+    """The speed of a free ego at each station of its path.
 
     Args:
-        path: of the ego.
-        limits: of the lanes along it, in order.
-        length: of its body [m].
+        path: Path of the ego.
+        limits: Speed limits of the lanes along it, in order.
+        length: Length of its body [m].
         capable: speed [m/s] that the vehicle is to be driven at most, on any lane.
         deceleration: b [m/s^2] of braking before a lower limit and before a bend.
         departure: station [m] where it begins.
 
     Attributes:
-        speeds: (k,) [m/s] at the stations 0, 0.5 m, 1 m, ...
-        fastest: the highest [m/s] from the departure on.
+        speeds: (k,) speeds [m/s] at the stations 0, 0.5 m, 1 m, ...
+        fastest: Highest speed [m/s] from the departure on.
     """
 
     def __init__(
@@ -88,20 +88,20 @@ class SpeedProfile:
         """The cap [m/s] of the controller's reference; inf where that is not below ``fastest``.
 
         Args:
-            station: of the front bumper [m].
-            speed: of the ego [m/s]; the faster it is, the earlier the controller hears of a lower
-                speed ahead, for it follows with a lag.
+            station: Station of the front bumper [m].
+            speed: Speed of the ego [m/s]; the faster it is, the earlier the controller is told
+                of a lower speed ahead, because it follows with a lag.
         """
         lowest = min(self.at(station), self.at(station + _PREVIEW * speed))
         return lowest if lowest < self.fastest else math.inf
 
     def ahead(self, station: float, speed: float, times: Array) -> Array:
-        """(N,) [m/s] not to be exceeded at ``times`` (N,) [s] from now on, for a plan.
+        """(N,) speed limits [m/s] of a plan at ``times`` (N,) [s] from now on.
 
         Args:
-            station: of the front bumper now [m].
-            speed: of the ego now [m/s]; one that is too high is given up with the deceleration b.
-            times: ascending.
+            station: Station of the front bumper now [m].
+            speed: Speed of the ego now [m/s]; an excess is reduced with the deceleration b.
+            times: (N,) ascending times [s].
         """
         now = np.interp(station, self._stations, self._times)
         along = np.interp(now + times, self._times, self.speeds)
@@ -120,13 +120,13 @@ def profile_of(
     """The profile of an ego whose lanes say how fast it drives.
 
     Args:
-        ego: before its departure.
-        path: of the ego.
-        limits: of the lanes along it.
-        departure: station [m] of the front bumper.
-        length: of the body [m].
-        capable: speed [m/s] that the vehicle reaches.
-        time_step: of the co-simulation [s].
+        ego: Ego before its departure.
+        path: Path of the ego.
+        limits: Speed limits of the lanes along it.
+        departure: Station [m] of the front bumper.
+        length: Length of the body [m].
+        capable: Speed [m/s] that the vehicle reaches.
+        time_step: Control step of the co-simulation [s].
 
     Raises:
         ScenarioError: there are no lanes along the path.
@@ -164,7 +164,7 @@ def _of_lanes(limits: Sequence[SpeedLimit], stations: Array) -> Array:
 
 
 def _curvature(path: EgoPath, length: float, stations: Array) -> Array:
-    """(k,) [1/m] of the front's way, or of the body's turning if that is more: its rear follows."""
+    """(k,) curvature [1/m] of the front bumper's path, or that of the body's turning if larger."""
     headings = np.unwrap([path.pose(station, length).heading for station in stations])
     turning = np.abs(np.gradient(headings, stations))
     view = PathView(path)  # whose means begin to rise half a window before a bend, and are half ...

@@ -1,7 +1,8 @@
 """The traffic lights on the ego's path: where it has to stop, if anywhere, and when to arrive.
 
-Who knows when a light turns green need not hurry to stand before it: *green light optimal speed
-advisory* (GLOSA; the plans come by the messages of SAE J2735 and ETSI TS 103 301).
+An ego that knows when a light turns green approaches it slowly instead of stopping:
+*green light optimal speed advisory* (GLOSA). The plans come by the messages of SAE J2735 and
+ETSI TS 103 301.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from giveway.sumo.network.lane_path import Light
 from giveway.sumo.signal_plans import Greens, GreensOf
 
 _ARROW = frozenset("s")  # red with a green arrow: after a stop one may go
-_SLOWED = 0.8  # of the speed at which it goes on at yellow; slower, it stops if it can at all
-_SLOWEST = 2.0  # [m/s] that nobody is slowed below for a light that is red for long yet
-_FAR = 150.0  # [m] from where on it listens to a light
-_STARTS = 1.0  # [s] after the light has turned green the first vehicle starts
-_COASTING = 0.4  # [m/s] that the speed is lowered at once: 1 m/s^2 of slowing
+_SLOWED = 0.8  # share of the speed at which it decided to pass at yellow; slower, it stops
+_SLOWEST = 2.0  # lowest advisory speed [m/s]
+_FAR = 150.0  # distance [m] within which the ego receives a signal plan
+_STARTS = 1.0  # start-up time [s] of the first vehicle after the light turns green
+_COASTING = 0.4  # largest step [m/s] of the advisory speed below the present one: 1 m/s^2
 _WAVE = 4.2  # [m/s] at which starting runs back along a queue, 15 km/h (Treiber & Kesting 2013)
 
 

@@ -1,17 +1,17 @@
-"""What giving way has in common, at crossings, at junctions and where lanes become one."""
+"""Constants and functions of giving way, at crossings, junctions and merge points."""
 
 import math
 
 from giveway.ego.perception.leader import Leader
 
-STOP_BEFORE = 1.0  # [m] before a line or a crossing the front bumper is to stand
-HARDEST = 3.0  # [m/s^2] of braking that anybody with priority may ask for
-CRAWLING = 2.0  # [m/s] a vehicle that is slower may come to a stand
-USUAL_SPEED = 13.9  # [m/s] that vehicles are expected to speed up to
-AFTER, BEFORE = 1.0, 0.5  # [s] to whoever has priority, who passes after or before
-_COMFORT = 2.0  # [m/s^2] with which others brake before a red light
-_CAR = 5.0  # [m] length of one who stands there
-_QUEUE = 100.0  # [m] before a red light, from which on others may stand there already
+STOP_BEFORE = 1.0  # distance [m] of a stop before a line or a crossing
+HARDEST = 3.0  # hardest braking [m/s^2] of the ego for a road user with priority
+CRAWLING = 2.0  # speed [m/s] below which a vehicle may come to a stand
+USUAL_SPEED = 13.9  # speed [m/s] that other vehicles are expected to speed up to
+AFTER, BEFORE = 1.0, 0.5  # time margin [s] to a road user who passes after or before the ego
+_COMFORT = 2.0  # deceleration [m/s^2] of others before a red light
+_CAR = 5.0  # length [m] of a vehicle that stands there
+_QUEUE = 100.0  # distance [m] before a red light, within which others may stand already
 
 
 def needed_braking(speed: float, room: float) -> float:
@@ -23,8 +23,8 @@ def at_rest(leader: Leader, stop: float) -> Leader:
     """The vehicle ahead where it comes to rest, if it is about to stop at a red light ahead.
 
     Args:
-        leader: the vehicle ahead.
-        stop: station [m] at which the ego has to stop at a light; inf: nowhere.
+        leader: Vehicle ahead.
+        stop: Station [m] at which the ego has to stop at a light; inf: nowhere.
     """
     if leader.station >= stop or stop == math.inf:
         return leader
@@ -35,15 +35,15 @@ def at_rest(leader: Leader, stop: float) -> Leader:
 
 
 def leaves_no_room(leader: Leader, entry: float, leave: float, room: float) -> bool:
-    """Whether a slow vehicle ahead may keep the ego from leaving a crossing or junction.
+    """Return whether a slow vehicle ahead may keep the ego from leaving a crossing or junction.
 
-    Who enters would have to stand on it (Vienna Convention on Road Traffic, 1968, art. 18.2).
+    The ego would have to stand on it (Vienna Convention on Road Traffic, 1968, art. 18.2).
 
     Args:
-        leader: the vehicle ahead.
-        entry: station [m] of the front bumper at which the ego comes onto it.
-        leave: station [m] that the rear passes last.
-        room: [m] that the ego takes behind the leader: its length, and the gap that it keeps.
+        leader: Vehicle ahead.
+        entry: Station [m] of the front bumper at which the ego comes onto it.
+        leave: Station [m] that the rear passes last.
+        room: Length [m] that the ego needs behind the leader: its body and the gap it keeps.
     """
     return (
         leader.speed < CRAWLING

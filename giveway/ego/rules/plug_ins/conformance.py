@@ -63,7 +63,7 @@ def made_up_route(config: EgoRunConfig | None = None, time_step: float = 0.05) -
 
 
 def situation(step: int, *, order: int = 1, seed: int = 1) -> Situation:
-    """What the rule knows at a step of the made-up drive.
+    """The situation at a step of the made-up drive.
 
     Args:
         step: Number of the step.
@@ -236,7 +236,7 @@ def _ask(rule: PluggedInRule, now: Situation) -> Demand:
 
 
 def _plain(demand: Demand) -> dict[str, Any]:
-    """What is demanded, comparable and short."""
+    """The demand as a short text that can be compared."""
     lanes = None if demand.lane_speeds is None else demand.lane_speeds.tolist()
     told = demand._replace(lane_speeds=None)._asdict() | {"lane_speeds": lanes}
     return {key: value for key, value in told.items() if value not in (inf, "", NO_LEADER, None)}

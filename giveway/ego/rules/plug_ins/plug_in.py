@@ -37,7 +37,7 @@ def plugged_in_rules(route: RouteContext) -> list[Rule]:
 
 
 def maker(name: str, settings: Mapping[str, Any]) -> Maker:
-    """What makes the rule of a name for a route.
+    """Return the function that makes the rule of a name for a route.
 
     Args:
         name: Name of the rule, as in ``[rules]``.
@@ -52,7 +52,7 @@ def maker(name: str, settings: Mapping[str, Any]) -> Maker:
 
 
 def maker_of(kind: Any, options: Any) -> Maker:
-    """What makes a rule of a class: its factory ``on`` if it has one, or else the class.
+    """Return the factory of a rule: the class's ``on`` if it has one, or else the class.
 
     Args:
         kind: Class of the rule.

@@ -45,7 +45,7 @@ class PluggedInRule:
                 setattr(self, method, self._guarded(method))
 
     def demand(self, situation: Situation) -> Demand | None:
-        """What the rule demands, checked.
+        """The demand of the rule, checked.
 
         Args:
             situation: What the rules know now.
@@ -68,7 +68,7 @@ class PluggedInRule:
 
     @property
     def remarks(self) -> list[str]:
-        """What the user should know of how the drive went."""
+        """The remarks on how the drive went, one sentence each."""
         return [" ".join(str(said).split()) for said in getattr(self._rule, "remarks", ())]
 
     def _guarded(self, method: str) -> Callable[..., None]:
@@ -85,7 +85,7 @@ class PluggedInRule:
 
 
 def problem_of(answer: object) -> str:
-    """What is wrong with an answer of a rule; empty if it is a sound `Demand`.
+    """The fault in an answer of a rule; empty if it is a sound `Demand`.
 
     Args:
         answer: Answer of a rule, other than None.

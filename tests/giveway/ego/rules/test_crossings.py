@@ -281,5 +281,7 @@ def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
 def test_what_it_keeps_free_and_how_far_it_has_to_drive_on():
     way = RuleSet([crossings()])
     places = (LINE, 20.5, 24.0, 28.0, 29.2)  # [m] of the front bumper; the body is 5 m long
-    assert [way.to_clear(at) for at in places] == pytest.approx([0, 8.5, 5.0, 1.0, 0], abs=0.11)
-    assert RuleSet().to_clear(20.5) == 0.0
+    assert [way.keep_clear_distance(at) for at in places] == pytest.approx(
+        [0, 8.5, 5.0, 1.0, 0], abs=0.11
+    )
+    assert RuleSet().keep_clear_distance(20.5) == 0.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.rules.following import Following, given_up
+from giveway.ego.rules.following import Following, gap_relaxation
 
 DT = 0.05  # [s]
 N = 60
@@ -15,7 +15,7 @@ N = 60
 def kept(leader: Leader, speed: float, coming: float = np.inf, origin: float = 0.0) -> float:
     """What is left of a safe distance of 8 m from an ego whose front bumper is at 40 m."""
     ahead = np.minimum(leader.station + DT * leader.speed * np.arange(1, N + 1), coming)
-    return 8.0 - given_up(leader, ahead, 40.0, speed, 8.0, origin)
+    return 8.0 - gap_relaxation(leader, ahead, 40.0, speed, 8.0, origin)
 
 
 @pytest.mark.parametrize("origin", [0.0, -2.5])
@@ -45,14 +45,14 @@ def test_a_quarter_of_the_safe_distance_is_kept_however_hard_the_braking() -> No
 
 
 @pytest.mark.parametrize("origin", [0.0, -2.5])
-def test_it_closes_up_until_it_has_left_what_it_would_block(origin: float) -> None:
+def test_it_keep_clear_relaxation_until_it_has_left_what_it_would_block(origin: float) -> None:
     """It drives up to where it may: not slower on the way, as what is left gets less."""
     following = Following(8.0 - origin, origin, 2.0, plans=True, tuned=False)
     leader, cleared = Leader(50.0, 0.0), 47.0
     for front in (40.0, 44.0, 46.0, 46.9):
-        spared = following.closes_up(leader.station, front, cleared - front)
-        assert 8.0 - spared == pytest.approx(2.5)  # it comes to a stand half a metre before
+        relaxation = following.keep_clear_relaxation(leader.station, front, cleared - front)
+        assert 8.0 - relaxation == pytest.approx(2.5)  # it comes to a stand half a metre before
         assert following.speed_limit(leader, np.inf, front, cleared - front) > 0.0
-    assert following.closes_up(leader.station, cleared, 0.0) == 0.0
-    assert following.closes_up(60.0, 44.0, 3.0) == 0.0  # there is room enough
-    assert following.closes_up(48.0, 44.0, 3.0) == 6.0  # it comes no nearer than 2 m
+    assert following.keep_clear_relaxation(leader.station, cleared, 0.0) == 0.0
+    assert following.keep_clear_relaxation(60.0, 44.0, 3.0) == 0.0  # there is room enough
+    assert following.keep_clear_relaxation(48.0, 44.0, 3.0) == 6.0  # it comes no nearer than 2 m

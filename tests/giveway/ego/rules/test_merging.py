@@ -13,7 +13,7 @@ import pytest
 from support.situations import demand_of, tell
 
 from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.rules.merge_places import Place, Rival, places_of
+from giveway.ego.rules.merge_points import MergePoint, MergingVehicle, merge_points_of
 from giveway.ego.rules.merging import Merging
 from giveway.ego.rules.protocol import Situation
 from giveway.ego.rules.rule_set import RuleSet
@@ -21,19 +21,19 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.network.shared_lanes import Merging as Lane
 
 LENGTH = 5.0  # [m] of the ego
-PLACE = Place("main_1", frozenset(), 0.0, 100.0, 130.0)
+PLACE = MergePoint("main_1", frozenset(), 0.0, 100.0, 130.0)
 
 
 def merging(**others):
     """An ego 20 m before the place at 10 m/s, which has seen others: (position, speed)."""
     merges = Merging((PLACE,), LENGTH)
-    rivals = {name: Rival(*rival, 5.0) for name, rival in others.items()}
-    return merges, see(merges, {PLACE: rivals}, 80.0, 10.0)
+    merging_vehicles = {name: MergingVehicle(*other, 5.0) for name, other in others.items()}
+    return merges, see(merges, {PLACE: merging_vehicles}, 80.0, 10.0)
 
 
-def see(merges, rivals, front, speed):
+def see(merges, merging_vehicles, front, speed):
     """Tell it of the others; what those that keep behind it have to heed."""
-    tell(merges, front, speed, merging=rivals)
+    tell(merges, front, speed, merging=merging_vehicles)
     return merges.keeps_behind
 
 
@@ -49,20 +49,20 @@ def test_a_lane_change_begins_where_bodies_would_touch_and_ends_on_the_other_lan
     path = EgoPath.through(np.column_stack([x, 3.2 * share * share * (3.0 - 2.0 * share)]))
     line = np.array([[0.0, 3.2], [200.0, 3.2]])
     lane = Lane("main_1", 0.0, 0.0, 200.0, (line,), frozenset())
-    (place,) = places_of(path, 0.9, [lane], 20.0)
+    (place,) = merge_points_of(path, 0.9, [lane], 20.0)
     beside = 3.2 - np.interp([place.entry - 1.0, place.entry], path.stations, path.vertices[:, 1])
     assert beside[0] > 0.9 + 1.25 + 0.2 > beside[1]
     assert 120.0 < place.end < 131.0
     far = np.array([[0.0, 9.0], [200.0, 9.0]])
-    assert places_of(path, 0.9, [lane._replace(lines=(far,))], 20.0) == ()
-    assert places_of(path, 0.9, [lane], 20.0 + path.length) == ()
+    assert merge_points_of(path, 0.9, [lane._replace(lines=(far,))], 20.0) == ()
+    assert merge_points_of(path, 0.9, [lane], 20.0 + path.length) == ()
 
 
 def test_at_a_zipper_the_place_is_where_the_ways_come_together_for_good():
     path = EgoPath.through([(0.0, 0.0), (200.0, 0.0)])
-    rival = np.array([[0.0, 1.0], [20.0, 3.2], [90.0, 3.2], [100.0, 0.0]])
-    zipper = Lane("out_0", 100.0, 0.0, 100.0, (rival,), frozenset({":b_0_0"}))
-    (place,) = places_of(path, 0.9, [zipper], 0.0)
+    other = np.array([[0.0, 1.0], [20.0, 3.2], [90.0, 3.2], [100.0, 0.0]])
+    zipper = Lane("out_0", 100.0, 0.0, 100.0, (other,), frozenset({":b_0_0"}))
+    (place,) = merge_points_of(path, 0.9, [zipper], 0.0)
     assert place.entry == pytest.approx(90.0 + (3.2 - 2.35) / 0.32, abs=0.6)
     assert (place.end, place.origin) == (100.0, 100.0)
 
@@ -99,7 +99,7 @@ def test_the_ego_waits_before_the_place_for_whoever_is_beside_it():
     assert look(merges, 80.0, 10.0) == (NO_LEADER, 100.0 - 1.0 - 0.5)
     assert look(merges, 99.5, 1.0)[1] == 99.5  # it stands a little too far
     assert look(merges, 80.0, 20.0)[1] == math.inf  # nobody makes it brake harder than 3 m/s^2
-    truck = Rival(82.0, 10.0, 12.0)
+    truck = MergingVehicle(82.0, 10.0, 12.0)
     see(merges, {PLACE: {"truck": truck}}, 80.0, 10.0)
     assert look(merges, 80.0, 10.0)[1] == 100.0 - 1.0 - 4.0
     see(merges, {PLACE: {}}, 80.0, 10.0)
@@ -120,22 +120,26 @@ def test_what_somebody_behind_has_to_heed():
     assert heeds.to_wait == pytest.approx(100.0 - 60.0 - 1.0 - 0.5)
     assert heeds.braking == 2.0
     merges = Merging((PLACE,), LENGTH)
-    (heeds,) = see(merges, {PLACE: {"other": Rival(80.0, 10.0, 5.0)}}, 104.0, 10.0).values()
+    (heeds,) = see(
+        merges, {PLACE: {"other": MergingVehicle(80.0, 10.0, 5.0)}}, 104.0, 10.0
+    ).values()
     assert heeds.room == pytest.approx(104.0 - 5.0 - 80.0 - 1.0)
     assert (heeds.speed, heeds.braking) == (10.0, math.inf)  # the ego is in its way
 
 
 def test_an_ego_that_has_waited_asks_for_more():
     merges = Merging((PLACE,), LENGTH)
-    rivals = {PLACE: {"passes": Rival(99.5, 13.0, 5.0), "next": Rival(62.0, 13.0, 5.0)}}
-    assert see(merges, rivals, 98.0, 0.0) == {}
+    merging_vehicles = {
+        PLACE: {"passes": MergingVehicle(99.5, 13.0, 5.0), "next": MergingVehicle(62.0, 13.0, 5.0)}
+    }
+    assert see(merges, merging_vehicles, 98.0, 0.0) == {}
     for _ in range(60):
         merges.advance(Situation(speed=0.0), 0.1)
-    (heeds,) = see(merges, rivals, 98.0, 0.0).values()
+    (heeds,) = see(merges, merging_vehicles, 98.0, 0.0).values()
     assert heeds.braking == 3.0
     merges.advance(Situation(speed=2.0), 0.1)  # it drives
     merges = Merging((PLACE,), LENGTH)
-    assert see(merges, rivals, 98.0, 0.0) == {}
+    assert see(merges, merging_vehicles, 98.0, 0.0) == {}
 
 
 def test_a_place_is_in_sight_from_80_m_before_it_to_its_end():

@@ -121,7 +121,7 @@ def test_only_rules_that_watch_are_told() -> None:
 
 @pytest.mark.parametrize(("station", "left"), [(19.0, 0.0), (20.5, 9.5), (30.0, 0.0)])
 def test_how_far_it_has_to_drive_to_leave_what_it_keeps_clear(station: float, left: float) -> None:
-    assert RuleSet([Watches()]).to_clear(station) == left
+    assert RuleSet([Watches()]).keep_clear_distance(station) == left
 
 
 def test_the_situation_is_refilled_in_place() -> None:

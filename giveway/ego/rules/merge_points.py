@@ -1,4 +1,4 @@
-"""Where the way of an ego and those of other vehicles become one, and what is known there."""
+"""The merge points on an ego's path, and the vehicles that merge there."""
 
 import itertools
 from collections.abc import Sequence
@@ -10,49 +10,49 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.shared_lanes import Merging
 
-SIGHT = 80.0  # distance [m] before the place, from which on the ego looks for others
-_SAMPLE = 0.5  # [m] between the points of the path that are looked at
-_OTHERS = 1.25  # [m] half the width of those who come along the other lane, trucks included
-_BESIDE = 0.2  # [m] between two vehicles on different lanes at least
+SIGHT = 80.0  # sight distance [m] ahead of a merge point
+_SAMPLE = 0.5  # spacing [m] of the sampled points of the path
+_OTHERS = 1.25  # half width [m] of merging vehicles, trucks included
+_BESIDE = 0.2  # least lateral gap [m] between two vehicles on different lanes
 
 
-class Rival(NamedTuple):
+class MergingVehicle(NamedTuple):
     """A vehicle that is going to share a lane with the ego."""
 
-    position: float  # [m] of its front bumper along the shared lane; negative: before it begins
+    position: float  # station [m] of its front bumper on the shared lane; negative: before it
     speed: float  # [m/s]
     length: float  # [m]
 
 
-class Place(NamedTuple):
-    """Where the ego's way and others become one."""
+class MergePoint(NamedTuple):
+    """A merge point: a station at which the ego's path and others become one."""
 
-    lane: str  # that is shared
+    lane: str  # shared lane
     over: frozenset[str]  # lanes right before it that the others come over; empty: any
-    origin: float  # [m] station at which that lane begins
-    entry: float  # [m] the front bumper's station from which on the ego is in their way
-    end: float  # [m] and from which on it is on their lane
+    origin: float  # station [m] at which that lane begins
+    entry: float  # station [m] of the front bumper from which on the ego is in their way
+    end: float  # station [m] of the front bumper from which on it is on their lane
 
 
-class Behind(NamedTuple):
-    """What a vehicle that keeps behind the ego has to heed."""
+class FollowingConstraint(NamedTuple):
+    """The following constraint of a vehicle that keeps behind the ego."""
 
-    speed: float  # [m/s] at which the room moves on
-    room: float  # [m] that it may still come closer to the ego; negative: it is too close
-    to_wait: float  # [m] to where it is not in the ego's way yet
-    braking: float  # [m/s^2] at most; inf: the ego is in its way already
+    speed: float  # speed [m/s] at which the room moves on
+    room: float  # distance [m] by which it may come closer to the ego; negative: too close
+    to_wait: float  # distance [m] to where it can wait without being in the ego's way
+    braking: float  # largest deceleration [m/s^2]; inf: the ego is in its way already
 
 
-def places_of(
+def merge_points_of(
     path: EgoPath, half_width: float, mergings: Sequence[Merging], departure: float
-) -> tuple[Place, ...]:
-    """Where an ego comes into the way of others.
+) -> tuple[MergePoint, ...]:
+    """The merge points on an ego's path.
 
     Args:
-        path: of the ego.
-        half_width: of its body [m].
-        mergings: along its route.
-        departure: station [m] at which it enters.
+        path: Path of the ego.
+        half_width: Half of the width of its body [m].
+        mergings: Merging lanes along its route.
+        departure: Station [m] at which it enters.
     """
     apart = half_width + _OTHERS + _BESIDE
     places = []
@@ -65,19 +65,19 @@ def places_of(
         if near.min() >= apart:
             continue
         clear = np.flatnonzero(near >= apart)
-        if merging.over:  # the ways meet at its end
+        if merging.over:  # the paths meet at its end
             first = clear[-1] + 1 if len(clear) else 0
             entry = float(stations[min(first, len(stations) - 1)])
             end = last
         else:
             entry = float(stations[np.argmax(near < apart)])
             end = float(stations[np.argmax(near <= near.min() + _BESIDE)])
-        places.append(Place(merging.lane, merging.over, merging.origin, entry, end))
+        places.append(MergePoint(merging.lane, merging.over, merging.origin, entry, end))
     return tuple(sorted(places, key=lambda place: place.entry))
 
 
 def _distances(points: Array, lines: Sequence[Array]) -> Array:
-    """(n,) [m] of ``points`` (n, 2) [m] to the closest of polylines."""
+    """(n,) distances [m] of ``points`` (n, 2) [m] to the closest of polylines."""
     x, y = points.T
     nearest = np.full(len(x), np.inf)
     for line in lines:
