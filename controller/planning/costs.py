@@ -21,37 +21,29 @@ def stopping_need(speed: float, w: Weights) -> float:
 
 @kernel
 def cost(
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
-    gap: Array,
-    conflicts: Array,
-    calm: Array,
-    crossers: Array,
+    manoeuvre: tuple[Array, Array, Array],
+    prospect: tuple[Array, Array, Array, Array],
     allowed: Array,
     wanted: float,
     time_step: float,
     weights: tuple[Any, ...],
 ) -> tuple[float, float, float]:
-    """What a manoeuvre costs [s].
+    """Return the cost of a manoeuvre [s].
 
     Args:
-        distance: (N + 1,) [m] of the manoeuvre.
-        speeds: (N + 1,) [m/s].
-        accelerations: (N + 1,) [m/s^2].
-        gap: (N,) [m] to the closest person in front at steps 1 ... N.
-        conflicts: (N,) persons.
-        calm: (N,) [m/s].
-        crossers: (n, 4) who comes onto the way later.
-        allowed: (N,) [m] that may be driven until then: vehicles, lights.
-        wanted: the speed [m/s] that time is lost against.
-        time_step: [s].
-        weights: the numbers of :class:`Weights`.
+        manoeuvre: Distances [m], speeds [m/s] and accelerations [m/s^2], (N + 1,) each.
+        prospect: Gaps [m] to the closest person in front, persons in conflict, and calm speeds
+            [m/s] at steps 1 ... N, (N,) each, and who comes onto the way later, (n, 4).
+        allowed: (N,) distances [m] that may be driven until then: vehicles, lights.
+        wanted: Speed [m/s] that time is lost against.
+        time_step: Control step [s].
+        weights: Numbers of :class:`Weights`.
 
     Returns:
         The whole cost; the part of it that other people and vehicles cause; the longest missing
         stopping distance [m].
     """
+    (distance, speeds, accelerations), (gap, conflicts, calm, crossers) = manoeuvre, prospect
     own = own_cost(speeds, accelerations, wanted, time_step, weights)
     own += later_cost(crossers, distance[-1], speeds[-1], wanted, allowed, time_step, weights)
     others, missing = 0.0, 0.0

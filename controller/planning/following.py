@@ -23,11 +23,9 @@ def follow(
     best: Motion,
     prospect: tuple[Array, Array, Array],
     missing: float,
-    allowed: Array,
-    lane_speeds: Array,
+    bounds: tuple[Array, Array, Array],
     problem: tuple[Any, ...],
     solver: tuple[Array, Array],
-    room: Array,
     plan: Motion,
     calmly: tuple[int, float],
     weights: tuple[Any, ...],
@@ -40,11 +38,10 @@ def follow(
         best: the manoeuvre.
         prospect: the arrays of what it would lead to; calm speeds become what is kept to.
         missing: stopping distance that it lacks [m].
-        allowed: (N,) [m].
-        lane_speeds: (N,) [m/s]; inf: any.
+        bounds: Distances [m] that may be driven, speeds [m/s] of the lanes (inf: any), and the
+            corridor [m], which is filled; (N,) each.
         problem: nodes, intervals, limits, rows, lower, upper, target, speeds_of, gradients.
         solver: multipliers and solution.
-        room: (N,) [m] receives the corridor.
         plan: filled, unless the QP is unsolved.
         calmly: steps in which calm speeds are kept to, as far as braking with the second [m/s^2]
             can help it.
@@ -56,6 +53,7 @@ def follow(
     """
     speed, before, force, fastest = state
     gap, _, calm = prospect
+    allowed, lane_speeds, room = bounds
     nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
     corridor(best[0], best[1], gap, allowed, weights, room)
     soon, gentle = calmly

@@ -207,7 +207,12 @@ class Search:
                 if foresight is not None:
                     prospect = foresight.prospect(Manoeuvre(*manoeuvre))
                 whole, disturbed, missing = cost(
-                    *manoeuvre, *prospect, allowed, wanted, self._time_step, self.weights
+                    tuple(manoeuvre),
+                    tuple(prospect),
+                    allowed,
+                    wanted,
+                    self._time_step,
+                    self.weights,
                 )
                 whole += self._trials.handicap[trial]
                 if whole < lowest:

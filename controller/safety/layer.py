@@ -173,17 +173,9 @@ class SafetyLayer:
             kerbs: (n, 3) of those on a sidewalk the unit vector to its kerb, and how far that is
                 [m]; 0 for the others. Without rows nobody is.
         """
-        safe, verdict = largest_safe_force(
-            force,
-            speed,
-            way,
-            spacing,
-            position,
-            velocity,
-            self.errors(len(position)) if errors is None else errors,
-            kerbs,
-            *self.memory,
-        )
+        errors = self.errors(len(position)) if errors is None else errors
+        people = position, velocity, errors, kerbs
+        safe, verdict = largest_safe_force(force, speed, (way, spacing), people, self.memory)
         return SafeForce(safe, verdict != LETS_THROUGH, self.REASONS[verdict])
 
     def errors(self, people: int) -> Array:
@@ -197,48 +189,36 @@ class SafetyLayer:
 def largest_safe_force(
     force: float,
     speed: float,
-    way: Array,
-    spacing: float,
-    position: Array,
-    velocity: Array,
-    errors: Array,
-    kerbs: Array,
-    limits: tuple[float, ...],
-    commands: Array,
-    boxes: Array,
+    front: tuple[Array, float],
+    people: tuple[Array, Array, Array, Array],
+    memory: tuple[tuple[float, ...], Array, Array],
 ) -> tuple[float, int]:
     """The largest safe force up to ``force`` [N], and what the layer does; notes the force.
 
     The layer lets it through (0), acts (1), or acts where no braking is surely enough (2).
 
     Args:
-        force: asked for.
-        speed: of the ego.
-        way: (k, 4) of the front's poses ahead.
-        spacing: [m] between them.
-        position: (n, 2) [m].
-        velocity: (n, 2) [m/s].
-        errors: (n,) [m], or more; how far off the positions are at most.
-        kerbs: (n, 3), or none; see :meth:`SafetyLayer.filter`.
-        limits: the numbers of :class:`Limits`; a plain tuple, which numba unpacks 2 us faster.
-        commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
-        boxes: (longest stop [steps] + 1, 9) scratch.
+        force: Force [N] that the controller asks for.
+        speed: Speed of the ego [m/s].
+        front: Poses (k, 4) of the front ahead, and the distance [m] between them.
+        people: Positions (n, 2) [m], velocities (n, 2) [m/s], largest errors of the positions
+            (n,) [m] or more, and kerbs (n, 3) or none; see :meth:`SafetyLayer.filter`.
+        memory: Numbers of :class:`Limits` (a plain tuple, which numba unpacks 2 us faster); forces
+            [N] of the past, (delay + 1,), the latest last, changed; scratch (longest stop + 1, 9).
     """
+    limits, commands, boxes = memory
     c, v = Limits(*limits), speed if speed > STANDSTILL else 0.0
-    verdict, safe = LETS_THROUGH, force
-    people = position, velocity, errors, kerbs
-    if position.shape[0] > 0 and not is_safe(
-        force, v, way, spacing, people, c, commands, boxes, _SLACK
-    ):
+    verdict, safe, scratch = LETS_THROUGH, force, (commands, boxes)
+    if people[0].shape[0] > 0 and not is_safe(force, v, front, people, c, scratch, _SLACK):
         verdict = ACTS
         safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
         safe = min(safe, force)
         unsafe = force
-        if not is_safe(safe, v, way, spacing, people, c, commands, boxes, 0.0):
+        if not is_safe(safe, v, front, people, c, scratch, 0.0):
             verdict, unsafe = UNAVOIDABLE, safe
         while unsafe - safe > _RESOLUTION:
             middle = 0.5 * (safe + unsafe)
-            if is_safe(middle, v, way, spacing, people, c, commands, boxes, _SLACK):
+            if is_safe(middle, v, front, people, c, scratch, _SLACK):
                 safe = middle
             else:
                 unsafe = middle

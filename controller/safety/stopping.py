@@ -165,25 +165,28 @@ def _touches(
 
 @inner
 def _may_meet(
-    x: float,
-    y: float,
-    v_x: float,
-    v_y: float,
-    error: float,
-    to_x: float,
-    to_y: float,
-    depth: float,
+    person: tuple[float, float, float, float, float],
+    kerb: tuple[float, float, float],
     steps: int,
     slack: float,
     c: Limits,
     boxes: Array,
 ) -> bool:
-    """Whether somebody seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
+    """Whether a person seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
 
-    Who accelerates by at most a_max is within a_max t^2/2 of x + v t, and who walks at most at
-    v_max is within v_max t of x. Who is on a sidewalk, ``depth`` [m] from the kerb in the direction
-    (to_x, to_y), gets no farther in this direction than :func:`towards_kerb` says.
+    A person who accelerates by at most a_max is within a_max t^2/2 of x + v t, and one who walks
+    at most at v_max is within v_max t of x. A person on a sidewalk, ``depth`` [m] from the kerb in
+    the direction (to_x, to_y), gets no farther in this direction than :func:`towards_kerb` says.
+
+    Args:
+        person: x, y [m], v_x, v_y [m/s], and the error of the position [m].
+        kerb: Direction to the kerb (to_x, to_y), and its distance [m]; 0 off the sidewalk.
+        steps: Steps until the ego stands.
+        slack: Distance [m] added to the clearance.
+        c: Limits of people and vehicle.
+        boxes: Rectangles that hold the front, one for each instant.
     """
+    (x, y, v_x, v_y, error), (to_x, to_y, depth) = person, kerb
     for j in range(steps + 1):
         box = boxes[j]
         if box[8] < 0.0:
@@ -236,19 +239,25 @@ def _nearest(box: Array, to_x: float, to_y: float) -> float:
 def is_safe(
     force: float,
     speed: float,
-    way: Array,
-    spacing: float,
-    people: tuple[Array, ...],
+    front: tuple[Array, float],
+    people: tuple[Array, Array, Array, Array],
     c: Limits,
-    commands: Array,
-    boxes: Array,
+    memory: tuple[Array, Array],
     slack: float,
 ) -> bool:
     """Whether after ``force`` the ego can stop without moving into anybody.
 
-    ``people`` are their positions, velocities, errors and kerbs.
+    Args:
+        force: Force [N] of the present step.
+        speed: Speed of the ego [m/s].
+        front: Poses (k, 4) of the front ahead, and the distance [m] between them.
+        people: Positions (n, 2), velocities (n, 2), errors (n,) or more, and kerbs (n, 3) or none.
+        c: Limits of people and vehicle.
+        memory: Forces of the past, and the rectangles, which are overwritten.
+        slack: Distance [m] added to the clearance.
     """
     position, velocity, errors, kerbs = people
+    (way, spacing), (commands, boxes) = front, memory
     steps, travel = _stop(force, speed, way, spacing, c, commands, boxes)
     if steps < 0:
         return False
@@ -264,7 +273,7 @@ def is_safe(
         to_x, to_y, depth = 0.0, 0.0, 0.0
         if i < kerbs.shape[0]:
             to_x, to_y, depth = kerbs[i, 0], kerbs[i, 1], kerbs[i, 2]
-        v_x, v_y, error = velocity[i, 0], velocity[i, 1], errors[i]
-        if _may_meet(x, y, v_x, v_y, error, to_x, to_y, depth, steps, slack, c, boxes):
+        person = x, y, velocity[i, 0], velocity[i, 1], errors[i]
+        if _may_meet(person, (to_x, to_y, depth), steps, slack, c, boxes):
             return False
     return True

@@ -72,6 +72,9 @@ FLAGS: Final[Mapping[str, Location]] = {
 """Flags, without dashes, of keys in ``RENAMED`` that were not derived from the key."""
 
 
+_OWN_FLAGS: Final[Mapping[Location, str]] = {("planner", "style"): "--style"}
+
+
 def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location | str]]:
     """The keys of one origin's settings, or of its table of one ego, that no longer exist."""
     egos = values.get("egos")
@@ -89,7 +92,8 @@ def advice(new: Location | str, *, as_flag: bool) -> str:
         setting = "--set" if new[0] == "controller_options" else "--set-model"
         return f"write {setting} {new[-1]}=VALUE" if as_flag else f"write [{new[0]}] {new[-1]}"
     if as_flag:
-        return "write --" + "-".join(new).replace("_", "-")
+        derived = "--" + "-".join(new).replace("_", "-")
+        return f"write {_OWN_FLAGS.get(new, derived)}"
     *tables, key = new
     return f"write [{'.'.join(tables)}] {key}" if tables else f"write {key}"
 

@@ -70,16 +70,16 @@ class Guard:
         layer = self._layer
         safe, verdict = watch(
             self._way,
-            front,
-            self._length,
-            layer.reach(speed),
+            (front, self._length, layer.reach(speed)),
             self._poses,
             decision.force,
             speed,
-            crowd.position,
-            crowd.velocity,
-            layer.errors(len(crowd.position)) if errors is None else errors,
-            kerbs,
+            (
+                crowd.position,
+                crowd.velocity,
+                layer.errors(len(crowd.position)) if errors is None else errors,
+                kerbs,
+            ),
             layer.memory,
         )
         if not verdict:
@@ -90,40 +90,28 @@ class Guard:
 @kernel
 def watch(
     path: tuple[Array, Array, Array],
-    front: float,
-    length: float,
-    reach: float,
+    place: tuple[float, float, float],
     poses: Array,
     force: float,
     speed: float,
-    position: Array,
-    velocity: Array,
-    errors: Array,
-    kerbs: Array,
+    people: tuple[Array, Array, Array, Array],
     memory: tuple[Any, ...],
 ) -> tuple[float, int]:
-    """As :func:`controller.largest_safe_force`, on a path.
+    """Return the largest safe force on a path, as :func:`controller.largest_safe_force` does.
 
     Args:
-        path: vertices, stations and headings of the ego's.
-        front: the front bumper's station [m].
-        length: of the body [m].
-        reach: [m] ahead of the front that matters.
-        poses: (k, 4) scratch.
-        force: asked for [N].
-        speed: of the ego [m/s].
-        position: (n, 2) [m] people's.
-        velocity: (n, 2) [m/s] theirs.
-        errors: (n,) [m], or more.
-        kerbs: (n, 3), or none.
-        memory: of the safety layer.
+        path: Vertices, stations and headings of the ego's path.
+        place: Station of the front bumper, length of the body, distance ahead that matters [m].
+        poses: Scratch, (k, 4).
+        force: Force [N] that the controller asks for.
+        speed: Speed of the ego [m/s].
+        people: Positions (n, 2), velocities (n, 2), errors (n,) or more, and kerbs (n, 3) or none.
+        memory: Memory of the safety layer.
     """
+    front, length, reach = place
     spacing = spacing_of(reach, poses.shape[0])
     count = fill_front_poses(*path, front, length, reach, spacing, poses)
-    ahead = poses[:count]
-    return largest_safe_force(
-        force, speed, ahead, spacing, position, velocity, errors, kerbs, *memory
-    )
+    return largest_safe_force(force, speed, (poses[:count], spacing), people, memory)
 
 
 @inner

@@ -68,10 +68,8 @@ def contacts(
         as_floats(ego.speed),
         as_integers(groups.bounds),
         as_integers(crowd.step[order]),
-        as_floats(crowd.x[order]),
-        as_floats(crowd.y[order]),
-        as_floats(crowd.vx[order]),
-        as_floats(crowd.vy[order]),
+        (as_floats(crowd.x[order]), as_floats(crowd.y[order])),
+        (as_floats(crowd.vx[order]), as_floats(crowd.vy[order])),
         as_floats(clearance[order]),
         contact_body(shape, body_radius),
         kinds,
@@ -107,15 +105,14 @@ def _classify(
     speed: NDArray[np.float64],
     bounds: NDArray[np.int64],
     step: NDArray[np.int64],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    vx: NDArray[np.float64],
-    vy: NDArray[np.float64],
+    position: tuple[NDArray[np.float64], NDArray[np.float64]],
+    velocity: tuple[NDArray[np.float64], NDArray[np.float64]],
     clearance: NDArray[np.float64],
     body: tuple[float, float, float],
     kinds: NDArray[np.int64],
 ) -> None:
     """Fill ``kinds`` (n,). The records are sorted by pedestrian, and then by time."""
+    (x, y), (vx, vy) = position, velocity
     half_length, _, _ = body
     for i in range(kinds.size):
         for r in range(bounds[i], bounds[i + 1]):

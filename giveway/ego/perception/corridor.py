@@ -108,16 +108,11 @@ class Corridor:
         """
         path, ahead = self.path, self._vehicles_ahead
         station, along = vehicles_in_front(
-            path.vertices,
-            path.stations,
-            path.headings,
+            (path.vertices, path.stations, path.headings),
             poses,
             own,
-            front,
-            speed * self.time_step,
-            self.time_step,
-            self.half_width,
-            self._straight,
+            (front, speed * self.time_step, self.time_step),
+            (self.half_width, self._straight),
             beside,
             ahead,
         )

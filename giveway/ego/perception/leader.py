@@ -62,16 +62,11 @@ def outline_in_front(
 
 @kernel
 def vehicles_in_front(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
+    path: tuple[Array, Array, Array],
     poses: Array,
     own: int,
-    front: float,
-    advance: float,
-    time_step: float,
-    half_width: float,
-    straight: int,
+    motion: tuple[float, float, float],
+    corridor: tuple[float, int],
     beside: NDArray[np.bool_],
     ahead: Array,
 ) -> tuple[float, float]:
@@ -84,7 +79,18 @@ def vehicles_in_front(
     beyond the path's end is no matter. Whoever is ``beside`` (of the last vehicles) is predicted to
     keep to the lane that leads it past the path. A vehicle in the corridor behind the front bumper
     stays behind: it does not drive through the ego.
+
+    Args:
+        path: Vertices, stations and headings of the ego's path.
+        poses: Poses of all vehicles, (N, m, 7).
+        own: Row of the ego.
+        motion: Station of its front bumper [m], its travel in a step [m], and the step [s].
+        corridor: Half of its width [m], and the steps ``straight``.
+        beside: Marks of the last vehicles.
+        ahead: Stations [m] of the closest vehicle at steps 1 ... N, filled.
     """
+    (vertices, stations, headings), (front, advance, time_step) = path, motion
+    half_width, straight = corridor
     N = ahead.shape[0]
     known = poses.shape[1] - beside.shape[0]
     end = stations[-1] if straight < N else np.inf

@@ -45,7 +45,8 @@ def costs(
 ):
     N = len(m.speed) - 1
     *full, allowed = (np.full(N, x, dtype=float) for x in (gap, conflicts, calm, allowed))
-    return cost(m.distance, m.speed, m.acceleration, *full, crossers, allowed, wanted, DT, w)
+    motion = (m.distance, m.speed, m.acceleration)
+    return cost(motion, (*full, crossers), allowed, wanted, DT, w)
 
 
 def steady(speed, horizon):

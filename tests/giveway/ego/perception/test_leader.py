@@ -41,7 +41,8 @@ def expected(
     ahead = np.empty(N)
     front, half_width = 40.0, 1.4
     road, known = (path.vertices, path.stations, path.headings), np.array([beside])
-    vehicles_in_front(*road, poses, 0, front, 4.0 * DT, DT, half_width, straight, known, ahead)
+    motion = (front, 4.0 * DT, DT)
+    vehicles_in_front(road, poses, 0, motion, (half_width, straight), known, ahead)
     return float(ahead.min() - front)
 
 
