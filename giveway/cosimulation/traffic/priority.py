@@ -9,14 +9,14 @@ already, before their ways cross.
 
 from collections.abc import Mapping
 
+from giveway.ego.driving_style import FIRM, PULL_AWAY_OTHERS
 from giveway.ego.ego import Ego
 from giveway.ego.rules.gap_acceptance import travel_time
 from giveway.ego.rules.junctions import RED, SIGHT, Approach, PathJunction, Traffic, letter_of
-from giveway.ego.rules.yielding import AFTER, BEFORE, HARDEST, USUAL_SPEED, needed_braking
+from giveway.ego.rules.yielding import AFTER, BEFORE, USUAL_SPEED, needed_braking
 from giveway.geometry.conflict import Conflict
 
 _BEFORE_CONFLICT = 1.0  # [m] before the ego's way who is in the junction is to stand
-_PULL_AWAY = 2.0  # [m/s^2] of those that have to wait, if they did not
 _COMING, _LEAVING = 1.5, 1.0  # [m/s^2] of the ego
 
 
@@ -44,7 +44,7 @@ def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[
             room = other.distance
             if room <= 0.0:  # it is in the junction
                 room += where.other_enter - _BEFORE_CONFLICT
-            if room <= 0.0 or needed_braking(other.speed, room) > HARDEST:
+            if room <= 0.0 or needed_braking(other.speed, room) > FIRM:
                 continue
             if _gives_way(place, where, other, inside, states, ego):
                 found[other.name] = min(room, found.get(other.name, room))
@@ -73,7 +73,7 @@ def _gives_way(
     goes = travel_time(where.leave + ego.shape.length - front, speed, _LEAVING, max(speed, 4.0))
     fastest = max(USUAL_SPEED, other.speed)
     enters, clears = (
-        travel_time(other.distance + station, other.speed, _PULL_AWAY, fastest)
+        travel_time(other.distance + station, other.speed, PULL_AWAY_OTHERS, fastest)
         for station in (where.other_enter, where.other_leave + other.length)
     )
     return clears + AFTER > comes and goes + BEFORE > enters

@@ -20,6 +20,7 @@ import numpy as np
 
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
 from giveway.cosimulation.traffic.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
+from giveway.ego.driving_style import STANDING
 from giveway.ego.ego import Ego
 from giveway.ego.rules.merge_points import FollowingConstraint
 from giveway.geometry.kernel import Array
@@ -35,7 +36,6 @@ _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # [m] that vehicles keep beside an ego at least
 _BEHIND_EGO = 0.5  # [m] at which they stand behind one
 _BEFORE_LINE = 1.0  # [m] at which vehicles wait before theirs
-_STANDING = 0.2  # [m/s]
 _PULLING_AWAY = 2.0  # [m/s]
 _APART = 0.5  # [m] at most between the points of an ego's outline that are looked at
 NOBODY: Mapping[str, float] = MappingProxyType({})
@@ -260,7 +260,7 @@ def _are_stuck(ego: Ego, background: BackgroundVehicles, i: int) -> bool:
     if rectangles_overlap(own, background.bodies[i]):
         return True
     ahead = (background.x[i] - x) * math.cos(heading) + (background.y[i] - y) * math.sin(heading)
-    return ego.vehicle.speed < _STANDING and ahead > -ego.shape.length
+    return ego.vehicle.speed < STANDING and ahead > -ego.shape.length
 
 
 def _outline(ego: Ego) -> Array:

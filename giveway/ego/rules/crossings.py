@@ -22,13 +22,13 @@ from giveway.crowd.crossings import (
     turning_in,
     use_of,
 )
+from giveway.ego.driving_style import FIRM, PULL_AWAY
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.path_crossings import PathCrossing, crossings_on
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.yielding import (
     CRAWLING,
-    HARDEST,
     STOP_BEFORE,
     leaves_no_room,
     needed_braking,
@@ -42,7 +42,6 @@ _PATIENCE = 4.5  # time [s] to the ego's path, up to which a pedestrian always c
 _CLEAR = 0.3  # least distance [m] of a stop before the crossing
 _LAST = 2.0  # distance [m]; farther away, a stop at the very edge of the crossing still counts
 _SURE = 1.0  # additional time margin [s] before the ego starts again, so that it does not creep
-_PULL_AWAY = 1.5  # acceleration [m/s^2] of an ego that has waited
 _SIGHT = 60.0  # sight distance [m] ahead of a crossing
 
 
@@ -148,10 +147,10 @@ class Crossings:
             first = before == self._next
             latest = entry - _CLEAR
             far = entry - front > _LAST
-            too_late = needed_braking(speed, (entry if far else latest) - front) > HARDEST
+            too_late = needed_braking(speed, (entry if far else latest) - front) > FIRM
             if too_late and not (first and waits):
                 continue
-            nearest = front + speed * speed / (2.0 * HARDEST)
+            nearest = front + speed * speed / (2.0 * FIRM)
             stop = max(entry - STOP_BEFORE, min(nearest, latest))
             self._latest = latest
             self._waits_for = number if first else None
@@ -220,7 +219,7 @@ class Crossings:
         entry, left = place.entry - front, place.exit + self._length - front
         if not starts:
             return entry / speed, left / speed
-        a = _PULL_AWAY
+        a = PULL_AWAY
         return (
             (math.sqrt(speed * speed + 2.0 * a * max(entry, 0.0)) - speed) / a,
             (math.sqrt(speed * speed + 2.0 * a * left) - speed) / a,

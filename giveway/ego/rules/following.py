@@ -2,12 +2,12 @@
 
 from math import inf, sqrt
 
+from giveway.ego.driving_style import FIRM
 from giveway.ego.perception.leader import Leader
 from giveway.geometry.kernel import Array
 
 _KEPT, _LEAST = 0.5, 0.25  # usual and least share of d_safe that a plan keeps to vehicles
 CLOSEST = 2.0  # gap [m] to a standing vehicle where the ego would else block a crossing
-FIRM = 3.0  # firm braking [m/s^2] that a plan accepts to keep more than the least share
 _BUILD_UP = 0.2  # time [s] in which the brake builds up
 _APPROACHED = 0.5  # distance [m] before d_safe at which the approach to a vehicle ends
 _RECOVERY = 2.0  # time [s] in which a lost safe distance is regained

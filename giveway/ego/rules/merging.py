@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from giveway.ego.driving_style import COMFORTABLE, FIRM, STANDING
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.merge_points import (
     FollowingConstraint,
@@ -21,18 +22,14 @@ from giveway.ego.rules.merge_points import (
 )
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
-from giveway.ego.rules.yielding import HARDEST
 
 _BEFORE = 1.0  # distance [m] before the merge point at which a short vehicle waits
 _SHORT, _SWEPT = 4.0, 0.5  # length [m] of a short vehicle; share of the excess that cuts the corner
 _GAP = 1.0  # gap [m] between two vehicles behind the merge point
 _OPENING = 0.25  # part of the gap [m] that may be missing per metre before the merge point
-_ASKED = 2.0  # deceleration [m/s^2] that the ego may demand of a merging vehicle
-_FIRM = 3.0  # the same [m/s^2] after a long wait, or of a vehicle that brakes for it already
 _PATIENCE = 5.0  # time [s] that counts as a long wait
 _REACTION = 0.5  # reaction time [s] of a merging vehicle
 _SLOWEST = 1.0  # speed [m/s] from which on an ego is no longer waiting
-_STANDING = 0.2  # speed [m/s] below which a vehicle stands
 _LATER = 2.0  # time [s] after the ego, from which on a vehicle arrives too late to matter
 
 
@@ -81,11 +78,11 @@ class Merging:
     ) -> None:
         """Take note of the others at each place in sight, and of those that go after the ego."""
         self._first.clear()
-        asks = _FIRM if self._waited > _PATIENCE else _ASKED
+        asks = FIRM if self._waited > _PATIENCE else COMFORTABLE
         behind: dict[str, FollowingConstraint] = {}
         for place, others in merging_vehicles.items():
             for name, other in others.items():
-                asked = _FIRM if name in self.keeps_behind else asks
+                asked = FIRM if name in self.keeps_behind else asks
                 if not self._goes_first(place, front, speed, other, asked):
                     self._first.append((place, other))
                     continue
@@ -111,7 +108,7 @@ class Merging:
         if to_go <= 0.0 or its_way <= 0.0:
             return ahead < 0.0
         time = to_go / max(speed, _SLOWEST)
-        later = its_way > (time + _LATER) * max(other.speed, _STANDING)
+        later = its_way > (time + _LATER) * max(other.speed, STANDING)
         if later or ahead >= 0.0:
             return later
         to_stop = its_way - _before(self._length) - other.speed * _REACTION
@@ -142,7 +139,7 @@ class Merging:
             if rear >= front + _GAP:
                 # as the place comes closer, less of the gap may be missing
                 leader = min(leader, Leader(rear, max(0.0, other.speed - _OPENING * speed)))
-            elif speed * speed <= 2.0 * HARDEST * to_go:
+            elif speed * speed <= 2.0 * FIRM * to_go:
                 place_to_wait = place.entry - _before(other.length)
                 stop = min(stop, max(place_to_wait, min(front, place.entry)))
         return Demand(stop, YIELD, leader=leader)
@@ -157,7 +154,7 @@ class Merging:
         speed = situation.speed
         if speed > _SLOWEST or not self._first:
             self._waited = 0.0
-        elif speed < _STANDING:
+        elif speed < STANDING:
             self._waited += time_step
         self._first = [
             (place, other._replace(position=other.position + other.speed * time_step))

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence, Set
 
+from giveway.ego.driving_style import FIRM, PULL_AWAY, PULL_AWAY_BRISK, STANDING
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.gap_acceptance import travel_time
 from giveway.ego.rules.junctions import (
@@ -33,7 +34,6 @@ from giveway.ego.rules.yielding import (
     AFTER,
     BEFORE,
     CRAWLING,
-    HARDEST,
     STOP_BEFORE,
     USUAL_SPEED,
     leaves_no_room,
@@ -42,14 +42,12 @@ from giveway.ego.rules.yielding import (
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.network.junction_links import Movement
 
-_PULL_AWAY, _BRISK = 1.5, 3.0  # least and largest acceleration [m/s^2] of the ego
 _COMING = 1.0  # acceleration [m/s^2] of other vehicles
 _GOING = 0.3  # time margin [s] to a vehicle that passes after an ego that has decided to go
 _STAYS = 3.0  # time [s] after which a vehicle that stands without need is taken to stay
 _BOXED_IN = 1.0  # the same [s] for a vehicle that has no room to go on
 _CLOSE = 3.0  # gap [m] to a standing vehicle ahead, below which there is no room
 _BRIEFLY = 1.0  # time [s] within which a crawling vehicle counts as having closed that gap
-_STANDING = 0.2  # speed [m/s] below which a vehicle stands
 _AT_LINE = 4.0  # distance [m] before the line, within which a vehicle stands at it
 _DECIDED = 10.0  # distance [m] before the line, within which the ego keeps its decision to go
 _STOPS_AT_YELLOW = 2.5  # deceleration [m/s^2] with which others stop at yellow
@@ -162,7 +160,7 @@ class RightOfWay:
                 near = place.entry - front <= _DECIDED
                 self._going = stop == math.inf and (self._going or near) and letter not in RED
             needed = needed_braking(speed, stop + STOP_BEFORE - front)
-            if stop < math.inf and (needed <= HARDEST or abs(stop - before) <= STOP_BEFORE):
+            if stop < math.inf and (needed <= FIRM or abs(stop - before) <= STOP_BEFORE):
                 self._stop = min(self._stop, max(stop, min(front, stop + STOP_BEFORE)))
         self.beside = beside - others
 
@@ -182,7 +180,7 @@ class RightOfWay:
             if place.entry < front:
                 continue
             blocked = leaves_no_room(leader, place.entry, place.exit, self._room)
-            if blocked and needed_braking(speed, place.entry - front) <= HARDEST:
+            if blocked and needed_braking(speed, place.entry - front) <= FIRM:
                 stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
             break
         return stop
@@ -191,7 +189,7 @@ class RightOfWay:
         self, place: PathJunction, front: float, speed: float, passed: float, traffic: Traffic
     ) -> None:
         """Take note of the ego's wait at the line, and of a vehicle before it that crosses it."""
-        stands = place.entry - front <= _AT_LINE and speed < _STANDING
+        stands = place.entry - front <= _AT_LINE and speed < STANDING
         self._stood = self._stood + passed if stands and passed < math.inf else 0.0
         self._halted = self._halted or (stands and front <= place.entry)
         own = place.movement
@@ -309,15 +307,15 @@ class RightOfWay:
         """Return whether the ego would meet the vehicle if it went on."""
         fastest = max(self._fastest, speed)
         line, clear = (
-            travel_time(station - front, speed, _PULL_AWAY, fastest)
+            travel_time(station - front, speed, PULL_AWAY, fastest)
             for station in (place.entry, where.leave + self._length)
         )
-        enter = travel_time(where.enter - front, speed, _BRISK, fastest)
+        enter = travel_time(where.enter - front, speed, PULL_AWAY_BRISK, fastest)
         to_enter = other.distance + where.other_enter
         to_leave = other.distance + where.other_leave + other.length
         comes = travel_time(to_enter, other.speed, _COMING, max(USUAL_SPEED, other.speed))
         goes = math.inf
-        if other.speed >= _STANDING:  # in the junction it drives no faster than its lanes allow
+        if other.speed >= STANDING:  # in the junction it drives no faster than its lanes allow
             inside = min(other.speed, place.movements[other.number].speed)
             outside = min(max(other.distance, 0.0), to_leave)
             goes = outside / other.speed + (to_leave - outside) / inside

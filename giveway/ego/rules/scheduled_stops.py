@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from giveway.ego.driving_style import STANDING
 from giveway.ego.rules.protocol import STOP, Demand, Situation
 from giveway.ego.rules.route import RouteContext, Stop
 from giveway.ego.rules.yielding import needed_braking
 
-_STANDING = 0.2  # [m/s] below it the ego has halted
 _PASSED = 1.0  # [m] beyond the stop's end, from which on the ego has driven past it
 
 
@@ -92,7 +92,7 @@ class ScheduledStops:
             if front > following.end + _PASSED:
                 self.missed += 1
                 self._approaching = False
-            elif front >= following.start and speed < _STANDING:
+            elif front >= following.start and speed < STANDING:
                 self._arrived = self._steps
             return
         halted = (self._steps - self._arrived) * self._time_step

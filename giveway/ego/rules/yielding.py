@@ -2,14 +2,13 @@
 
 import math
 
+from giveway.ego.driving_style import COMFORTABLE
 from giveway.ego.perception.leader import Leader
 
 STOP_BEFORE = 1.0  # distance [m] of a stop before a line or a crossing
-HARDEST = 3.0  # hardest braking [m/s^2] of the ego for a road user with priority
 CRAWLING = 2.0  # speed [m/s] below which a vehicle may come to a stand
 USUAL_SPEED = 13.9  # speed [m/s] that other vehicles are expected to speed up to
 AFTER, BEFORE = 1.0, 0.5  # time margin [s] to a road user who passes after or before the ego
-_COMFORT = 2.0  # deceleration [m/s^2] of others before a red light
 _CAR = 5.0  # length [m] of a vehicle that stands there
 _QUEUE = 100.0  # distance [m] before a red light, within which others may stand already
 
@@ -28,7 +27,7 @@ def at_rest(leader: Leader, stop: float) -> Leader:
     """
     if leader.station >= stop or stop == math.inf:
         return leader
-    braked = leader.station + leader.speed**2 / (2.0 * _COMFORT)
+    braked = leader.station + leader.speed**2 / (2.0 * COMFORTABLE)
     if braked < stop - _QUEUE:
         return leader
     return Leader(max(leader.station, min(stop - _CAR, braked)), 0.0)
