@@ -207,8 +207,8 @@ class Search:
                 if foresight is not None:
                     prospect = foresight.prospect(Manoeuvre(*manoeuvre))
                 whole, disturbed, missing = cost(
-                    tuple(manoeuvre),
-                    tuple(prospect),
+                    manoeuvre,
+                    prospect,
                     allowed,
                     wanted,
                     self._time_step,
