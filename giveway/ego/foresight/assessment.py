@@ -26,47 +26,31 @@ class View(NamedTuple):
 
 @kernel
 def assess(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
-    now: Array,
-    predicted: Array,
+    path: tuple[Array, Array, Array],
+    crowd: tuple[Array, Array],
     front: float,
-    distance: Array,
-    speeds: Array,
-    view: tuple[float, ...],
-    alarm: tuple[Any, ...],
-    gap: Array,
-    conflicts: Array,
-    calm: Array,
+    manoeuvre: tuple[Array, Array],
+    sight: tuple[tuple[float, ...], tuple[Any, ...]],
+    prospect: tuple[Array, Array, Array],
 ) -> None:
     """Fill gaps in front, persons on a collision course, and calm speeds at steps 1 ... N.
 
-    The crowd is known ``now`` (n, 2) [m] and at each ``every``-th step, ``predicted`` (M, n, 2),
-    and walks straight on in between. Conflicts and calm speeds are found at the first step after
-    each of these and held until the next. ``view`` and ``alarm`` are the numbers of a
-    :class:`View` and an :class:`Alarm`.
+    Conflicts and calm speeds are found at the first step after each prediction and held until the
+    next; people walk straight on in between.
+
+    Args:
+        path: Vertices, stations and headings of the ego's path.
+        crowd: Positions now, (n, 2) [m], and at each ``every``-th step, (M, n, 2).
+        front: Station of the front bumper [m].
+        manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
+        sight: Numbers of a :class:`View` and of an :class:`Alarm`.
+        prospect: Gaps [m], persons and calm speeds [m/s], (N,) each, filled.
     """
+    now, predicted = crowd
     between = np.empty((now.shape[0], 2))
     for j in range(len(predicted)):
-        assess_step(
-            vertices,
-            stations,
-            headings,
-            predicted[j - 1] if j > 0 else now,
-            predicted[j],
-            j,
-            len(predicted),
-            between,
-            front,
-            distance,
-            speeds,
-            view,
-            alarm,
-            gap,
-            conflicts,
-            calm,
-        )
+        people = (predicted[j - 1] if j > 0 else now, predicted[j], between)
+        assess_step(path, people, (j, len(predicted)), front, manoeuvre, sight, prospect)
 
 
 @inlined
@@ -84,27 +68,29 @@ def interval_of(j: int, every: int, predicted: int, horizon: int) -> tuple[int, 
 
 @inlined
 def assess_step(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
-    before: Array,
-    after: Array,
-    j: int,
-    predicted: int,
-    between: Array,
+    path: tuple[Array, Array, Array],
+    people: tuple[Array, Array, Array],
+    which: tuple[int, int],
     front: float,
-    distance: Array,
-    speeds: Array,
-    view: tuple[float, ...],
-    alarm: tuple[Any, ...],
-    gap: Array,
-    conflicts: Array,
-    calm: Array,
+    manoeuvre: tuple[Array, Array],
+    sight: tuple[tuple[float, ...], tuple[Any, ...]],
+    prospect: tuple[Array, Array, Array],
 ) -> None:
-    """As :func:`assess` for the j-th of the predicted steps alone.
+    """Do as :func:`assess` does, for one of the predicted steps alone.
 
-    ``before`` and ``after`` it people are there; ``between`` (n, 2) is memory.
+    Args:
+        path: Vertices, stations and headings of the ego's path.
+        people: Positions before and after the predicted step, and scratch, (n, 2) [m] each.
+        which: Number of the predicted step, and how many there are.
+        front: Station of the front bumper [m].
+        manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
+        sight: Numbers of a :class:`View` and of an :class:`Alarm`.
+        prospect: Gaps [m], persons and calm speeds [m/s], (N,) each, filled.
     """
+    (vertices, stations, headings), (before, after, between) = path, people
+    (j, predicted), (distance, speeds) = which, manoeuvre
+    gap, conflicts, calm = prospect
+    view, alarm = sight
     v, limits = View(*view), Alarm(*alarm)
     length, time_step, every = v.length, v.time_step, int(v.every)
     first, last = window(stations, front, PASSED + length)
@@ -129,18 +115,10 @@ def assess_step(
             x_s, y_s, _ = body_pose(vertices, stations, headings, stop, 0.0)
             braking_heading = np.arctan2(y_s - y, x_s - x)
         conflicts[i], calm[i] = conflicts_and_calm(
-            between,
-            before,
-            after,
-            every * time_step,
-            x,
-            y,
-            heading,
-            braking_heading,
+            (between, before, after),
+            (x, y, heading, braking_heading),
             speeds[i + 1],
-            length / 2.0,
-            v.width / 2.0,
-            v.conflict_time,
-            time_step,
+            (length / 2.0, v.width / 2.0),
+            (every * time_step, v.conflict_time, time_step),
             limits,
         )

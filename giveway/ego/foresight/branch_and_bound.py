@@ -28,18 +28,12 @@ def run_race(
     path: Arrays,
     people: Arrays,
     law: tuple[Any, ...],
-    poses: Array,
-    row: int,
-    front: float,
-    view: tuple[float, ...],
-    alarm: tuple[Any, ...],
+    ego: tuple[Array, int, float],
+    sight: tuple[tuple[float, ...], tuple[Any, ...]],
     trials: Arrays,
     memory: Arrays,
-    entrants: NDArray[np.int64],
-    lead: bool,
-    allowed: Array,
-    wanted: float,
-    weights: tuple[Any, ...],
+    candidates: tuple[NDArray[np.int64], bool],
+    judged: tuple[Array, float, tuple[Any, ...]],
 ) -> tuple[int, bool, int]:
     """The row of the cheapest entrant, which has finished; -1: no cost is a number.
 
@@ -49,19 +43,18 @@ def run_race(
         path: vertices, stations and headings of the ego's.
         people: what :func:`pedestrian_model.kernels.start` takes.
         law: the numbers of the model, and :attr:`Beliefs.halting`.
-        poses: (M, m, 7) of all vehicles; the ego's row is changed.
-        row: the ego's.
-        front: its front bumper's station [m].
-        view: the numbers of a ``View``.
-        alarm: the numbers of an ``Alarm``.
+        ego: Poses of all vehicles, (M, m, 7), in which the ego's row is changed; that row; the
+            station of its front bumper [m].
+        sight: Numbers of a ``View`` and of an ``Alarm``.
         trials: of ``Trials``.
         memory: of :class:`giveway.ego.foresight.workspace.Lanes`.
-        entrants: see :meth:`giveway.ego.foresight.workspace.Lanes.line_up`.
-        lead: the first runs until somebody is in its way, and wins if nobody is.
-        allowed: (N,) [m].
-        wanted: the speed [m/s] that time is lost against.
-        weights: of the cost.
+        candidates: Rows to evaluate, see :meth:`giveway.ego.foresight.workspace.Lanes.line_up`;
+            and whether the first runs alone until somebody is in its way, and wins if nobody is.
+        judged: Distances [m] that may be driven, (N,); speed [m/s] that time is lost against;
+            weights of the cost.
     """
+    (poses, row, front), (view, alarm) = ego, sight
+    (entrants, lead), (allowed, wanted, weights) = candidates, judged
     path, people, trials, memory = borrowed((path, people, trials, memory))
     poses, alarm, entrants, allowed = borrowed((poses, alarm, entrants, allowed))
     distance, speed, acceleration, handicap = trials
@@ -110,21 +103,13 @@ def run_race(
             bad[0] = advance(
                 best,
                 path,
-                people,
-                ahead,
-                scene,
-                scratch,
+                (people, ahead, scene, scratch),
                 law,
-                poses,
-                row,
-                front,
-                view,
-                alarm,
-                distance,
-                speed,
+                (poses, row, front),
+                (view, alarm),
+                (distance, speed),
                 memory,
-                allowed,
-                weights,
+                (allowed, weights),
             )
             if bad[0] != _FINE:
                 return -1, False, tried
@@ -174,24 +159,19 @@ def enter(
 def advance(
     k: int,
     path: Arrays,
-    people: Arrays,
-    ahead: Any,
-    scene: Any,
-    scratch: Any,
+    crowd: tuple[Arrays, Any, Any, Any],
     law: tuple[Any, ...],
-    poses: Array,
-    row: int,
-    front: float,
-    view: tuple[float, ...],
-    alarm: tuple[Any, ...],
-    distance: Array,
-    speed: Array,
+    ego: tuple[Array, int, float],
+    sight: tuple[tuple[float, ...], tuple[Any, ...]],
+    manoeuvres: tuple[Array, Array],
     memory: Arrays,
-    allowed: Array,
-    weights: tuple[Any, ...],
+    bounds: tuple[Array, tuple[Any, ...]],
 ) -> int:
-    """Roll manoeuvre k out by one step; -1, or a pedestrian whose state is not finite."""
+    """Roll manoeuvre k out by one step; return -1, or a pedestrian whose state is not finite."""
     vertices, stations, headings = path
+    people, ahead, scene, scratch = crowd
+    (poses, row, front), (distance, speed), (allowed, weights) = ego, manoeuvres, bounds
+    view = sight[0]
     state, index, prospects, sums, steps, alike, between = memory[:7]
     x, v, at = ahead.state
     M, n, N, every = poses.shape[0], x.shape[0], distance.shape[1] - 1, int(View(*view).every)
@@ -244,22 +224,13 @@ def advance(
                 prospects[which, k, i] = prospects[which, donor, i]
     else:
         assess_step(
-            vertices,
-            stations,
-            headings,
-            predicted[j - 1] if j > 0 else people[0],
-            predicted[j],
-            j,
-            M,
-            between[:n],
+            (vertices, stations, headings),
+            (predicted[j - 1] if j > 0 else people[0], predicted[j], between[:n]),
+            (j, M),
             front,
-            distance[k],
-            speed[k],
-            view,
-            alarm,
-            prospects[0, k],
-            prospects[1, k],
-            prospects[2, k],
+            (distance[k], speed[k]),
+            sight,
+            (prospects[0, k], prospects[1, k], prospects[2, k]),
         )
     for i in range(begin, end):
         sums[1, k], sums[2, k] = add_cost_of_others(

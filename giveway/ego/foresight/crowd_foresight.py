@@ -193,17 +193,12 @@ class CrowdForesight:
         self._predict(manoeuvre.distance, manoeuvre.speed)
         gap, conflicts, calm, _ = self._prospect
         assess(
-            *self._way,
-            self._pedestrians.position,
-            self._predicted,
+            self._way,
+            (self._pedestrians.position, self._predicted),
             self._front,
-            manoeuvre.distance,
-            manoeuvre.speed,
-            self._view,
-            self._alarm,
-            gap,
-            conflicts,
-            calm,
+            (manoeuvre.distance, manoeuvre.speed),
+            (self._view, self._alarm),
+            (gap, conflicts, calm),
         )
         wishes = self._predictor.desired_velocities(self._pedestrians, self._surroundings)
         crossers = np.empty((len(wishes), 4))
@@ -263,16 +258,12 @@ class CrowdForesight:
             self._way,
             vci.arrays(people, self._surroundings),
             (*vci.law, halting),
-            self._poses,
-            self._row,
-            self._front,
-            self._view,
-            self._alarm,
+            (self._poses, self._row, self._front),
+            (self._view, self._alarm),
             tuple(trials),
             lanes.arrays,
-            lanes.line_up(heats),
-            lead,
-            *judged,
+            (lanes.line_up(heats), lead),
+            judged,
         )
         if lanes.bad >= 0:
             raise vci.divergence(people, lanes.bad)

@@ -33,29 +33,32 @@ class Alarm(NamedTuple):
 
 @inner
 def conflicts_and_calm(
-    here: Array,
-    before: Array,
-    after: Array,
-    interval: float,
-    front_x: float,
-    front_y: float,
-    heading: float,
-    braking_heading: float,
+    people: tuple[Array, Array, Array],
+    pose: tuple[float, float, float, float],
     speed: float,
-    half_length: float,
-    half_width: float,
-    conflict_time: float,
-    time_step: float,
+    body: tuple[float, float],
+    times: tuple[float, float, float],
     alarm: Alarm,
 ) -> tuple[float, float]:
-    """Persons who would touch the ego within the conflict time if both kept their velocity.
+    """Return the persons in conflict with the ego, and its threat-free speed.
 
-    Who would do so up to half a second later counts in proportion.
-    They are ``here`` (n, 2) [m], on their ways from ``before`` to ``after`` in ``interval`` [s].
-    ``heading`` is the body's, ``braking_heading`` that of the way on which the front would stop.
-    Also the speed [m/s] from which on no pedestrian could force an emergency stop, see
-    :func:`is_threat`; inf: ``speed`` is slow enough.
+    A person is in conflict who would touch the ego within the conflict time if both kept their
+    velocity; one who would do so up to half a second later counts in proportion. The threat-free
+    speed [m/s] is that up to which no pedestrian could force an emergency stop, see
+    :func:`is_threat`; it is inf if ``speed`` is slow enough.
+
+    Args:
+        people: Positions of people now, before and after the interval [m], (n, 2) each.
+        pose: x, y of the front [m], heading of the body [rad], and heading of the way on which
+            the front would stop [rad].
+        speed: Speed of the ego [m/s].
+        body: Half of its length and half of its width [m].
+        times: Interval between two predictions, time to collision of a conflict, step [s].
+        alarm: Assumptions about people and braking.
     """
+    here, before, after = people
+    front_x, front_y, heading, braking_heading = pose
+    (half_length, half_width), (interval, conflict_time, time_step) = body, times
     if speed <= _SLOW:
         return 0.0, np.inf
     c, s = np.cos(heading), np.sin(heading)

@@ -63,17 +63,13 @@ def manoeuvre(speed, acceleration=0.0):
 def assessed(path, people, m, *, alarm=ALARM, every=EVERY):
     out = np.empty(N), np.empty(N), np.empty(N)
     assess(
-        path.vertices,
-        path.stations,
-        path.headings,
-        2.0 * people[0] - people[1],  # they walk straight on
-        np.ascontiguousarray(people[every - 1 :: every]),
+        (path.vertices, path.stations, path.headings),
+        # they walk straight on
+        (2.0 * people[0] - people[1], np.ascontiguousarray(people[every - 1 :: every])),
         FRONT,
-        m.distance,
-        m.speed,
-        View(LENGTH, WIDTH, HALF_WIDTH, CONFLICT_TIME, DT, every),
-        alarm,
-        *out,
+        (m.distance, m.speed),
+        (View(LENGTH, WIDTH, HALF_WIDTH, CONFLICT_TIME, DT, every), alarm),
+        out,
     )
     return out
 
