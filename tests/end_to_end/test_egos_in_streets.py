@@ -84,9 +84,7 @@ def test_the_stops_of_a_vehicle_that_is_taken_over_are_left_out(
 
 
 @pytest.mark.parametrize("step", [0.0333, 0.0335])
-def test_a_step_is_rounded_to_milliseconds_as_by_sumo(
-    scenario: Scenario, step: float
-) -> None:
+def test_a_step_is_rounded_to_milliseconds_as_by_sumo(scenario: Scenario, step: float) -> None:
     ego = {"route": EASTWARDS, "travel_distance": 5}
     result = giveway.run({"scenario": scenario("", step=step), "ego": ego} | NOBODY)
     assert result.completed

@@ -182,9 +182,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("line", WRONG)
-def test_a_profile_that_does_not_fit_is_refused_before_the_run(
-    headway, tmp_path, type_here, line
-):
+def test_a_profile_that_does_not_fit_is_refused_before_the_run(headway, tmp_path, type_here, line):
     wrong, said = WRONG[line]
     profile = tmp_path / "wrong.toml"
     profile.write_text(HEADWAY.replace(line, wrong), encoding="utf-8")

@@ -312,9 +312,7 @@ controller = ["careful_driver:Careful", "pid-tuned"]
     assert checked_run(folder, "c2-s1")
 
 
-def test_check_says_whether_a_controller_keeps_to_the_rules(
-    careful, installed, type_here
-):
+def test_check_says_whether_a_controller_keeps_to_the_rules(careful, installed, type_here):
     typed = type_here("check", "controller", "careful", "--set", "headway=1.5")
     assert typed.returncode == 0, typed.stdout
     assert "careful: sound" in typed.stdout
