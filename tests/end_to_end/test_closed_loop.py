@@ -160,13 +160,13 @@ def test_an_empty_plaza_takes_ten_seconds_by_mpc() -> None:
     assert len(result.pedestrians) == 0
 
 
-def test_an_empty_plaza_takes_the_pid_its_steady_state_error_longer() -> None:
+def test_the_pids_steady_state_error_delays_it_on_an_empty_plaza() -> None:
     # 10.39 s: e decays from alpha v_r / (K_p + alpha) = 0.16 m/s with (K_p + alpha) / K_i = 250 s
     result = giveway.run({"controller": "pid-paper", "crowd": {"pedestrians": 0}})
     assert result.summary["completion_time"] == pytest.approx(10.39, abs=0.01)
 
 
-def test_without_the_detour_people_cross_a_standing_cars_way_otherwise() -> None:
+def test_people_cross_before_a_standing_car_but_for_the_detour() -> None:
     """The car stops; who cannot see a way round it does not walk before it, and it waits less."""
     settings = {"controller": "pid-paper", "seed": 3, "time_limit": 20.0}
     waits = [

@@ -93,7 +93,7 @@ def drive(
     told=st.booleans(),
 )
 @settings(max_examples=40)
-def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
+def test_an_ego_stops_before_the_line_or_passes_it(
     controller: str,
     speed: float,
     share: float,
@@ -128,7 +128,7 @@ def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
 
 
 @pytest.mark.parametrize("distance", [90.0, 105.0, 120.0])
-def test_who_is_told_the_plan_does_not_stand_and_is_sooner_through(distance: float) -> None:
+def test_an_ego_with_the_signal_plan_does_not_stop_and_is_faster(distance: float) -> None:
     config = EgoRunConfig.model_validate(
         {"ego": {"initial_speed": 8.0}, "regulation": {"reference_speed": 8.0}}
     )

@@ -84,16 +84,14 @@ def test_the_stops_of_a_vehicle_that_is_taken_over_are_left_out(
 
 
 @pytest.mark.parametrize("step", [0.0333, 0.0335])
-def test_a_step_that_sumo_rounds_to_milliseconds_is_rounded_alike(
-    scenario: Scenario, step: float
-) -> None:
+def test_a_step_is_rounded_to_milliseconds_as_by_sumo(scenario: Scenario, step: float) -> None:
     ego = {"route": EASTWARDS, "travel_distance": 5}
     result = giveway.run({"scenario": scenario("", step=step), "ego": ego} | NOBODY)
     assert result.completed
     assert result.manifest["time_step"] == result.manifest["sumo"]["step_length"]
 
 
-def test_an_endless_scenario_waits_for_every_ego_that_is_to_be_inserted(
+def test_an_endless_scenario_waits_for_all_egos_to_be_inserted(
     scenario: Scenario,
 ) -> None:
     egos = ({"ego": {"id": "first"}}, {"ego": {"id": "second", "depart_time": 40}})
@@ -109,7 +107,7 @@ def test_an_endless_scenario_waits_for_every_ego_that_is_to_be_inserted(
     assert result.egos[1].track.time[0] == 40
 
 
-def test_a_scenario_without_an_end_ends_when_the_way_stays_blocked(
+def test_an_endless_scenario_ends_when_the_path_stays_blocked(
     scenario: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("giveway.cosimulation.standstill.LONGEST", 20.0)  # an hour, in earnest

@@ -107,7 +107,7 @@ def test_where_the_law_has_no_say_the_files_are_the_same_as_ever(tmp_path: Path)
     assert "ways" not in json.loads((tmp_path / "plaza" / "scene.json").read_text())
 
 
-def test_who_comes_up_to_a_crossing_late_is_stopped_for_before_it() -> None:
+def test_the_ego_stops_for_a_person_who_reaches_a_crossing_late() -> None:
     """In this drive a plan once led half a metre beyond the place to stop at, onto the crossing."""
     checked = preflight(*load([as_layer({"scenario": "junction", "seed": 123})]))
     summary = simulate(checked).summary

@@ -84,7 +84,7 @@ def test_calm_speeds_matter_in_some_crowds(
     assert np.abs(speeds(changed)[:both] - speeds(usual)[:both]).max() > 1e-6
 
 
-def test_a_heavier_vehicle_of_another_fmu_is_driven_by_its_own_mass() -> None:
+def test_a_heavier_vehicle_of_another_fmu_has_its_own_mass() -> None:
     run = giveway.run(
         {
             "controller": "mpc",

@@ -133,7 +133,7 @@ def test_a_way_of_any_length_is_sampled_to_its_end() -> None:
     assert (len(way) - 1) * spacing >= 5000.0
 
 
-def test_in_a_bend_it_brakes_for_who_is_round_the_corner_not_for_who_is_straight_on() -> None:
+def test_in_a_bend_it_brakes_for_people_on_the_path_not_ahead() -> None:
     path = quarter_turn(5.0)
     front = 20.0 + 0.25 * np.pi * 5.0  # half way round
     on_it, heading = path.pose(front + 1.8), path.pose(front, 5.0).heading

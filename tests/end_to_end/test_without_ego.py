@@ -74,7 +74,7 @@ def test_a_two_sided_crowd_is_the_same_with_and_without_an_ego():
     pd.testing.assert_frame_equal(*(table.reset_index(drop=True) for table in places))
 
 
-def test_a_zone_in_metres_is_round_the_way_that_an_ego_would_have():
+def test_a_zone_in_metres_is_round_the_path_an_ego_would_have():
     result = giveway.run({"scenario": "junction", **NOBODY, "crowd.zone": "15"})
     assert result.config.ego.route
     rows = result.trajectories

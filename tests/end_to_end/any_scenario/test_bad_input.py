@@ -173,7 +173,7 @@ def test_a_disconnected_walk_is_walked_all_the_same_with_a_note(
     assert ledger["taken_over"] == ledger["arrived"] == 1
 
 
-def test_a_disconnected_route_in_the_middle_of_the_run_keeps_the_rows(
+def test_a_disconnected_route_during_the_run_keeps_the_rows(
     type_here: Callable[..., Any], scenario: Scenario, tmp_path: Path
 ) -> None:
     late = '<vehicle id="late" depart="220"><route edges="A0B0 C2C3"/></vehicle>'

@@ -37,7 +37,7 @@ def bend(tmp_path_factory: pytest.TempPathFactory, call_sumo: Callable[..., str]
     return net
 
 
-def test_an_ego_in_a_bend_does_not_brake_for_who_overtakes_it_on_the_next_lane(
+def test_an_ego_in_a_bend_does_not_brake_for_an_overtaking_car(
     drive: Drive, scenario: Callable[..., Path], bend: Path
 ) -> None:
     flows = "".join(

@@ -41,7 +41,7 @@ def difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("step", [1, 0.1, 0.05])
-def test_a_vehicle_that_departs_is_taken_over_where_it_is_and_as_fast_as_it_is(
+def test_a_vehicle_keeps_place_and_speed_when_taken_over(
     drive: Drive, city: Callable[[float], Path], step: float
 ) -> None:
     result, look = drive(city(step), ego={"take_over": ("car10",)}, time_limit=5.0, **NOBODY)
@@ -89,7 +89,7 @@ def test_metres_driven_are_metres_of_lane(drive: Drive, city: Callable[[float], 
     assert measured > 0.9 * len(points)  # the rest is steps over the end of a lane
 
 
-def test_the_ego_looks_where_it_drives_on_roads_of_every_direction(
+def test_the_ego_looks_ahead_on_roads_of_every_direction(
     drive: Drive, city: Callable[[float], Path]
 ) -> None:
     result, _ = drive(
@@ -114,7 +114,7 @@ def test_the_ego_looks_where_it_drives_on_roads_of_every_direction(
     assert np.hypot(*(before - at_the_end).T).min() < 4.0
 
 
-def test_diagonals_bends_and_another_network_without_anything_for_pedestrians(
+def test_it_drives_diagonals_bends_and_a_net_without_sidewalks(
     drive: Drive,
     scenario: Callable[..., Path],
     call_sumo: Callable[..., str],

@@ -35,7 +35,7 @@ def content(file: Path) -> bytes:
 @pytest.mark.parametrize(
     ("name", "until"), [("city", 150), ("demonstration", 54_150), ("street", 60), ("junction", 60)]
 )
-def test_with_nothing_controlled_the_traffic_is_sumos_own_to_the_byte(
+def test_without_control_the_traffic_is_sumos_own_to_the_byte(
     type_here: Give,
     call_sumo: Callable[..., str],
     city: Callable[[float], Path],
@@ -66,7 +66,7 @@ def test_with_nothing_controlled_the_traffic_is_sumos_own_to_the_byte(
         assert content(trips) == content(tmp_path / "t.xml")
 
 
-def test_a_scenario_in_a_read_only_folder_runs_and_stays_as_it_is(
+def test_a_scenario_in_a_read_only_folder_runs_unchanged(
     town: Path, tmp_path: Path, unchanged: Callable[[Path], None], type_here: Give
 ) -> None:
     folder = tmp_path / "read only"

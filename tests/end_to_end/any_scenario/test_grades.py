@@ -116,7 +116,7 @@ def test_per_cent_are_the_tangent(driven):
     assert speeds[1] == pytest.approx(speeds[0], abs=1e-9)
 
 
-def test_who_has_no_input_for_it_drives_as_on_the_level_and_is_told_so(driven):
+def test_an_fmu_without_a_grade_input_drives_level_with_a_remark(driven):
     result = driven("")
     blind, feeling = result.egos[0].track.speed, driven().egos[0].track.speed
     assert np.ptp(blind[200:]) < 0.03  # on the level, too

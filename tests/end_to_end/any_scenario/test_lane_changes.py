@@ -43,7 +43,7 @@ def changes_lanes(
     return drive(config, ego=ego, controller=controller, time_limit=seconds, crowd={"zone": "none"})
 
 
-def test_who_is_on_the_lane_that_an_ego_changes_to_keeps_behind_it(
+def test_vehicles_on_the_lane_an_ego_changes_to_keep_behind_it(
     drive: Drive, scenario: Callable[..., Path], narrowing: Path
 ) -> None:
     result, look = changes_lanes(drive, scenario(FLOW, net=narrowing), 100.0, 15.0)

@@ -36,7 +36,7 @@ def written(city: Callable[[float], Path], tmp_path_factory: pytest.TempPathFact
     return folder
 
 
-def test_sumos_own_outputs_are_there_and_have_the_egos_and_the_walkers(written: Path) -> None:
+def test_sumos_own_outputs_contain_the_egos_and_the_walkers(written: Path) -> None:
     sumo = written / "sumo"
     names = {"fcd.xml", "trips.out.xml", "ssm.xml", "summary.xml", "edges.xml"}
     assert {file.name for file in sumo.iterdir()} == names  # where the scenario has a name, its own

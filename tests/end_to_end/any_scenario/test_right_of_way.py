@@ -86,7 +86,7 @@ def test_a_left_turn_at_green_waits_for_who_comes_towards_it(
     assert waits.time.max() > 30.0  # until the last of them has passed
 
 
-def test_a_car_from_a_side_road_lets_an_ego_on_the_main_road_go_first(
+def test_a_car_from_a_side_road_yields_to_an_ego_on_the_main(
     drive: Drive, scenario: Callable[..., Path], crossroads: Callable[[str], Path]
 ) -> None:
     config = scenario(STREAM.format("s_in n_out"), net=crossroads("priority"))

@@ -86,7 +86,7 @@ def test_nobody_is_made_to_brake_harder_than_it_can(
     assert about(result, "no room on lane 'ab_0' at 9.3 s")
 
 
-def test_an_ego_that_never_finds_room_ends_the_run_with_what_to_do(
+def test_an_ego_without_room_ends_the_run_with_what_to_do(
     scenario: Callable[..., Path], lane: Path, refused: Any
 ) -> None:
     config = scenario(

@@ -74,7 +74,7 @@ def test_whose_stops_are_kept(
     assert any("its 2 stop(s) are left out" in remark for remark in result.remarks) == (not served)
 
 
-def test_a_stop_in_a_parking_area_is_left_out_and_one_behind_is_over(
+def test_a_stop_in_a_parking_area_or_behind_the_ego_is_left_out(
     drive: Drive, scenario: Callable[..., Path]
 ) -> None:
     area = '<additional><parkingArea id="p" lane="A0B0_1" startPos="40" endPos="60"/></additional>'

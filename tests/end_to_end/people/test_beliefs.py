@@ -35,7 +35,7 @@ def surprise(result):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_who_believes_in_what_moves_people_knows_where_they_are_next(model):
+def test_a_predictor_that_equals_the_crowds_model_is_exact(model):
     assert surprise(drive(model, model, **ON_RECORD)).max() < 1e-6
 
 
@@ -74,7 +74,7 @@ def shy(installed):
 
 
 @pytest.mark.parametrize("controller", ["mpc", "mpc-paper"])
-def test_somebody_elses_model_is_believed_in_where_it_moves_people(shy, controller):
+def test_a_plugged_in_model_that_moves_people_predicts_them_too(shy, controller):
     options = {"model_options": {"look": 2.0}}
     result = drive("shy", "shy", controller, **ON_RECORD, **options)
     if controller == "mpc-paper":  # the planner's people answer to its plan, not to its past

@@ -32,7 +32,7 @@ def passed_on_the_sidewalk(result):
 
 
 @pytest.mark.parametrize("seed", [6, 23])
-def test_who_stays_on_the_sidewalk_is_passed_without_hard_braking(seed):
+def test_people_on_the_sidewalk_are_passed_without_hard_braking(seed):
     result = drive(seed)
     assert passed_on_the_sidewalk(result) >= 2
     assert result.summary["peak_deceleration"] < HARD

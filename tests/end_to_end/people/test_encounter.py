@@ -46,7 +46,7 @@ def test_the_same_people_walk_when_nobody_drives(driven) -> None:
     assert starts(again) == starts(alone)
 
 
-def test_unknown_goals_change_what_a_planner_expects_not_the_people() -> None:
+def test_unknown_goals_change_the_prediction_not_the_people() -> None:
     config = {"scenario": "encounter", "seed": 2, "time_limit": 6.0, "controller": "mpc"}
     runs = [giveway.run({**config, "perception": {"goals": g}}) for g in ("known", "heading")]
     forces = [run.ego_track.force for run in runs]

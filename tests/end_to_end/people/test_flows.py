@@ -76,7 +76,7 @@ def test_the_twin_has_the_very_same_arrivals(config: dict) -> None:
     assert not result.remarks
 
 
-def test_people_who_mind_lose_time_before_an_ego_that_others_do_not_have() -> None:
+def test_only_people_who_react_to_egos_lose_time_before_one() -> None:
     result = giveway.run({**with_crowd(PLAZA, flow_scale=2.0), "twin": True})
     assert result.effect is not None
     pairs = zip(result.effect.run.ids, result.effect.twin.ids, strict=False)
@@ -85,7 +85,7 @@ def test_people_who_mind_lose_time_before_an_ego_that_others_do_not_have() -> No
     assert result.summary["frontal_contacts"] == 0
 
 
-def test_the_same_seed_has_the_same_bytes_and_another_seed_other_people(tmp_path: Path) -> None:
+def test_the_same_seed_has_the_same_bytes_and_another_has_not(tmp_path: Path) -> None:
     people = {"elderly": 0.3, "distracted": 0.3}
     mixed = with_crowd(PLAZA, groups=0.6, people=people, acceleration_noise=0.2)
     for name, seed in (("one", 3), ("same", 3), ("other", 4)):
@@ -122,7 +122,7 @@ def endless(tmp_path: Path) -> dict:
     return {**PLAZA, "scenario": str(config), "ego": {"none": True, "route": ["plaza"]}}
 
 
-def test_without_an_ego_the_run_ends_when_the_last_of_them_has_arrived(endless: dict) -> None:
+def test_without_an_ego_the_run_ends_when_all_have_arrived(endless: dict) -> None:
     flow = {**NORTH, "begin": 5.0, "end": 15.0}
     result = giveway.run(with_crowd(endless, flow=[flow]))
     counts = result.manifest["pedestrians"]

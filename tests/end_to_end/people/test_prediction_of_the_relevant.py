@@ -64,7 +64,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
     assert in_reach > 15
 
 
-def test_who_is_left_out_hardly_changes_what_a_manoeuvre_would_lead_to(
+def test_people_left_out_hardly_change_a_manoeuvres_outcome(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     rng = np.random.default_rng(2)

@@ -74,7 +74,7 @@ def test_who_watches_is_told_what_comes_after_the_drive():
 
 
 @pytest.mark.parametrize("config", [OPEN, STREET], ids=["open", "street"])
-def test_with_a_twin_every_column_that_there_was_keeps_its_values(config, tmp_path):
+def test_a_counterfactual_run_leaves_the_other_columns_unchanged(config, tmp_path):
     giveway.run(config, results=tmp_path / "alone", pictures=False)
     giveway.run(config | {"twin": True}, results=tmp_path / "twin", pictures=False)
     before, after = ({f.name for f in (tmp_path / n).glob("*")} for n in ("alone", "twin"))
@@ -117,7 +117,7 @@ def test_a_twin_whose_people_feel_the_egos_is_the_run_itself(config, monkeypatch
     assert np.nanmax(np.abs(effect.delays.detour)) <= 1e-6
 
 
-def test_people_are_followed_after_the_arrival_until_they_have_arrived(run_once):
+def test_people_are_followed_until_they_have_arrived_themselves(run_once):
     result = run_once(twin=True, **OPEN)
     run = result.effect.run
     arrival = len(result.time) - 1
@@ -127,7 +127,7 @@ def test_people_are_followed_after_the_arrival_until_they_have_arrived(run_once)
     assert result.trajectories["time"].max() == result.time[-1]
 
 
-def test_without_an_arrival_people_are_compared_by_what_is_left_of_their_way(run_once):
+def test_people_who_do_not_arrive_are_compared_by_distance_left(run_once):
     result = run_once(twin=True, **(OPEN | {"time_limit": 8.0}))
     assert set(result.pedestrians["delay_by"]) == {"route"}
     assert result.effect.run.last == result.effect.twin.last == len(result.time) - 1

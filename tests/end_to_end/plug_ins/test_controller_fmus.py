@@ -182,9 +182,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("line", WRONG)
-def test_a_profile_that_does_not_fit_is_refused_before_anything_runs(
-    headway, tmp_path, type_here, line
-):
+def test_a_profile_that_does_not_fit_is_refused_before_the_run(headway, tmp_path, type_here, line):
     wrong, said = WRONG[line]
     profile = tmp_path / "wrong.toml"
     profile.write_text(HEADWAY.replace(line, wrong), encoding="utf-8")
@@ -216,7 +214,7 @@ def test_a_profile_belongs_to_an_fmu(headway, tmp_path):
     assert other.controller_profile == ""  # left behind
 
 
-def test_a_results_folder_needs_the_users_word_and_the_same_content(headway, tmp_path, type_here):
+def test_a_results_folder_needs_consent_and_the_same_content(headway, tmp_path, type_here):
     out, fmu = tmp_path / "results", headway["controller"]
     giveway.run({**headway, **SHORT, "time_limit": 0.3}, results=out, pictures=False)
     words = ["run", "--config", out / "config.toml", "--out", tmp_path / "again", "-q"]
@@ -250,7 +248,7 @@ controller_options = { fault = 2 }
 """
 
 
-def test_in_a_study_a_fault_is_a_row_and_another_content_is_noticed(headway, tmp_path, type_here):
+def test_a_study_records_a_fault_and_notices_another_content(headway, tmp_path, type_here):
     file, out = tmp_path / "study.toml", tmp_path / "study"
     file.write_text(STUDY, encoding="utf-8")
     done = type_here("study", file, "--out", out, "--no-report", "-q")

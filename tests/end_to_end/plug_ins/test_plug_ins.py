@@ -81,7 +81,7 @@ def test_the_package_is_short():
     assert len(printed("file: careful_driver.py").splitlines()) <= 60
 
 
-def test_the_printed_controller_drives_as_the_printed_settings_say(careful, tmp_path):
+def test_the_guides_controller_drives_as_its_settings_say(careful, tmp_path):
     file = tmp_path / "careful.toml"
     file.write_text(printed("run"), encoding="utf-8")
     config, _ = load([read_toml(file)])
@@ -162,7 +162,7 @@ def test_an_option_of_another_controller_is_refused():
         giveway.run({"controller": "pid-paper", "controller_options.headway": 1.0})
 
 
-def test_what_a_plug_in_declares_holds_where_the_user_says_nothing(installed):
+def test_a_plug_ins_declaration_holds_unless_the_user_sets_it(installed):
     installed(
         "declared_driver",
         "from controller import Defaults\n"
@@ -188,7 +188,7 @@ def test_what_a_plug_in_declares_holds_where_the_user_says_nothing(installed):
     )
 
 
-def test_the_schema_knows_what_is_declared_and_what_is_a_reference(careful):
+def test_the_schema_has_declared_options_and_references(careful):
     import jsonschema
 
     from giveway.cli.commands.schema_command import schemas
@@ -278,7 +278,7 @@ def test_a_results_folder_is_not_believed(careful, installed, tmp_path, type_her
     assert type_here("config", "--config", config, "--controller", "careful").returncode == 0
 
 
-def test_a_study_of_the_page_is_resumed_with_what_it_was_made_with(careful, study_of, tmp_path):
+def test_the_guides_study_is_resumed_with_its_own_settings(careful, study_of, tmp_path):
     text = printed("study").replace("100", "1") + "\n[run]\ntime_limit = 1.0\n"
     text += "crowd = { pedestrians = 3 }\n"
     study = study_of(text, tmp_path / "study")
@@ -312,9 +312,7 @@ controller = ["careful_driver:Careful", "pid-tuned"]
     assert checked_run(folder, "c2-s1")
 
 
-def test_check_tells_in_words_whether_a_controller_keeps_to_the_rules(
-    careful, installed, type_here
-):
+def test_check_says_whether_a_controller_keeps_to_the_rules(careful, installed, type_here):
     typed = type_here("check", "controller", "careful", "--set", "headway=1.5")
     assert typed.returncode == 0, typed.stdout
     assert "careful: sound" in typed.stdout

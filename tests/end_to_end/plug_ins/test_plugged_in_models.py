@@ -72,7 +72,7 @@ def faulty(installed):
     return installed("faulty_people", FAULTY, declares="odd = faulty_people:People", group=GROUP)
 
 
-def test_the_printed_people_walk_as_the_printed_settings_say_with_a_twin(shy, tmp_path):
+def test_the_guides_people_walk_as_their_settings_say(shy, tmp_path):
     settings = tomllib.loads(printed("shy run"))
     settings["crowd"]["pedestrians"] = 30
     out = tmp_path / "run"
@@ -93,7 +93,7 @@ def test_the_printed_people_walk_as_the_printed_settings_say_with_a_twin(shy, tm
     assert not np.array_equal(far.x, result.crowd_track.x)
 
 
-def test_on_a_road_with_walls_and_lights_and_people_of_the_scenarios_own(shy):
+def test_a_plugged_in_model_walks_on_roads_with_walls_and_lights(shy):
     crowd = {"model": "shy", "walls": True}
     run = {"scenario": "junction", "seed": 2, "time_limit": 40.0, "crowd": crowd}
     result = giveway.run(run, pictures=False)
@@ -108,7 +108,7 @@ def test_the_configuration_as_it_is_written_is_the_configuration(shy):
         giveway.run({"model_options.look": 1.0})
 
 
-def test_options_from_the_command_line_are_those_of_the_model_named_last(shy, type_here, tmp_path):
+def test_options_of_the_command_line_go_to_the_model_named_last(shy, type_here, tmp_path):
     words = ["--crowd-model", "shy", "--set-model", "look=1.25"]
     typed = type_here("config", *words)
     assert tomllib.loads(typed.stdout)["model_options"] == {"look": 1.25}
@@ -242,7 +242,7 @@ crowd = { pedestrians = 3 }
     assert checked_run(folder, "c2-s1")
 
 
-def test_a_crowd_among_itself_depends_on_its_model_and_on_no_controller(shy, installed):
+def test_a_crowd_without_egos_depends_on_its_model_only(shy, installed):
     """Runs that one process makes with the same people share it."""
     installed("idle_driver", "class Idle:\n    def control(self, seen):\n        return 0.0\n")
     crowd = Crowd.create([[0.0, 0.0]], [[0.0, 0.0]], 1.3, [[[5.0, 0.0]]])

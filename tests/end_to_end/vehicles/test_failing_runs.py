@@ -63,9 +63,7 @@ def test_a_run_ends_at_the_step_that_failed(zoo, typed, profiled, tmp_path, faul
 
 
 @pytest.mark.parametrize("behaviour", ["position_stands", "frozen"])
-def test_a_position_that_stands_while_the_speed_goes_on_ends_the_run(
-    zoo, giveway, tmp_path, behaviour
-):
+def test_a_position_that_stands_at_a_positive_speed_ends_the_run(zoo, giveway, tmp_path, behaviour):
     car = zoo.car(behaviour=behaviour, at=AT)
     profile = car.with_suffix(".toml")
     words = ("--profile", profile, "--vehicle-isolation", "none", "--time-limit", 12)

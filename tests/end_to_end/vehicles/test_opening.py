@@ -74,7 +74,7 @@ def test_an_fmu_that_fails_at_every_step_is_left_to_the_run(zoo, run):
         ({"parameters": {"mass": "heavy"}}, "start value mass = heavy: expected a finite number"),
     ],
 )
-def test_a_profile_that_does_not_fit_is_refused_before_anything_runs(zoo, run, tables, said):
+def test_a_profile_that_does_not_fit_is_refused_before_the_run(zoo, run, tables, said):
     with pytest.raises(VehicleError) as caught:
         run(zoo.car(), **tables)
     assert said in str(caught.value)
@@ -92,14 +92,14 @@ def test_a_draft_with_a_doubt_is_refused_with_the_lines_to_add(zoo, run):
     assert "unit" in str(caught.value)
 
 
-def test_it_starts_at_the_speed_of_the_ego_without_a_parameter_for_it(zoo, run):
+def test_it_starts_at_the_egos_speed_without_a_parameter_for_it(zoo, run):
     result = run(zoo.car(initial=()))
     assert result.ego["speed"].iloc[0] == pytest.approx(4.0, abs=0.02)
     assert result.ego["position"].iloc[0] == 0.0
     assert any("driven up to" in remark for remark in result.remarks)
 
 
-def test_an_fmu_whose_force_has_the_wrong_sign_is_refused_before_the_run(zoo, run):
+def test_an_fmu_with_the_wrong_sign_of_force_is_refused(zoo, run):
     car = zoo.car(spoken={"force": (-1.0, 0.0)})
     with pytest.raises(VehicleError, match=r"gain = -1\.0 in \[inputs\.force\]"):
         run(car)

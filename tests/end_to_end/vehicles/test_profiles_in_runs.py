@@ -206,7 +206,7 @@ def test_the_margin_grows_with_a_longer_horizon(profile):
 # ---- a run ----
 
 
-def test_a_run_says_what_its_controller_knows_and_records_the_profile(zoo, profile, own_temp):
+def test_a_run_tells_the_identified_model_and_keeps_the_profile(zoo, profile, own_temp):
     car = zoo.car()
     path = profile(car=car, **IDENTIFIED | {"mass": 1000.0, "friction": 100.0})
     vehicle = {"fmu": str(car), "profile": str(path), "isolation": "none"}

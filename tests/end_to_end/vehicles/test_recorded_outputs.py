@@ -84,7 +84,7 @@ def test_of_two_egos_each_has_its_own(zoo, tmp_path):
     assert table[table["id"] == "b"]["clock"].isna().all()
 
 
-def test_a_name_that_a_column_has_already_is_refused_before_the_run(drive):
+def test_a_recorded_name_that_a_column_has_already_is_refused(drive):
     names = {"wheel_force": "gap"}
     with pytest.raises(VehicleError, match=r"run\.toml: record: 'gap' is a column of ego\.csv"):
         drive(record=["gap"], names=names)

@@ -69,7 +69,7 @@ def test_the_paper_s_gains_are_the_configurations():
     assert PlannerParameters().horizon == round(CONFIG.planner.horizon / STEP)
 
 
-def test_the_safety_layers_defaults_are_the_configurations_and_the_people_s():
+def test_the_safety_layers_defaults_are_the_configurations():
     assert safety_parameters(CONFIG, STEP) == SafetyParameters()
     assert SafetyParameters().width == BODY.width
     milder = safety_parameters(EgoRunConfig(safety={"people": "responsible"}), STEP)
@@ -79,7 +79,7 @@ def test_the_safety_layers_defaults_are_the_configurations_and_the_people_s():
     assert get_args(chosen) == get_args(PeopleName)
 
 
-def test_the_exported_controllers_defaults_are_the_configurations():
+def test_exported_controllers_have_the_configurations_defaults():
     exported = dataclasses.asdict(ControllerParameters())
     ours = {
         **CONFIG.regulation.model_dump(),

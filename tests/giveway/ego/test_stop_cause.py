@@ -38,7 +38,7 @@ def test_the_nearest_is_the_cause(stops_for):
     assert cause(stop=44.0, stops_for=stops_for) == "none"  # it could go on for 4 m
 
 
-def test_the_layer_stands_for_people_and_the_plan_for_who_is_expected():
+def test_the_layer_waits_for_people_the_plan_for_expected_ones():
     assert cause(acting="safety") == "person"
     assert cause(ahead=np.array([60.0, 47.0, 60.0])) == "vehicle"
     assert cause(ahead=np.array([60.0, 47.0, 60.0]), predicted=np.empty((3, 1, 2))) == "person"

@@ -33,7 +33,7 @@ def go_on(roster: Roster, walking: Walking, log: WalkLog, step: int = 0) -> None
     alone.go_on(LONGEST, frozenset({"somebody"}), Heartbeat(None))
 
 
-def test_who_is_held_up_by_a_standing_car_for_a_known_time_has_the_delay_worked_out_by_hand():
+def test_a_delay_behind_a_standing_car_is_as_worked_out_by_hand():
     """The car stands across the way for 40 s, and is gone.
 
     Unhindered the place where he waits is reached at t_there. From there he starts at 40 s, takes

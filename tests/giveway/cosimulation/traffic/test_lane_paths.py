@@ -87,7 +87,7 @@ def test_the_first_in_each_cars_way_is_found(seed: int, corners: int, sight: flo
     assert found == pytest.approx(expected, abs=1e-9)
 
 
-def test_a_car_on_no_lane_and_one_at_the_end_of_its_way_see_nobody() -> None:
+def test_a_car_on_no_lane_or_at_the_end_of_its_route_sees_nobody() -> None:
     lane = np.array([[0.0, 0.0], [50.0, 0.0]])
     people = np.array([[60.0, 0.0]])
     gaps = np.empty(2)

@@ -88,5 +88,5 @@ def test_at_lights_the_letters_decide(lights: str, waits: bool) -> None:
     assert bool(rooms(ego(40.0, 8.0, lights=True), other(), lights=lights)) == waits
 
 
-def test_who_is_inside_already_goes_first_though_its_light_is_red_again() -> None:
+def test_a_vehicle_inside_goes_first_though_its_light_is_red() -> None:
     assert rooms(ego(52.0, 3.0, lights=True), other(), lights="rg") == {"car": 6.0}

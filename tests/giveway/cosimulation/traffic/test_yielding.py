@@ -6,7 +6,7 @@ from giveway.cosimulation.traffic.yielding import _expected
 from pedestrian_model import Crowd
 
 
-def test_people_walk_on_as_now_and_those_with_priority_to_where_they_want_to_be():
+def test_people_walk_on_and_those_with_priority_to_their_goals():
     crowd = Crowd.create(
         [(0.0, 0.0), (9.0, 0.0)],
         [(1.0, 0.0), (0.0, 0.0)],

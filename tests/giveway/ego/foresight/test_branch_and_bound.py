@@ -88,7 +88,7 @@ def drive(seed, racing, steps=25):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_the_race_comes_to_the_same_manoeuvres_plans_and_expectations(seed):
+def test_branch_and_bound_finds_the_same_manoeuvres_and_plans(seed):
     raced, judged = drive(seed, racing=True), drive(seed, racing=False)
     manoeuvres = {plan.manoeuvre for plan, *_ in judged}
     assert len(manoeuvres) > 1

@@ -21,7 +21,7 @@ def steady(*speeds):
 
 
 @pytest.mark.parametrize("braking", [-2.5, -5.0])
-def test_a_branch_begins_like_its_manoeuvre_and_brakes_within_jerk_and_deceleration(braking):
+def test_a_branch_starts_as_its_manoeuvre_and_keeps_the_limits(braking):
     trials, branch = steady(4.0), steady(4.0)
     branch_off(*branch.of(0), 10, braking, 4.0, DT)
     distance, speed, acceleration = branch.of(0)
@@ -44,7 +44,7 @@ def cost(time, stopped):
     return of
 
 
-def test_the_quick_one_is_chosen_as_long_as_its_branch_still_stops():
+def test_the_quick_manoeuvre_is_chosen_while_its_branch_can_stop():
     trials = steady(4.0, 1.0)
     assert hedged(cost([0.0, 1.0], 8.0), trials, [0, 1], 0.6, 4.0, DT) == 0
     assert np.array_equal(trials.speed, steady(4.0, 1.0).speed)  # branches are copies
@@ -55,7 +55,7 @@ def test_where_it_does_not_the_odds_decide(likely, chosen):
     assert hedged(cost([0.0, 1.0], 3.0), steady(4.0, 1.0), [0, 1], likely, 4.0, DT) == chosen
 
 
-def test_only_of_those_whose_intent_is_open_the_less_likely_is_told():
+def test_the_less_likely_intent_is_told_only_where_it_is_open():
     path = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
     seen = Beliefs(path, 1.15, plan_predictor(SIM, DT, 20), DT)
     numbers, told = np.array([0, 1]), []

@@ -157,7 +157,7 @@ def test_who_stands_is_in_nobodys_way():
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_up_to_the_calm_speed_somebody_is_no_threat_and_beyond_it_is(seed):
+def test_a_person_is_a_threat_only_above_the_threat_free_speed(seed):
     g = np.random.default_rng(seed)
     people, v = walkers(g, STRAIGHT, count=1), g.uniform(1.0, 6.0)
     m = manoeuvre(v)
@@ -209,7 +209,7 @@ def test_threats_outline_when_the_safety_layer_would_act():
     assert seen[0, 1] / seen[0].sum() < 0.06  # false alarms
 
 
-def test_threats_outline_when_the_safety_layer_would_act_beside_a_sidewalk():
+def test_threats_show_when_the_layer_would_act_beside_a_sidewalk():
     alarm = ALARM._replace(setting_out=WORST.setting_out)
     g, layer = np.random.default_rng(1), SafetyLayer(LongitudinalModel(), SafetyParameters())
     seen = np.zeros((2, 2))
@@ -231,7 +231,7 @@ def test_threats_outline_when_the_safety_layer_would_act_beside_a_sidewalk():
 
 
 @pytest.mark.parametrize("name", PATHS)
-def test_whoever_stands_where_the_safety_layer_would_act_is_a_threat(name):
+def test_a_person_for_whom_the_layer_would_act_is_a_threat(name):
     """Just below a speed at which the stop takes a step less, and on either side of a bend."""
     path, m = PATHS[name], manoeuvre(3.98)
     layer = SafetyLayer(LongitudinalModel(), SafetyParameters())
@@ -292,7 +292,7 @@ def test_a_plan_is_predicted_in_steps_of_a_tenth_of_a_second():
     assert plan_predictor(SIM, 0.02, 4).horizon == 1
 
 
-def test_people_who_are_too_quick_for_such_a_step_are_predicted_in_their_own():
+def test_people_too_quick_for_the_step_are_predicted_in_theirs():
     quick = replace(SIM, destination_gain=1000.0)
     made = plan_predictor(quick, DT, N)
     assert (made.time_step, made.horizon) == (0.1, N // 2)
@@ -321,7 +321,7 @@ def test_people_answer_to_the_manoeuvre():
     assert abs(crossings[1] - crossings[0]) > 0.01
 
 
-def test_the_best_is_remembered_while_others_are_tried_and_forgotten_at_the_next_look():
+def test_the_best_is_remembered_until_the_next_look():
     ahead = foresight()
     look(ahead)
     assert ahead.best is None

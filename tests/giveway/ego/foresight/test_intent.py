@@ -57,7 +57,7 @@ def test_who_walks_on_is_expected_to():
     assert all((way == (18.0, 20.0)).all() for way in ways)
 
 
-def test_who_slows_down_before_the_way_is_found_out_before_he_stands():
+def test_a_person_who_slows_down_is_found_out_before_standing():
     odds, ways = watch(beliefs(), lambda room: min(PACE, max(room, 0.0) / 2.0))
     first = next(i for i, found in enumerate(odds) if found > 0.0)
     assert first < 20
@@ -79,7 +79,7 @@ def test_who_goes_on_after_all_is_believed():
 
 
 @pytest.mark.parametrize("left", [0.3, 0.6, 0.9])
-def test_where_somebody_stops_is_told_by_the_pace_at_which_he_nears_it(left):
+def test_the_place_of_a_stop_follows_from_the_approach_speed(left):
     """VCI's walk towards a destination, seen in the middle of it; a hand is kept to spare."""
     seen = beliefs()
     watch(seen, lambda _: 0.0, y=-HALF - 0.5, steps=6)
@@ -92,7 +92,7 @@ def test_where_somebody_stops_is_told_by_the_pace_at_which_he_nears_it(left):
     assert crowd.waypoints[0] == pytest.approx((18.0, -HALF - 0.05))
 
 
-def test_who_waits_at_the_edge_is_expected_to_stay_there_when_the_ego_passes():
+def test_a_person_who_waits_at_the_edge_is_expected_to_stay():
     """VCI by itself expects that he is pushed back, which would seem to allow a higher speed."""
     N, y = 40, -HALF - 0.3
     planner = Planner(LongitudinalModel(time_step=DT), PlannerParameters(horizon=N))

@@ -34,7 +34,7 @@ def near(path, begin, end, position, velocity, margin):
 
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("name", PATHS)
-def test_whose_straight_way_comes_near_the_part_of_the_path_counts(name, seed):
+def test_people_whose_straight_walk_comes_near_the_path_count(name, seed):
     path, g = PATHS[name], np.random.default_rng(seed)
     begin, margin = g.uniform(5.0, 20.0), g.uniform(1.0, 6.0)
     end = begin + g.uniform(1.0, 25.0)

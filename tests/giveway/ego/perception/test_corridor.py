@@ -146,7 +146,7 @@ def winding_paths(draw: st.DrawFn) -> EgoPath:
 
 @given(path=winding_paths(), share=numbers, seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=150)
-def test_on_a_long_path_those_in_sight_are_the_same_as_on_the_whole_path(
+def test_the_corridor_on_a_long_path_is_that_of_the_whole_path(
     path: EgoPath, share: float, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)

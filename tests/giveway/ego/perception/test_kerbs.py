@@ -112,7 +112,7 @@ def test_where_the_light_stays_red_nobody_soon_is_at_a_crossing():
 
 
 @pytest.mark.parametrize(("opens", "keeps"), [(4.0, False), (9.0, True)])
-def test_who_waits_where_the_light_will_soon_turn_green_is_planned_for_as_on_the_road(opens, keeps):
+def test_a_person_whose_light_turns_green_soon_counts_as_on_road(opens, keeps):
     beside = kerbs(crossings=(SIGNALS,), change_of={"tls": SignalChange(opens, "G")}.get)
     beside.update({"tls": "r"})
     crowd = Crowd.create([[60.0, -2.25]], [(0.0, 0.0)], 1.2, [[(60.0, 5.0)]])
@@ -166,7 +166,7 @@ NARROWER = shapely.union_all(
         ((0.0, 1.3), [np.sqrt(0.8), np.sqrt(0.2), np.sqrt(0.3125)]),  # they are sooner at its line
     ],
 )
-def test_of_a_kerb_that_begins_ahead_what_takes_longer_to_get_to_counts(velocity, expected):
+def test_a_kerb_ahead_counts_where_it_takes_longer_to_reach(velocity, expected):
     people = np.array([[39.5, -3.5]])
     found = found_of(people, kerbs(sidewalks=NARROWER, crossings=()), 30.0, np.array([velocity]))
     assert found[0] == pytest.approx(expected)

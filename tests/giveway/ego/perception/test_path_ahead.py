@@ -20,7 +20,7 @@ def view(station: float) -> PathView:
     return seen
 
 
-def test_poses_are_those_of_the_path_and_go_straight_on_beyond_it() -> None:
+def test_poses_follow_the_path_and_go_straight_on_beyond_it() -> None:
     seen, ahead = view(10.0), np.array([0.0, 5.0, 30.0, 60.0, 200.0])
     expected = [PATH.pose(10.0 + distance) for distance in ahead]
     np.testing.assert_allclose(seen.poses(ahead), expected, atol=1e-9)

@@ -54,7 +54,7 @@ def test_nobody_is_seen_as_nobody():
     assert observed(eyes(position_noise=1.0, desired_speeds="typical"), crowd) is crowd
 
 
-def test_positions_are_off_by_at_most_two_deviations_on_each_axis():
+def test_position_errors_are_at_most_two_deviations_per_axis():
     crowd, seen_by = make_crowd(), eyes(position_noise=0.3)
     offsets = np.array([observed(seen_by, crowd).position - crowd.position for _ in range(500)])
     assert np.abs(offsets).max() <= 0.6 + 1e-12
@@ -175,7 +175,7 @@ def walking_crowd() -> Crowd:
     return Crowd.create(place, velocity, 1.4, routes)
 
 
-def test_unknown_goals_lie_along_the_heading_and_who_stands_stays():
+def test_unknown_goals_lie_ahead_and_standing_people_stay():
     crowd = walking_crowd()
     seen = observed(eyes(goals="heading"), crowd)
     way = seen.waypoints - crowd.position
@@ -194,7 +194,7 @@ def test_unknown_goals_turn_with_the_heading():
     assert np.allclose((observed(seen_by, crowd).waypoints - crowd.position)[0], (0.0, 1000.0))
 
 
-def test_who_comes_back_after_nobody_was_there_is_new_to_the_tracker():
+def test_a_person_who_comes_back_is_new_to_the_tracker():
     crowd, seen_by = make_crowd(), eyes(position_noise=0.1, tracker=True)
     for _ in range(20):
         bound = bound_of(seen_by, crowd)

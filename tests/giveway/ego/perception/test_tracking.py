@@ -73,7 +73,7 @@ def test_who_is_seen_for_a_while_is_known_ten_times_better():
     assert np.mean(errors[100:]) < errors[0] / 2.5
 
 
-def test_people_are_told_apart_by_their_numbers_not_by_their_rows():
+def test_people_are_told_apart_by_their_ids_not_by_their_rows():
     worlds = World(2), World(2)
     kept, shuffled = tracker(), tracker()
     for k in range(30):
@@ -86,7 +86,7 @@ def test_people_are_told_apart_by_their_numbers_not_by_their_rows():
             world.step()
 
 
-def test_who_was_away_is_new_again_and_so_is_who_moved_as_nobody_does():
+def test_a_person_who_was_away_or_jumped_is_a_new_track():
     world, eyes = World(3), tracker()
     new = BOUND * NOISE * np.sqrt(2.0)
     for k in range(20):
@@ -106,7 +106,7 @@ def test_nobody_is_tracked_as_nobody():
     assert not len(errors)
 
 
-def test_a_bound_that_the_sensor_claims_counts_instead_of_its_own():
+def test_a_bound_that_the_sensor_claims_replaces_the_own_one():
     world, eyes = World(4), tracker()
     claimed = np.linspace(0.3, 0.6, len(WHO))
     percept = eyes.refine(Percept(world.seen(), WHO, None, claimed))

@@ -83,7 +83,7 @@ def test_at_a_zebra_it_stops_for_whoever_uses_it_or_is_about_to(crowd, stops):
     )
 
 
-def test_somebody_who_walks_past_along_the_kerb_is_not_about_to_cross():
+def test_a_person_who_walks_along_the_kerb_does_not_cross():
     along = Crowd.create([[21.0, -4.2]], [[1.4, 0.0]], 1.4, [[(40.0, -4.4)]])
     assert stop_of(crossings(), NEAR, 4.0, along) == math.inf
 
@@ -144,7 +144,7 @@ def test_who_could_be_let_pass_by_the_law_is_let_pass(front):
 
 
 @pytest.mark.parametrize("front", [16.6, 17.2, 18.4])
-def test_a_plan_that_may_lead_beyond_the_stop_does_not_lead_onto_the_crossing(front):
+def test_a_plan_beyond_the_stop_does_not_enter_the_crossing(front):
     speed = math.sqrt(2 * 2.99 * (19.7 - front))  # it is just not too late yet
     watched = crossings()
     assert demand_of(watched, front, speed, NOBODY).latest == math.inf
@@ -167,7 +167,7 @@ def test_without_priority_people_wait_for_a_gap():
     assert stop_of(crossings(zebra=False), NEAR, 4.0, walker(-2.0)) < math.inf
 
 
-def test_nobody_may_ask_for_more_than_hard_comfort_but_who_has_begun_to_stop_goes_on():
+def test_hard_braking_is_not_demanded_but_a_begun_stop_goes_on():
     too_late = crossings()
     assert stop_of(too_late, 18.0, 4.0, walker(-2.0)) == math.inf  # 4 m/s^2 to the crossing
     begun = crossings()
@@ -176,7 +176,7 @@ def test_nobody_may_ask_for_more_than_hard_comfort_but_who_has_begun_to_stop_goe
     assert stop_of(begun, 19.5, 0.3, walker(-2.0)) == pytest.approx(LINE, abs=0.11)  # no creeping
 
 
-def test_it_waits_until_the_last_one_has_passed_and_until_nobody_comes_too_soon():
+def test_it_waits_until_all_have_passed_and_nobody_comes_soon():
     waiting = crossings()
     both = walker(-2.0).concatenate(walker(3.4, target=-20.0))
     assert stop_of(waiting, LINE, 0.0, both) < math.inf
@@ -194,7 +194,7 @@ def test_a_wide_reach_at_the_kerb_makes_it_wait_earlier():
 
 
 @pytest.mark.parametrize("beyond", [0.01, 0.1])
-def test_who_has_just_stepped_over_the_line_behind_the_kerb_costs_no_stop(beyond):
+def test_a_person_just_over_the_line_at_the_kerb_costs_no_stop(beyond):
     """The model has not noted it yet; the nearest point of the line is behind them."""
     line, on = (22.0, SOUTHERN_KERB - 0.4), (18.0, -5.0)
     passages = [[(0.0, -1.0, 2.0), (0.0, 0.0, 0.0)]]
@@ -205,7 +205,7 @@ def test_who_has_just_stepped_over_the_line_behind_the_kerb_costs_no_stop(beyond
 
 @pytest.mark.parametrize(("front", "speed"), [(LINE, 0.0), (LINE - 1.0, 0.6), (LINE - 5.0, 3.5)])
 @pytest.mark.parametrize("most", [1.5, 2.4])
-def test_who_starts_behind_somebody_is_not_stopped_for_them_again(front, speed, most):
+def test_an_ego_that_starts_behind_a_person_does_not_stop_again(front, speed, most):
     """With 2.5 m/s^3 up to so many m/s^2."""
     watched, y, acceleration = crossings(), -2.0, 0.0
     stopped = [stop_of(watched, front, speed, walker(y)) < math.inf]
@@ -260,7 +260,7 @@ def test_who_will_find_their_light_red_is_not_waited_for(y, change, stops):
     assert (stop_of(watched, NEAR, 4.0, walker(y)) < math.inf) == stops
 
 
-def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
+def test_a_wait_before_two_crossings_keeps_its_time_margin():
     """Between the two there is no room to stand; somebody else comes 3 s later."""
     ends = np.array([[0.0, NORTHERN_KERB], [0.0, SOUTHERN_KERB]])
     both = [Crossing(f":j_c{x}_0", ends + [x, 0.0], 4.0, True, "", -1) for x in (22.0, 28.0)]

@@ -19,13 +19,13 @@ def kept(leader: Leader, speed: float, coming: float = np.inf, origin: float = 0
 
 
 @pytest.mark.parametrize("origin", [0.0, -2.5])
-def test_half_of_the_safe_distance_is_kept_where_firm_braking_allows_it(origin: float) -> None:
+def test_half_of_d_safe_is_kept_where_firm_braking_allows_it(origin: float) -> None:
     for leader in (NO_LEADER, Leader(60.0, 0.0), Leader(45.0, 4.0)):
         assert kept(leader, 4.0, origin=origin) == 4.0
         assert kept(leader, 4.0, coming=50.0, origin=origin) == 4.0
 
 
-def test_a_plan_need_brake_no_harder_than_firmly_for_who_stops_at_once() -> None:
+def test_a_plan_brakes_firmly_at_most_for_a_sudden_stop_ahead() -> None:
     for gap, speed, its_speed in [(4.4, 1.85, 0.1), (3.2, 1.4, 1.0), (4.5, 3.5, 0.0)]:
         room = gap - kept(Leader(40.0 + gap, its_speed), speed)
         assert (speed - its_speed) ** 2 / (2.0 * room) < 3.0
@@ -39,13 +39,13 @@ def test_who_pulls_away_nearby_is_no_wall() -> None:
     assert kept(Leader(41.2, 13.5), 4.0) == pytest.approx(1.2)
 
 
-def test_a_quarter_of_the_safe_distance_is_kept_however_hard_the_braking() -> None:
+def test_a_quarter_of_d_safe_is_kept_however_hard_the_braking() -> None:
     assert kept(Leader(43.0, 0.0), 6.0) == 2.0
     assert kept(Leader(41.0, 0.0), 1.0) == 1.0  # it is nearer: not yet nearer
 
 
 @pytest.mark.parametrize("origin", [0.0, -2.5])
-def test_it_keep_clear_relaxation_until_it_has_left_what_it_would_block(origin: float) -> None:
+def test_the_gap_relaxes_until_the_ego_has_left_the_zone(origin: float) -> None:
     """It drives up to where it may: not slower on the way, as what is left gets less."""
     following = Following(8.0 - origin, origin, 2.0, plans=True, tuned=False)
     leader, cleared = Leader(50.0, 0.0), 47.0

@@ -43,7 +43,7 @@ def look(merges, front, speed):
     return demand.leader, demand.stop
 
 
-def test_a_lane_change_begins_where_bodies_would_touch_and_ends_on_the_other_lane():
+def test_a_lane_change_begins_where_bodies_would_touch():
     x = np.linspace(0.0, 200.0, 401)
     share = np.clip((x - 100.0) / 30.0, 0.0, 1.0)
     path = EgoPath.through(np.column_stack([x, 3.2 * share * share * (3.0 - 2.0 * share)]))
@@ -58,7 +58,7 @@ def test_a_lane_change_begins_where_bodies_would_touch_and_ends_on_the_other_lan
     assert merge_points_of(path, 0.9, [lane], 20.0 + path.length) == ()
 
 
-def test_at_a_zipper_the_place_is_where_the_ways_come_together_for_good():
+def test_the_merge_point_of_a_zipper_is_where_the_paths_join():
     path = EgoPath.through([(0.0, 0.0), (200.0, 0.0)])
     other = np.array([[0.0, 1.0], [20.0, 3.2], [90.0, 3.2], [100.0, 0.0]])
     zipper = Lane("out_0", 100.0, 0.0, 100.0, (other,), frozenset({":b_0_0"}))
@@ -79,12 +79,12 @@ def test_at_a_zipper_the_place_is_where_the_ways_come_together_for_good():
         (77.0, 11.0, False),  # beside the ego it cannot fall back so soon
     ],
 )
-def test_who_is_ahead_goes_first_and_who_could_not_brake_in_comfort(position, speed, first):
+def test_a_vehicle_ahead_or_too_fast_to_brake_goes_first(position, speed, first):
     _, behind = merging(other=(position, speed))
     assert (set(behind) == {"other"}) == first
 
 
-def test_the_ego_follows_whoever_goes_first_before_it_is_in_front():
+def test_the_ego_follows_a_merging_vehicle_before_it_is_ahead():
     merges, behind = merging(other=(92.0, 9.0))
     assert behind == {}
     leader, stop = look(merges, 80.0, 10.0)

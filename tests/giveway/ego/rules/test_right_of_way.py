@@ -129,7 +129,7 @@ def test_nobody_makes_it_brake_harder_than_3() -> None:
     assert stop(junction(), 40.0, 7.9, other(15.0)) == math.inf
 
 
-def test_who_is_in_its_way_inside_the_junction_is_waited_for_whoever_he_is() -> None:
+def test_the_ego_waits_for_any_vehicle_inside_the_junction() -> None:
     there = other(-5.0, speed=0.0, standing=9.0)
     assert stop(junction(named=False), LINE, 0.0, there) == LINE
     gone = other(-8.0 - 4.6, speed=1.0)
@@ -250,7 +250,7 @@ def test_options_are_gaps_in_seconds() -> None:
     assert Drive(junction(), critical_gap=1.0).stop(LINE, 0.0, other(75.0)) == math.inf
 
 
-def test_it_follows_another_through_the_same_gap_after_the_follow_up_gap() -> None:
+def test_it_uses_the_same_gap_after_the_follow_up_headway() -> None:
     drive = Drive(junction(), follow_up_gap=4.0)
     ahead = Approach("leader", OWN, -0.1, 2.0, 4.5, 0.0)
     drive.stop(LINE - 5.0, 2.0)

@@ -34,7 +34,7 @@ def profile(path=STRAIGHT, limits=DROP, capable=50.0, **options):
     return SpeedProfile(path, limits, length=5.0, capable=capable, deceleration=B, **options)
 
 
-def test_it_brakes_before_a_lower_limit_and_drives_off_behind_its_end():
+def test_it_brakes_before_a_lower_limit_and_speeds_up_behind_it():
     seen = profile()
     braked = (13.9**2 - 8.3**2) / (2.0 * B)
     assert seen.at(200.0 - braked - 1.0) == 13.9
@@ -75,7 +75,7 @@ def test_it_is_clipped_to_what_the_vehicle_may():
     assert profile(departure=250.0).fastest == 11.0
 
 
-def test_the_controller_hears_of_what_is_below_its_own_speed_only():
+def test_the_controller_is_told_only_of_limits_below_its_speed():
     seen = profile()
     assert seen.limit(20.0, 13.9) == math.inf
     assert seen.limit(250.0, 8.3) == pytest.approx(8.3)

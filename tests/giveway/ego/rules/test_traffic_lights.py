@@ -57,7 +57,7 @@ def test_the_decision_at_yellow_holds_while_it_is_yellow() -> None:
     assert stop("y", 76.5, 10.0, braking) == STOP  # a little late with its brakes
 
 
-def test_who_goes_on_at_yellow_and_has_to_brake_for_somebody_stops_after_all() -> None:
+def test_an_ego_that_is_slowed_at_yellow_stops_after_all() -> None:
     watch = lights()
     assert stop("y", 76.0, 10.0, watch) == math.inf
     assert stop("y", 90.0, 7.9, watch) == STOP  # 3.1 m/s^2
@@ -66,7 +66,7 @@ def test_who_goes_on_at_yellow_and_has_to_brake_for_somebody_stops_after_all() -
     assert stop("y", 97.0, 7.9, late) == math.inf  # 10.4 m/s^2
 
 
-def test_a_light_that_has_been_passed_is_forgotten_and_the_next_one_counts() -> None:
+def test_a_passed_light_is_forgotten_and_the_next_one_counts() -> None:
     watch = lights(150.0)
     assert stop("rr", 60.0, 5.0, watch) == STOP
     assert stop("gr", 99.0, 5.0, watch) == 150.0 - STOP_BEFORE
@@ -145,7 +145,7 @@ def test_it_slows_gently() -> None:
     assert demand_of(watch, 40.0, 8.0, leader=NO_LEADER).advice == pytest.approx(7.6)
 
 
-def test_the_plan_of_a_light_that_is_passed_says_nothing_of_the_next() -> None:
+def test_the_plan_of_a_passed_light_is_not_used_for_the_next() -> None:
     ahead = [Light(LINE, "first", 0), Light(LINE + 60.0, "second", 0)]
     greens = {"first": ((0.0, 5.0), (40.0, 60.0)), "second": ((0.0, 60.0),)}
     watch = TrafficLights(
