@@ -53,9 +53,9 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
                 poses = np.zeros((waiting.horizon, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
-                seen.append(ego.look(0, poses, truth, OPEN_GROUND, ids).ahead.copy())
-                whom = ego._relevance.of(people, ego.pose.x, ego.pose.y, speed)
-                left_out += whom is not None and not whom.all()
+                perceived = ego.look(0, poses, truth, OPEN_GROUND, ids)
+                seen.append(perceived.ahead.copy())
+                left_out += perceived.relevant is not None and not perceived.relevant.all()
         reach = ego.front + (speed + 8.0 * 0.75 / 2) * 0.75 + CONFIG.regulation.safe_distance
         matters = (seen[0] <= reach) | (seen[1] <= reach)
         in_reach += int(matters.any())
