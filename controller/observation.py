@@ -1,4 +1,4 @@
-"""What a controller sees at one instant, in groups that are refilled in place."""
+"""The observation of a controller at one instant, in groups that are refilled in place."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class PathAhead(Protocol):
     """The ego's path from its front bumper on; a number is computed only when it is asked for."""
 
     def remaining(self) -> float:
-        """How much of the path is left [m]."""
+        """The length of path that is left [m]."""
 
     def poses(self, distances: Array) -> Array:
         """(k, 3) x, y [m] and heading [rad] of the path at ``distances`` (k,) [m] ahead."""
 
     def curvature(self, distances: Array) -> Array:
-        """(k,) [1/m] of the path at ``distances`` (k,) [m] ahead; positive to the left."""
+        """The curvature (k,) [1/m] at ``distances`` (k,) [m] ahead; it is positive to the left."""
 
 
 class People(Protocol):
@@ -40,7 +40,7 @@ class People(Protocol):
 
     @property
     def velocity(self) -> Array:
-        """(n, 2) [m/s]."""
+        """The velocities, (n, 2) [m/s]."""
 
 
 @dataclass(slots=True)
@@ -64,7 +64,7 @@ class EgoState:
 
 @dataclass(slots=True)
 class RoadAhead:
-    """What is in front of the ego, now and over the horizon; a distance is inf without it.
+    """The things in front of the ego, now and over the horizon; a distance to nothing is inf.
 
     Attributes:
         gap: Distance [m] from `position` to whatever is closest in front.
@@ -87,7 +87,7 @@ class RoadAhead:
 
 @dataclass(slots=True)
 class Limits:
-    """What the ego has to keep to.
+    """The limits that the ego has to keep to.
 
     Attributes:
         speed_limit: Speed limit [m/s] for a stop line, a vehicle ahead or the lane; inf: none.
@@ -143,7 +143,7 @@ def _short(group: str, name: str) -> Any:
 
 
 class Observation:
-    """What a controller sees at t_k; what its world does not tell it has a default.
+    """The observation at t_k; whatever its world does not tell has a default.
 
     An ego has one observation, which is refilled in each control step. Arrays are references to
     the co-simulation's own. Both are valid until the force is returned, and not to be changed. A

@@ -1,4 +1,4 @@
-"""What a controller answers, and how it is asked."""
+"""The protocol of a controller: its answer, and how it is asked."""
 
 from typing import Literal, NamedTuple, Protocol
 
@@ -27,7 +27,7 @@ class Controller(Protocol):
 
     @property
     def foresees(self) -> bool:
-        """Whether it asks ``Observation.foresight`` about people, not ``obstacle_positions``."""
+        """Return whether it asks ``foresight`` about people instead of ``obstacle_positions``."""
 
     def reset(self) -> None:
         """Forget the past."""

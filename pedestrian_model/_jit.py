@@ -59,7 +59,7 @@ def _from_bits(_typing: Any, k: Any) -> Any:
 
 
 def _block_pointer(context: Any, builder: Any, array_type: Any, array: Any, at: Any) -> Any:
-    """Where a block of eight float64 of a 1-D array begins."""
+    """The address at which a block of eight float64 of a 1-D array begins."""
     data = context.make_array(array_type)(context, builder, array).data
     block = ir.VectorType(ir.DoubleType(), 8).as_pointer()
     return builder.bitcast(builder.gep(data, [at]), block)

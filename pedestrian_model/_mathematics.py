@@ -43,7 +43,7 @@ def exponential(x: float) -> float:
 
 @inlined
 def cosine_sine(angle: float) -> tuple[float, float]:
-    """(cos, sin) of an angle [rad], to about 1 ulp near the origin: Taylor in |r| <= pi/4."""
+    """Return cosine and sine of an angle [rad], to about 1 ulp near 0: Taylor in |r| <= pi/4."""
     k = fma(angle, _TWO_OVER_PI, _ROUND) - _ROUND
     r = fma(-k, _HALF_PI_LOW, fma(-k, _HALF_PI_HIGH, angle))
     z = r * r

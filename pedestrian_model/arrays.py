@@ -1,4 +1,4 @@
-"""What Python hands to the kernels: plain tuples of arrays; the columns of vehicles."""
+"""Plain tuples of arrays that Python hands to the kernels, and the columns of vehicles."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ X, Y, HEADING, SPEED, FRONT, REAR, WIDTH = range(7)
 
 @kernel
 def extent(mask: NDArray[np.bool_], start: NDArray[np.int64]) -> tuple[int, int]:
-    """How many are in ``mask``, and how many way-points they have."""
+    """Return the number of people in ``mask``, and that of their way-points."""
     n, total = 0, 0
     for i in range(len(mask)):
         if mask[i]:

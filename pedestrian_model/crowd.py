@@ -132,10 +132,10 @@ class Crowd:
             position: (n, 2) centres [m].
             velocity: (n, 2) [m/s].
             desired_speed: (n,) or one number for all [m/s].
-            waypoints: for each pedestrian (k_i, 2) [m] with k_i >= 1; the last is the destination.
-            passages: for each pedestrian (k_i, 3) direction_x, direction_y (of any length) and
+            waypoints: Way-points of each, (k_i, 2) [m] with k_i >= 1; the last is the destination.
+            passages: Passages of each, (k_i, 3): direction_x, direction_y (of any length) and
                 half_width [m]; (0, 0, anything) is none. Default: none.
-            signals: for each pedestrian (k_i,) index of a signal, -1 for none. Default: none.
+            signals: Signals of each, (k_i,): index of a signal, -1 for none. Default: none.
             priority: (n,) or one number for all, 0 to 1.
 
         Raises:
@@ -191,17 +191,17 @@ class Crowd:
 
     @cached_property
     def fixed_arrays(self) -> Arrays:
-        """What the crowd brings to a ``Scene``: the desired speeds, priority, and the routes."""
+        """The crowd's part of a ``Scene``: desired speeds, priority, and routes."""
         return (self.desired_speed, self.priority, *self.routes)
 
     @property
     def state(self) -> Arrays:
-        """What a step changes: position, velocity, current way-point."""
+        """The arrays that a step changes: position, velocity, current way-point."""
         return self.position, self.velocity, self.waypoint_index
 
     @cached_property
     def signals(self) -> int:
-        """How many signals there must be: one more than the largest index of any way-point."""
+        """The number of signals needed: one more than the largest index of any way-point."""
         return int(self.waypoint_signal.max(initial=-1)) + 1
 
     def copy(self) -> Crowd:

@@ -1,4 +1,4 @@
-"""What can go wrong in the pedestrian model, one class per thing a user can do something about."""
+"""Errors of the pedestrian model, one class for each thing that a user can act on."""
 
 
 class PedestrianModelError(Exception):

@@ -22,11 +22,11 @@ _SHARE = "it is a share"
 
 @dataclass(frozen=True)
 class _Range:
-    """Which values of a parameter make sense, and why no others.
+    """The values of a parameter that make sense, and why no others do.
 
     Attributes:
-        low, high: in the parameter's unit; both are allowed.
-        reason: of the two.
+        low, high: Bounds in the parameter's unit; both are allowed.
+        reason: Reason of the two bounds.
         zero: whether 0 is allowed too, as "there is none".
     """
 

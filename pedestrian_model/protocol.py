@@ -1,4 +1,4 @@
-"""What moves a crowd: all that giveway asks of a model of people."""
+"""The protocol of whatever moves a crowd: all that giveway asks of a model of people."""
 
 from typing import Protocol
 
@@ -20,7 +20,7 @@ class PedestrianModel(Protocol):
 
     @property
     def time_step(self) -> float:
-        """[s]."""
+        """The time step [s]."""
 
     def advance(self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = ...) -> None:
         """Change position, velocity and waypoint_index of ``crowd`` in place, a time step on."""
@@ -35,7 +35,7 @@ class CrowdPredictor(Protocol):
 
     @property
     def time_step(self) -> float:
-        """[s]."""
+        """The time step [s]."""
 
     @property
     def horizon(self) -> int:

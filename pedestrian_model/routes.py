@@ -1,4 +1,4 @@
-"""Where a route leads next: way-points hit or lines crossed, signals waited at, the last kept.
+"""The next point of a route: way-points hit, lines crossed, signals waited at.
 
 A way-point is passed within a radius. With a passage it is a line as well, across the way: who
 crosses the line within its half-width has passed, and who has not yet walks to the nearest point
@@ -47,7 +47,7 @@ def aim(x: float, y: float, p: Line, R: float) -> tuple[float, float]:
 
 @inlined
 def is_passed(x: float, y: float, p: Line, radius: float) -> bool:
-    """Whether (x, y) is within ``radius`` of the way-point, or beyond its line where that is."""
+    """Return whether (x, y) is within ``radius`` of a way-point, or beyond its line."""
     dx, dy = x - p.x, y - p.y
     if dx * dx + dy * dy <= radius * radius:
         return True
@@ -66,7 +66,7 @@ def heading_for(
     radius: float,
     R: float,
 ) -> tuple[int, bool, float, float]:
-    """Which way-point is next for somebody at (x, y), whether to stop there, and where it is.
+    """Return the next way-point of a person at (x, y), whether to stop there, and its place.
 
     ``at`` was the next one so far, ``last`` ends the way; ``routes`` are the arrays of ``Routes``.
     """
@@ -86,7 +86,7 @@ def heading_for(
 def passage_rows(
     passages: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
 ) -> NDArray[np.float64]:
-    """(total, 3) of all, the directions of length one."""
+    """Return the passages of all way-points, (total, 3), with directions of length one."""
     _check_count(passages, "passages", routes)
     rows = [as_floats(rows, f"passages[{i}]", CrowdError) for i, rows in enumerate(passages)]
     for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
@@ -103,7 +103,7 @@ def passage_rows(
 def signal_rows(
     signals: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
 ) -> NDArray[np.int64]:
-    """(total,) of all."""
+    """Return the signals of all way-points, (total,)."""
     _check_count(signals, "signals", routes)
     rows = [np.asarray(row) for row in signals]
     for i, (row, route) in enumerate(zip(rows, routes, strict=True)):

@@ -1,4 +1,4 @@
-"""What the step of every model shares: sub-steps, and the errors of a state or signal."""
+"""Sub-steps and the errors of a state or signal, which the steps of all models share."""
 
 import math
 
@@ -29,7 +29,7 @@ def first_insane(position: NDArray[np.float64], velocity: NDArray[np.float64]) -
 
 
 def substeps(time_step: float, longest: float = LONGEST_STEP) -> int:
-    """How many equal sub-steps of at most ``longest`` [s] make one step of ``time_step`` [s].
+    """Return the number of equal sub-steps, at most ``longest`` [s] each, in ``time_step`` [s].
 
     Raises:
         ParameterError: if the time step is not positive and finite.

@@ -1,4 +1,4 @@
-"""What a crowd walks among besides vehicles: walls, and signals that hold it."""
+"""The walls that a crowd walks among, and the signals that hold it."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Walls:
 
 
 def _lines(segments: NDArray[np.float64], length: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(1 + k, COLUMNS) of the segments, grid still missing, ends still loose: normals of zero."""
+    """Return the rows of the segments, (1 + k, COLUMNS), without grid and normals of loose ends."""
     lines = np.zeros((1 + len(segments), COLUMNS))
     lines[1:, :2] = segments[:, :2]
     lines[1:, 2:4] = (segments[:, 2:] - segments[:, :2]) / length[:, None]
@@ -133,7 +133,7 @@ class Surroundings:
 
     @cached_property
     def arrays(self) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.int64]]:
-        """What the kernels take: signals, walls, and the cells of the walls."""
+        """The arrays that the kernels take: signals, walls, and the cells of the walls."""
         if self.walls is None:
             return self.closed, _NO_LINES, _NO_CELLS
         return self.closed, self.walls._lines, self.walls._cells

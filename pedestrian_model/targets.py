@@ -1,4 +1,4 @@
-"""Where people walk next, and how far it still is."""
+"""The next target of each pedestrian, and the distance that is left."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def remaining_distance(crowd: Crowd) -> NDArray[np.float64]:
-    """(n,) [m] what is left of each pedestrian's route: straight from line to line, to the last."""
+    """Return the rest of each pedestrian's route, (n,) [m], straight from line to line."""
     out = np.empty(len(crowd))
     _fill_remaining(
         crowd.position,
@@ -53,7 +53,7 @@ def _fill_remaining(
     waypoint_index: NDArray[np.int64],
     out: NDArray[np.float64],
 ) -> None:
-    """From each way-point's line the way goes on at the line's point that was nearest."""
+    """Continue each route at the nearest point of its way-point's line."""
     w, q = waypoints, passage
     for i in range(len(out)):
         x, y = position[i, 0], position[i, 1]
@@ -98,7 +98,7 @@ def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
 
 
 def any_arrived(crowd: Crowd, radius: float) -> bool:
-    """Whether :func:`arrived` is true of anybody: at most steps of nobody, which is soon known."""
+    """Return whether anybody has arrived, see :func:`arrived`; a quick test for the usual step."""
     return bool(_any_arrived(crowd.position, crowd.waypoint_index, crowd.routes, radius))
 
 
@@ -135,7 +135,7 @@ def _is_there(
     routes: Routes,
     radius: float,
 ) -> bool:
-    """Whether i is on the way to the last way-point and within ``radius`` of it, or its line."""
+    """Return whether i walks to its last way-point and is within ``radius`` of it or its line."""
     w, q, last = routes.waypoints, routes.passage, routes.start[i + 1] - 1
     if routes.start[i] + waypoint_index[i] != last:
         return False

@@ -84,12 +84,12 @@ class Vehicles:
 
     @property
     def x(self) -> NDArray[np.float64]:
-        """(m,) [m] of the reference points."""
+        """The coordinates of the reference points, (m,) [m]."""
         return self.array[:, X]
 
     @property
     def y(self) -> NDArray[np.float64]:
-        """(m,) [m] of the reference points."""
+        """The coordinates of the reference points, (m,) [m]."""
         return self.array[:, Y]
 
     @property
@@ -99,5 +99,5 @@ class Vehicles:
 
     @property
     def speed(self) -> NDArray[np.float64]:
-        """(m,) [m/s] along the heading."""
+        """The speeds along the heading, (m,) [m/s]."""
         return self.array[:, SPEED]

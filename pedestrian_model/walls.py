@@ -26,7 +26,7 @@ _LEAST_EXPONENT = -700.0  # exp underflows below
 
 
 class Grid(NamedTuple):
-    """Where the cells of the walls lie: row 0 of the walls.
+    """The grid of the walls' cells, from row 0 of the walls.
 
     The cells themselves are one array of int64: for each cell and for their end, where in this
     array its members begin; then the members, rows of the walls.
@@ -78,7 +78,7 @@ def _wall(line: NDArray[np.float64]) -> _Wall:
 
 @inlined
 def _to_wall(x: float, y: float, w: _Wall) -> tuple[float, float, float, bool]:
-    """From the nearest point of a wall to (x, y): vector, its square, and if it is walkable there.
+    """Return the vector from a wall to (x, y), its square, and whether one may walk there.
 
     Within the wall's length, the vector is along its normal.
     """

@@ -1,4 +1,4 @@
-"""What a manoeuvre leads to beyond its horizon: the time that the ego will yet lose to people.
+"""The cost of a manoeuvre beyond its horizon: time that the ego will yet lose to people.
 
 A horizon of a few seconds sees that to stop costs some of them, not that a whole group has to pass
 before the way is free. Beyond it a base policy drives, one that can be told without predicting the
@@ -20,11 +20,11 @@ _DISTANCE = 1.0  # [m] kept to people
 
 @inner
 def time_to_go(crossers: Array, speed: float, wanted: float) -> float:
-    """What is lost beyond the horizon [s].
+    """Return the time that is lost beyond the horizon [s].
 
     Args:
         crossers: (n, 4) who crosses, as in :class:`controller.Prospect`.
-        speed: at the horizon's end [m/s].
+        speed: Speed at the horizon's end [m/s].
         wanted: [m/s] where nobody is in the way, > 0.
     """
     lost, at, v = 0.0, 0.0, speed

@@ -1,4 +1,4 @@
-"""What a manoeuvre costs, and the corridor that it leaves to a plan."""
+"""The cost of a manoeuvre, and the corridor that it leaves to a plan."""
 
 from typing import Any
 
@@ -81,7 +81,7 @@ def later_cost(
     time_step: float,
     weights: tuple[Any, ...],
 ) -> float:
-    """What lies beyond the horizon [s], see :func:`time_to_go`.
+    """Return the cost beyond the horizon [s], see :func:`time_to_go`.
 
     ``driven`` [m] is the manoeuvre's distance at the horizon's end, ``speed`` [m/s] its last one.
     Of that counts as much as can be braked to what is ``allowed`` (N,) [m]: no plan gains by being
@@ -137,13 +137,13 @@ def add_cost_of_others(
     beyond: float,
     weights: tuple[Any, ...],
 ) -> tuple[float, float]:
-    """What people and vehicles cost at one step, added to the steps before; it never falls.
+    """Add the cost of people and vehicles at one step to that of the steps before.
 
     Args:
         others: the sum so far.
         missing: the longest missing stopping distance so far [m].
-        speed: of the manoeuvre there [m/s].
-        gap: to the closest person in front [m].
+        speed: Speed of the manoeuvre there [m/s].
+        gap: Gap to the closest person in front [m].
         conflicts: persons.
         calm: [m/s].
         beyond: [m] farther than may be driven.

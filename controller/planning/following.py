@@ -1,4 +1,4 @@
-"""From the chosen manoeuvre to a plan, in one compiled call: corridor, QP, what becomes of it."""
+"""The plan along the chosen manoeuvre, in one compiled call: corridor, QP, judgement."""
 
 from typing import Any
 
@@ -45,7 +45,7 @@ def follow(
         plan: filled, unless the QP is unsolved.
         calmly: steps in which calm speeds are kept to, as far as braking with the second [m/s^2]
             can help it.
-        weights: of the cost.
+        weights: Weights of the cost.
 
     Returns:
         The corrections of the active set, or ``UNSOLVED``; whether the manoeuvre
@@ -173,7 +173,7 @@ def may_hold(
     time_step: float,
     weights: tuple[Any, ...],
 ) -> bool:
-    """Whether a stop stays possible if the plan's last speed is kept on."""
+    """Return whether a stop stays possible if the plan's last speed is kept on."""
     v = plan[1][-1]
     gap = prospect[0][-1] + best[0][-1] - plan[0][-1]
     holds: bool = gap - time_step * v >= stopping_need(v, Weights(*weights))

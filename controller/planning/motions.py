@@ -1,4 +1,4 @@
-"""How a manoeuvre comes about: an acceleration gone over to, or the last plan moved on."""
+"""The motions of manoeuvres: an acceleration that is approached, or the last plan moved on."""
 
 import numpy as np
 

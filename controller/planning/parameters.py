@@ -19,7 +19,7 @@ from controller.parameters import require, require_not_negative, require_positiv
 
 @dataclass(frozen=True, slots=True)
 class ManoeuvreParameters:
-    """What a manoeuvre may be like, and what it costs; each cost is per second of the horizon.
+    """The bounds and costs of manoeuvres; each cost is per second of the horizon.
 
     Raises:
         ParameterError: a value is not finite or out of range.
@@ -125,12 +125,12 @@ class PlannerParameters:
 
     @property
     def calm_time(self) -> float:
-        """How long [s] the plan keeps to calm speeds: longer where it takes longer to get there."""
+        """The time [s] in which a plan keeps to calm speeds; it grows with the reference speed."""
         return self.manoeuvres.calm_time + max(0.0, self.reference_speed - _SLOW) / _GENTLE
 
     @property
     def calm_braking(self) -> float:
-        """What the plan brakes with at most [m/s^2] before what people could do, but need not.
+        """The largest braking [m/s^2] of a plan for what people could do, but need not.
 
         At walking pace, up to v_r of the paper, as hard as it takes.
         """

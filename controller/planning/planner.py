@@ -100,7 +100,7 @@ class Planner:
             previous_force: u(k-1) [N]; 0 at standstill, where the brake holds without work.
             fastest: [m/s] wanted where nobody is in the way.
             allowed: (N,) [m] that may be driven until steps 1 ... N: vehicles, lights; inf: any.
-            foresight: of the crowd; None: nobody can get in the way.
+            foresight: Foresight of the crowd, or None if nobody can get in the way.
             lane_speeds: (N,) [m/s] that the plan does not exceed at steps 1 ... N, as far as
                 braking can help it; None: any.
             gap: [m] to the closest person in front now. Who stands drives up to d_safe of a
@@ -181,7 +181,7 @@ class Planner:
         return Plan(force, status, corrections, chosen, search.tried)
 
     def _force(self, speed: float, previous_force: float) -> float:
-        """What drives the plan's next speed, within the actuator's limits [N]."""
+        """Return the force [N] for the plan's next speed, within the actuator's limits."""
         p = self.parameters
         force = (float(self._plan.speed[1]) - self._decay * speed) / self._speed_per_force
         if speed > STANDSTILL:

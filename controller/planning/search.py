@@ -30,7 +30,7 @@ class Search:
         parameters: the horizon, the manoeuvres and their weights.
 
     Attributes:
-        weights: of the cost, a plain tuple of :class:`Weights`.
+        weights: Weights of the cost, a plain tuple of :class:`Weights`.
         best: distance, speed and acceleration of the manoeuvre of least cost, until the next
             search, as is what follows.
         gap: (N,) [m] what it would lead to, as in :class:`Prospect`.
@@ -169,7 +169,7 @@ class Search:
             lead: ask first whether anybody is in the way of the first one.
             fastest: [m/s] wanted where nobody is in the way.
             allowed: (N,) [m] that may be driven.
-            foresight: of the crowd, or None.
+            foresight: Foresight of the crowd, or None.
 
         Returns:
             Whether it was asked for and nobody is; then that one is the best.

@@ -126,7 +126,7 @@ class SmoothingProblem:
         Args:
             speeds: (n,) [m/s] of the manoeuvre at the nodes.
             speed: now [m/s].
-            acceleration: before now [m/s^2].
+            acceleration: Acceleration before now [m/s^2].
         """
         set_target(speeds, speed, acceleration, self.gradients, self.target)
 
@@ -215,7 +215,7 @@ def set_target(
     gradients: tuple[Array, Array, Array],
     target: Array,
 ) -> None:
-    """As :meth:`SmoothingProblem.aim_at`, by the gradient at v = 0 in its three parts."""
+    """Set the target as :meth:`SmoothingProblem.aim_at` does, by the gradient's three parts."""
     of_speeds, of_speed, of_acceleration = gradients
     n = len(target)
     for i in range(n):

@@ -34,7 +34,7 @@ class Finding:
     """One rule, and what breaks it.
 
     Attributes:
-        rule: in a few words.
+        rule: Rule in a few words.
         problem: what was seen; empty if it is kept.
     """
 
@@ -69,13 +69,13 @@ class _Path:
 def scene(
     step: int, horizon: int, setup: Setup, *, seed: int = 1, turned: bool = False, order: int = 1
 ) -> Observation:
-    """What is seen at a step of the made-up drive.
+    """Return the observation at a step of the made-up drive.
 
     Args:
-        step: of the drive.
+        step: Step of the drive.
         horizon: N of the controller.
-        setup: of the drive.
-        seed: of the people.
+        setup: Setup of the drive.
+        seed: Seed of the people.
         turned: the whole scene is turned and shifted.
         order: -1: people stand in the opposite order.
     """
@@ -145,7 +145,7 @@ def check_controller(
 
     Args:
         make: makes the controller for a setup.
-        setup: of the drives.
+        setup: Setup of the drives.
         begins: told each rule before it is checked.
 
     Returns:

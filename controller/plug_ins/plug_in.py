@@ -1,4 +1,4 @@
-"""What somebody else's controller is: a class that is told and answers what stands here.
+"""The protocol of controllers of other packages.
 
 A class of an installed package is a controller if it can be made from a :class:`Setup` (and its
 options, if it has any) and has the method ``control``. docs/plugins.md is the guide.
@@ -12,7 +12,7 @@ from controller.observation import Observation
 
 
 class Setup(NamedTuple):
-    """What does not change during a drive: told once, when the controller is made."""
+    """The facts of a drive that do not change; a controller is told once, when it is made."""
 
     time_step: float  # h [s] between two answers
     mass: float  # M [kg] of the model M s'' + alpha s' = u
@@ -24,7 +24,7 @@ class Setup(NamedTuple):
 
 
 class Defaults(NamedTuple):
-    """What a controller declares of itself: values of settings that the user leaves out.
+    """The declaration of a controller: values of settings that the user leaves out.
 
     A plug-in has them as the attribute ``defaults`` of its class. The last three describe what
     giveway asks of its own controllers only.
@@ -82,4 +82,4 @@ class PlugIn(Protocol):
     """
 
     def control(self, observation: Observation, /) -> Answer:
-        """What is to act in [t_k, t_k+1]; the observation's arrays cannot be written."""
+        """Return what is to act in [t_k, t_k+1]; the observation's arrays cannot be written."""

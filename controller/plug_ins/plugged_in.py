@@ -34,9 +34,9 @@ class PluggedIn:
     The force is limited to what the actuator gives; what acted is in the next observation.
 
     Args:
-        name: of the controller and its ego, for messages.
+        name: Name of the controller and its ego, for messages.
         make: makes the plug-in.
-        setup: of the drive.
+        setup: Setup of the drive.
 
     Raises:
         PlugInError: it cannot be made, or is no controller.
@@ -101,7 +101,7 @@ class PluggedIn:
 
     @property
     def warnings(self) -> list[str]:
-        """What the user should know of the plug-in."""
+        """The warnings of the plug-in for the user."""
         return list(getattr(self._plug_in, "warnings", ()))
 
     def _force_of(self, answer: object, speed: float) -> tuple[float, str]:

@@ -67,12 +67,12 @@ class SafetyParameters:
 
     @property
     def worst(self) -> WorstMotion:
-        """What people are taken to do at worst."""
+        """The worst motion that people are assumed to make."""
         return WorstMotion(self.walking_acceleration, self.walking_speed, self.setting_out)
 
 
 class SafeForce(NamedTuple):
-    """What the layer lets through."""
+    """The force that the layer lets through."""
 
     force: float  # [N], never more than was asked for
     acted: bool  # the layer decides, not the controller
@@ -83,13 +83,13 @@ class SafetyLayer:
     """The last word on the ego's force.
 
     Args:
-        model: of the ego's motion. The layer holds for its forward Euler and for its exact
+        model: Model of the ego's motion. The layer holds for its forward Euler and for its exact
             solution, whichever of them the plant is.
         parameters: the limits.
 
     Attributes:
         memory: the last arguments of :func:`largest_safe_force`, for kernels that call it.
-        REASONS: by its verdict.
+        REASONS: Reasons, by verdict.
     """
 
     REASONS: Final = ("", "safety layer", "unavoidable")
@@ -123,7 +123,7 @@ class SafetyLayer:
         self._not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit
 
     def reach(self, speed: float) -> float:
-        """How far the front gets at most until it stops, whatever is asked for now [m].
+        """Return the longest way [m] of the front until it stops, whatever is asked for now.
 
         Args:
             speed: now [m/s].
@@ -163,7 +163,7 @@ class SafetyLayer:
 
         Args:
             force: asked for, for the step from now on [N].
-            speed: of the ego [m/s].
+            speed: Speed of the ego [m/s].
             way: (k, 4) x, y [m] of the front's middle and cos, sin of the body's heading, after
                 0, 1, ... times ``spacing`` of travel; straight on beyond the last.
             spacing: [m] of travel between the rows of ``way``.
@@ -179,7 +179,7 @@ class SafetyLayer:
         return SafeForce(safe, verdict != LETS_THROUGH, self.REASONS[verdict])
 
     def errors(self, people: int) -> Array:
-        """(n or more,) [m] that positions are off at most where nothing else is known of it."""
+        """Return the largest errors of positions, (n or more,) [m], where nothing else is known."""
         if len(self._errors) < people:
             self._errors = np.full(2 * people, self.parameters.position_error)
         return self._errors

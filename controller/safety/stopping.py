@@ -9,7 +9,7 @@ _BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides
 
 
 class Limits(NamedTuple):
-    """What the ego and people can do."""
+    """The abilities of the ego and of people."""
 
     time_step: float  # dt [s]
     slowest_decay: float  # what a step leaves of the speed at most: exp(-alpha dt / M)
@@ -85,7 +85,7 @@ def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box
 
 @inner
 def _clearance(travel: float, c: Limits) -> float:
-    """What keeps a centre from the front at both ends of a step, so that in between it is R [m].
+    """Return the clearance [m] at both ends of a step that keeps R in between.
 
     Relative to the front the centre moves by L at most, on a line but for a_max dt^2/8; a chord of
     length L between two points outside a circle of radius r comes within sqrt(r^2 - L^2/4).
@@ -98,7 +98,7 @@ def _clearance(travel: float, c: Limits) -> float:
 
 @inner
 def _least_travel(speed: float, after: float, dt: float) -> float:
-    """What a braking step covers at least [m]: no solution slows down faster than at its start."""
+    """Return the least travel [m] of a braking step, which is slowed down most at its start."""
     if after >= 0.0:
         return 0.5 * dt * (speed + after)
     return 0.5 * dt * speed * speed / (speed - after)
@@ -147,7 +147,7 @@ def _stop(
 def _touches(
     box: Array, x: float, y: float, radius: float, error: float, slack: float, c: Limits
 ) -> bool:
-    """Whether a body whose centre is within ``radius`` of (x, y) may meet the front in its box.
+    """Return whether a body with its centre within ``radius`` of (x, y) may meet the front's box.
 
     (x, y) is off by ``error`` [m] at most.
     """
@@ -172,7 +172,7 @@ def _may_meet(
     c: Limits,
     boxes: Array,
 ) -> bool:
-    """Whether a person seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
+    """Return whether a person seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
 
     A person who accelerates by at most a_max is within a_max t^2/2 of x + v t, and one who walks
     at most at v_max is within v_max t of x. A person on a sidewalk, ``depth`` [m] from the kerb in
@@ -209,14 +209,14 @@ def _may_meet(
 
 @inner
 def towards_kerb(t: float, pace: float, depth: float, setting_out: float, most: float) -> float:
-    """How far [m] somebody on a sidewalk gets towards its kerb, and beyond it, within ``t`` [s].
+    """Return how far [m] a person on a sidewalk gets towards its kerb, or beyond, within ``t`` [s].
 
     Args:
-        t: from now on.
-        pace: towards the kerb, now [m/s].
-        depth: to the kerb [m], > 0.
-        setting_out: of the acceleration towards the kerb at most [m/s^2] until they get there ...
-        most: ... and from then on.
+        t: Time from now on [s].
+        pace: Speed towards the kerb now [m/s].
+        depth: Distance to the kerb [m], > 0.
+        setting_out: Largest acceleration [m/s^2] towards the kerb until they get there ...
+        most: ... and largest acceleration [m/s^2] from then on.
     """
     fastest = sqrt(pace * pace + 2.0 * setting_out * depth)
     there = (fastest - pace) / setting_out
@@ -245,7 +245,7 @@ def is_safe(
     memory: tuple[Array, Array],
     slack: float,
 ) -> bool:
-    """Whether after ``force`` the ego can stop without moving into anybody.
+    """Return whether after ``force`` the ego can stop without moving into anybody.
 
     Args:
         force: Force [N] of the present step.

@@ -1,4 +1,4 @@
-"""What a safety layer takes people to be able to do at worst: named bounds, each with its source.
+"""The worst motion that a safety layer expects of people: named bounds with their sources.
 
 The bounds are of the kinds that IEEE Std 2846-2022 names for people on foot, the largest speed and
 the largest acceleration in any direction; and a smaller one for those who are on a sidewalk, as in
@@ -53,7 +53,7 @@ def worst_motion(name: PeopleName, limits: WorstMotion) -> WorstMotion:
 
     Args:
         name: ``worst-case``: whatever the simulated people are able to do.
-        limits: of the simulated people.
+        limits: Limits of the simulated people.
     """
     recorded = RECORDED.get(name)
     if recorded is None:

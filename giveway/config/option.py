@@ -1,4 +1,4 @@
-"""How an option is declared: its unit, its bounds, and the values it takes from files and flags."""
+"""The declaration of an option: unit, bounds, and values taken from files and flags."""
 
 import math
 import shlex
@@ -37,25 +37,25 @@ def option(
 
     Args:
         default: its value where nobody sets it.
-        unit: of a quantity.
+        unit: Unit of a quantity.
         description: what it means.
         flag: its name on the command line, where the derived one is clumsy.
         least: the smallest value above 0 that makes sense; a bound says whether 0 does.
         because: why other values than those within ``least`` and ``bounds`` make no sense.
-        bounds: as of a pydantic field.
+        bounds: Bounds as of a pydantic field.
     """
     extra: dict[str, JsonValue] = {"unit": unit, "flag": flag, "least": least, "because": because}
     return Field(default, description=description, json_schema_extra=extra, **bounds)
 
 
 def declared(field: FieldInfo) -> dict[str, Any]:
-    """What :func:`option` keeps beside the field: unit, flag, least, because."""
+    """Return what :func:`option` keeps beside the field: unit, flag, least, because."""
     extra = field.json_schema_extra
     return dict(extra) if isinstance(extra, dict) else {}
 
 
 def expectation(error: Any, field: FieldInfo) -> str:
-    """What was expected instead of a value that pydantic has refused: range, unit, reason, meaning.
+    """Return what was expected instead of a refused value: range, unit, reason, meaning.
 
     Args:
         error: one of those of a ``ValidationError``.
@@ -72,7 +72,7 @@ def expectation(error: Any, field: FieldInfo) -> str:
 
 
 def is_number(value: object) -> bool:
-    """Whether a value of a TOML file is a finite number."""
+    """Return whether a value of a TOML file is a finite number."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return number and math.isfinite(value)  # type: ignore[arg-type]
 

@@ -1,4 +1,4 @@
-"""Why options have the bounds that they have, where several options share a reason."""
+"""The reasons for bounds that several options share."""
 
 MILLIMETRE = 0.001
 """[m] No gap between bodies is meant to be smaller."""

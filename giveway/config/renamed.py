@@ -85,7 +85,7 @@ def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location |
 
 
 def advice(new: Location | str, *, as_flag: bool) -> str:
-    """What to write instead of a key that no longer exists, in the words of a file or of flags."""
+    """Return what to write instead of a key that no longer exists, in a file or as a flag."""
     if isinstance(new, str):
         return new
     if new[0].endswith("_options"):
@@ -99,7 +99,7 @@ def advice(new: Location | str, *, as_flag: bool) -> str:
 
 
 def renamed_flag(word: str) -> str | None:
-    """What to write instead of a flag that no longer exists; None if the word is not one."""
+    """Return what to write instead of a removed flag, or None if the word is not one."""
     name = word.partition("=")[0].removeprefix("--")
     positive = name.removeprefix("no-")
     derived = {"-".join(old).replace("_", "-"): old for old in RENAMED} | dict(FLAGS)

@@ -213,7 +213,7 @@ class RunConfig(Section):
 
     @property
     def defaults(self) -> Defaults:
-        """What the controller declares of itself.
+        """The declaration of the controller.
 
         What somebody else's declares stands in the configuration already, see
         :func:`giveway.config.loading.load`: to read a configuration imports nobody's code.
@@ -224,7 +224,7 @@ class RunConfig(Section):
 
     @property
     def reference_speed(self) -> float | Literal["lane"]:
-        """How fast an ego drives where nothing is in its way [m/s]; "lane": as its lanes say."""
+        """The speed [m/s] of an ego with nothing in its way, or "lane": as its lanes say."""
         wanted = self.regulation.reference_speed
         if wanted is not None:
             return wanted
@@ -232,7 +232,7 @@ class RunConfig(Section):
         return LANE if own is None else own
 
     def heeds(self, rule: str) -> bool:
-        """Whether an ego heeds one of giveway's rules.
+        """Return whether an ego heeds one of giveway's rules.
 
         Args:
             rule: Its key in ``[rules]``, like "crossings".
@@ -246,7 +246,7 @@ class RunConfig(Section):
 
     @property
     def tracks_people(self) -> bool:
-        """Whether the controllers are shown tracked positions where perception is noisy."""
+        """Return whether the controllers are shown tracked positions where perception is noisy."""
         tracker = self.perception.tracker
         return self.defaults.tracker if tracker is None else tracker
 
@@ -274,7 +274,7 @@ class RunConfig(Section):
 
 
 class EgoRunConfig(RunConfig):
-    """What a run's configuration amounts to for one of its egos; ``egos`` is empty."""
+    """The configuration of a run for one of its egos; ``egos`` is empty."""
 
     @model_validator(mode="after")
     def _check_egos(self) -> EgoRunConfig:
@@ -315,7 +315,7 @@ class EgoRunConfig(RunConfig):
 
     @property
     def plugged_in(self) -> bool:
-        """Whether the controller is somebody else's."""
+        """Return whether the controller is somebody else's."""
         return self.controller not in BUNDLED
 
     @property
@@ -333,18 +333,18 @@ class EgoRunConfig(RunConfig):
 
     @property
     def optimises(self) -> bool:
-        """Whether a model predictive controller drives: it has a model and a horizon."""
+        """Return whether a model predictive controller drives: it has a model and a horizon."""
         return self.defaults.optimises
 
     @property
     def safety_layer(self) -> bool:
-        """Whether the safety layer watches over the controller."""
+        """Return whether the safety layer watches over the controller."""
         enabled = self.safety.enabled
         return self.defaults.safety_layer if enabled is None else enabled
 
     @property
     def buffer_distance(self) -> float:
-        """Over which the reference speed rises linearly to v_r beyond d_safe [m]; 0: not so."""
+        """The distance [m] beyond d_safe over which the reference speed rises to v_r, or 0."""
         if self.defaults.buffered:
             return self.pid.buffer_distance
         own = self.own_options

@@ -109,17 +109,17 @@ class Ego:
 
     @property
     def foresees(self) -> bool:
-        """Whether it predicts the crowd under each of its manoeuvres."""
+        """Return whether it predicts the crowd under each of its manoeuvres."""
         return self._people.foresight is not None
 
     @property
     def arrived(self) -> bool:
-        """Whether it has driven its distance."""
+        """Return whether it has driven its distance."""
         return self.vehicle.position >= self.goal
 
     @property
     def watches(self) -> bool:
-        """Whether it wants to be told what happens in SUMO."""
+        """Return whether it wants to be told what happens in SUMO."""
         return self.rules.watches or bool(self.systems)
 
     def update(self, time: float, told: Told) -> None:
@@ -220,7 +220,7 @@ class Ego:
         return decision
 
     def _observed(self, time: float, seen: Perceived) -> Observation:
-        """What the controller is shown; the next call overwrites it."""
+        """Return what the controller is shown; the next call overwrites it."""
         front, vehicle, leader, rules = self.front, self.vehicle, seen.leader, self.rules
         origin, stop = front + self._origin, seen.stop + self._origin
         stop += self.config.regulation.safe_distance
@@ -265,7 +265,7 @@ class Ego:
         self.pose = self.path.pose(self.front, self.shape.length)
 
     def outputs(self) -> tuple[Sequence[tuple[str, str, str]], Sequence[float]]:
-        """What is recorded of its FMU at this instant, and the grade of its road if it has one."""
+        """Return what is recorded of its FMU at this instant, and the grade of a sloping road."""
         record, values = self.vehicle.record, self.vehicle.recorded
         if self._slope is None:
             return record, values

@@ -1,4 +1,4 @@
-"""What an ego reacts to at one instant."""
+"""Everything that an ego reacts to at one instant."""
 
 from dataclasses import dataclass, field
 from math import inf
@@ -18,7 +18,7 @@ NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 
 @dataclass(slots=True)
 class Perceived:
-    """What an ego reacts to at one instant; one object per ego is refilled in place.
+    """Everything that an ego reacts to at one instant; one object is refilled in place.
 
     Attributes:
         percept: Pedestrians as the ego perceives them.

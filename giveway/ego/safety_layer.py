@@ -27,11 +27,11 @@ class Guard:
     """Watches over one ego's forces.
 
     Args:
-        limits: of pedestrians and of the brake.
-        config: of the ego.
-        path: of the ego.
-        shape: of its body.
-        time_step: of the co-simulation [s].
+        limits: Limits of pedestrians and of the brake.
+        config: Configuration of the ego.
+        path: Path of the ego.
+        shape: Shape of its body.
+        time_step: Time step of the co-simulation [s].
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class Guard:
         errors: Array | None = None,
         kerbs: Array = NO_KERBS,
     ) -> Decision | None:
-        """The safety layer's decision instead of the controller's; None: it lets that through.
+        """Return the decision of the safety layer, or None if it lets the controller's through.
 
         Args:
             decision: the controller's.

@@ -1,4 +1,4 @@
-"""Why a stationary ego is waiting."""
+"""The cause for which a stationary ego is waiting."""
 
 from controller import Decision
 from giveway.ego.percept import Perceived
@@ -10,7 +10,7 @@ _FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobo
 def waits_for(
     front: float, kept: float, seen: Perceived, decision: Decision, eases_off: bool
 ) -> str:
-    """Why a stationary ego is waiting; empty when it drives off.
+    """Return why a stationary ego is waiting; it is empty when the ego drives off.
 
     Args:
         front: Station of its front bumper [m].

@@ -51,7 +51,7 @@ class Metric(Protocol):
 
 @dataclass(frozen=True)
 class Measured:
-    """What the metrics of other packages have measured of one drive.
+    """The measurements of one drive by metrics of other packages.
 
     Attributes:
         columns: Columns that they add to the summary.

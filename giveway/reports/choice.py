@@ -81,7 +81,7 @@ def worst_runs(study: StudyFolder, count: int = 5) -> list[WorstRun]:
 
     Args:
         study: its runs, design and definition are read.
-        count: per reason.
+        count: Count per reason.
     """
     return [
         *_extreme(study, CLOSEST, "minimum_clearance", count, sign=1.0),

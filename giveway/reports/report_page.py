@@ -46,7 +46,7 @@ class Drawn:
 
     Attributes:
         picture: Picture with its caption; its name is its id in the page.
-        title: above it; may be empty.
+        title: Title above it; may be empty.
         svg: Picture as SVG for the page.
         links: label and address of replays that belong to it.
     """

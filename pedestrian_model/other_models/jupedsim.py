@@ -45,7 +45,7 @@ class JuPedSimPeople:
 
     Args:
         name: which one.
-        setup: of the run.
+        setup: Setup of the run.
 
     Raises:
         ImportError: JuPedSim is not installed.
@@ -64,7 +64,7 @@ class JuPedSimPeople:
         self._times = max(1, math.ceil(setup.time_step / _STEP - 1e-9)) if self._forces else 1
 
     def step(self, walkers: Walkers) -> Velocities:
-        """How everybody moves from t_k to t_k+1."""
+        """Move everybody from t_k to t_k+1."""
         low, high = walkers.position.min(axis=0) - _ROOM, walkers.position.max(axis=0) + _ROOM
         simulation = self._jupedsim.Simulation(
             model=self._model,
@@ -137,7 +137,7 @@ class JuPedSimPeople:
         raise PlugInError(f"a hundred people stand at {x:g}, {y:g} m")
 
     def _limited(self, velocity: Array, walkers: Walkers) -> Array:
-        """As fast as people are, and slow enough to stop at a wall."""
+        """Limit speeds to those of people, and to those that can stop at a wall."""
         normal = walkers.wall_normal
         least = (self._radius - walkers.wall_distance) / RELAXATION
         towards = (velocity * normal).sum(axis=1)

@@ -88,8 +88,8 @@ class PlainModel:
 
     Args:
         name: which one.
-        parameters: of VCI; its body radius, largest speed and acceleration, and its way-points'
-            radius hold here too.
+        parameters: Parameters of VCI; body radius, largest speed and acceleration, and the
+            way-points' radius hold here too.
         time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
             drive straight on at constant speed.
 

@@ -1,4 +1,4 @@
-"""Where the crowd will be by any model: asked step by step, under given vehicle poses."""
+"""Prediction of the crowd by any model, asked step by step under given vehicle poses."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class StepwisePredictor:
     """Predicts N steps of the crowd by N calls of a model.
 
     Args:
-        model: by which people are believed to walk; one that remembers something is made to forget
+        model: Model by which people are believed to walk; one with a memory is made to forget
             it (``reset``) before each prediction, and belongs to this predictor alone.
         horizon: N, the number of the model's steps.
 
@@ -44,7 +44,7 @@ class StepwisePredictor:
 
     @property
     def time_step(self) -> float:
-        """[s]."""
+        """The time step [s]."""
         return self._model.time_step
 
     def predict(
@@ -83,7 +83,7 @@ class StepwisePredictor:
     def desired_velocities(
         self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND
     ) -> NDArray[np.float64]:
-        """(n, 3) what everybody wishes at the end of the latest prediction, of ``crowd``."""
+        """Return the wishes of all at the end of the latest prediction of ``crowd``, (n, 3)."""
         wishes, ahead = np.empty((len(crowd), 3)), self._ahead
         fill_desired_velocities(
             (

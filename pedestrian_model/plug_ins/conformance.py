@@ -34,7 +34,7 @@ class Finding:
     """One rule, and what breaks it.
 
     Attributes:
-        rule: in a few words.
+        rule: Rule in a few words.
         problem: what was seen; empty if it is kept.
     """
 
@@ -122,7 +122,7 @@ def check_model(
 
     Args:
         make: makes the model for a setup.
-        setup: of the walks.
+        setup: Setup of the walks.
         parameters: bodies and limits.
         begins: told each rule before it is checked.
 
@@ -224,7 +224,7 @@ class _Battery:
         *,
         other: PluggedInModel | None = None,
     ) -> Array:
-        """(steps, n, 2) [m] of one walk."""
+        """Return the positions of one walk, (steps, n, 2) [m]."""
         scene = _Scene() if scene is None else scene
         crowd, beside = scene.crowd(), _Scene(seed=7)
         stranger = beside.crowd()

@@ -1,4 +1,4 @@
-"""What somebody else's model of people is: a class that is told and answers what stands here.
+"""The protocol of pedestrian models of other packages.
 
 A class of an installed package is a pedestrian model if it can be made from a :class:`ModelSetup`
 (and its options, if it has any) and has the method ``step``. docs/plugins.md is the guide.
@@ -15,7 +15,7 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 class ModelSetup(NamedTuple):
-    """What does not change during a run: told once, when the model is made."""
+    """The facts of a run that do not change; a model is told once, when it is made."""
 
     time_step: float  # h [s] from one step to the next
     body_radius: float  # [m] of everybody
@@ -72,4 +72,4 @@ class ModelPlugIn(Protocol):
     """
 
     def step(self, walkers: Walkers, /) -> Answer:
-        """How everybody moves from t_k to t_k+1."""
+        """Return how everybody moves from t_k to t_k+1."""

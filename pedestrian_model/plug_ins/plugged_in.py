@@ -44,9 +44,9 @@ class PluggedInModel:
     parameters, which the safety layer's promise is about.
 
     Args:
-        name: of the model, for messages.
+        name: Name of the model, for messages.
         make: makes the plug-in.
-        setup: of the run.
+        setup: Setup of the run.
         parameters: bodies and limits.
         who: the ids of those in the crowd; None: they are numbered as they stand in it.
 
@@ -103,7 +103,7 @@ class PluggedInModel:
         self._move(crowd, self._velocities(answer, crowd))
 
     def _seen(self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings) -> Walkers:
-        """What the model is told; who has passed a way-point goes on to the next."""
+        """Return what the model is told; who has passed a way-point goes on to the next."""
         n, p = len(crowd), self.parameters
         preferred, goal, stops = np.empty((n, 2)), np.empty((n, 2)), np.empty(n, dtype=np.bool_)
         _head(
@@ -136,7 +136,7 @@ class PluggedInModel:
         )
 
     def _velocities(self, answer: object, crowd: Crowd) -> Array:
-        """(n, 2) [m/s] at the end of the step, within the limits."""
+        """Return the velocities at the end of the step, within the limits, (n, 2) [m/s]."""
         before, h = crowd.velocity, self.time_step
         if isinstance(answer, Velocities):
             change = self._numbers(answer, answer.values, len(crowd), "m/s") - before

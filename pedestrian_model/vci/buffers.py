@@ -129,7 +129,7 @@ def fill_some(
     start: int,
     stop: int,
 ) -> None:
-    """As ``fill``, only the rows start ... stop - 1, and padding after them.
+    """Fill the rows start ... stop - 1 as ``fill`` does, and the padding after them.
 
     Not what ``fill`` calls: the ring's loops become a seventh slower with it.
     """

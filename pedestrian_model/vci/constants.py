@@ -48,7 +48,7 @@ def pack(
     """The constants of the kernels for ``parameters``: a read-only array of one record.
 
     Args:
-        parameters: of the model.
+        parameters: Parameters of the model.
         detour: whether people see a way round a standing car.
         creep: whether the angle of f_v takes a car below the static speed to move.
         longer: [s] by which a step is longer than those of the crowd for which it stands. One of

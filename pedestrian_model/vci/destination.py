@@ -44,7 +44,7 @@ def set_targets_of(
     closed: NDArray[np.bool_],
     c: Any,
 ) -> None:
-    """As ``set_targets``, for the first n rows."""
+    """Set the targets of the first n rows, as ``set_targets`` does."""
     start = routes.start
     for k in range(n):
         i = order[k]

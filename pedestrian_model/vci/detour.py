@@ -23,7 +23,7 @@ _CLEAR = 2.0  # an entry parameter beyond the segment's end: no crossing
 
 @inlined
 def _entry(x: float, y: float, dx: float, dy: float, low: float, high: float, h: float) -> float:
-    """Where in [0, 1] the segment enters the open box (low, high) x (-h, h); 2 if it does not."""
+    """Return where in [0, 1] the segment enters the open box (low, high) x (-h, h), or 2."""
     enter, leave = 0.0, 1.0
     for axis in range(2):
         p, d, a, b = (x, dx, low, high) if axis == 0 else (y, dy, -h, h)
@@ -39,7 +39,7 @@ def _entry(x: float, y: float, dx: float, dy: float, low: float, high: float, h:
 
 @inlined
 def _outside(x: float, y: float, low: float, high: float, h: float) -> float:
-    """How far (in the maximum norm) a point lies outside the box; negative inside."""
+    """Return the distance (maximum norm) of a point from the box; it is negative inside."""
     return max(max(low - x, x - high), abs(y) - h)
 
 
@@ -106,7 +106,7 @@ def _way_round(
 def _look_ahead(
     rows: NDArray[np.float64], start: int, stop: int, vehicle: NDArray[np.float64], c: Any
 ) -> None:
-    """For the rows start ... stop - 1, see if a standing vehicle is the first in the way so far."""
+    """Find whether a standing vehicle is the first in the way, for the rows start ... stop - 1."""
     reach = vehicle[FRONT] + vehicle[REAR] + vehicle[WIDTH] + 2.0 * c.detour
     v_x, v_y = vehicle[X], vehicle[Y]
     cos, sin = cosine_sine(vehicle[HEADING])

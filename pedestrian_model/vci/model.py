@@ -41,7 +41,7 @@ def require_steady(
     is stable and has no negative eigenvalue exactly if W < 2.
 
     Args:
-        parameters: of the model.
+        parameters: Parameters of the model.
         time_step: [s]; its sub-steps count.
         longest: [s] of these.
 

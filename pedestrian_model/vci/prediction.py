@@ -1,4 +1,4 @@
-"""Where the crowd will be: the model itself, applied N times under given vehicle poses."""
+"""Prediction of the crowd: the model itself, applied N times under given vehicle poses."""
 
 import math
 
@@ -116,7 +116,7 @@ class Predictor:
         return self._out
 
     def arrays(self, crowd: Crowd, surroundings: Surroundings) -> Arrays:
-        """What :func:`start` takes; the last four are memory for the state ahead.
+        """Return the arrays that :func:`start` takes; the last four are memory for the state ahead.
 
         Raises:
             SurroundingsError: if a way-point's signal is not one of the surroundings.

@@ -24,11 +24,11 @@ FADE = 0.5
 
 @inlined
 def place_of_full_force(front: float, u: float) -> float:
-    """How far [m] before its reference point a vehicle of speed ``u`` [m/s] acts in full."""
+    """Return how far [m] before its reference point a vehicle of speed ``u`` acts in full."""
     return front + LEAST_GAP + u * u / (2.0 * DECELERATION)
 
 
 @inlined
 def felt(X: float, full: float, priority: float) -> float:
-    """What somebody of ``priority`` (0 to 1), X [m] before the reference point, feels of f_v."""
+    """Return the share of f_v felt with ``priority`` (0 to 1), X [m] before the reference point."""
     return 1.0 - priority * min(1.0, max(0.0, (X - full) / FADE))

@@ -51,7 +51,7 @@ def rollout_step(
     cell_list_from: int,
     lead: float,
 ) -> int:
-    """As :func:`step_n`, also for steps that stand for several of the crowd's own.
+    """Step as :func:`step_n` does, also by steps that stand for several of the crowd's own.
 
     The forces are then those at the mean of the instants at which the own steps would have them:
     people are moved on by ``lead`` [s] at their velocities, and back. And the mass is a greater
@@ -63,7 +63,7 @@ def rollout_step(
         scene: what the crowd walks among.
         vehicles: (m, 7) at that mean instant.
         scratch: memory.
-        constants: of the model.
+        constants: Constants of the model.
         dt: [s] of a step.
         substeps: how many.
         cell_list_from: the crowd size from which neighbours are found by a cell list.

@@ -41,7 +41,7 @@ from pedestrian_model.vci.wall_force import add_walls
 
 
 class State(NamedTuple):
-    """What a step changes, as in ``Crowd``."""
+    """The arrays that a step changes, as in ``Crowd``."""
 
     position: NDArray[np.float64]  # (n, 2) [m]
     velocity: NDArray[np.float64]  # (n, 2) [m/s]
@@ -49,7 +49,7 @@ class State(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """What a crowd walks among and what it wants: no step changes it."""
+    """The surroundings and wishes of a crowd, which no step changes."""
 
     desired_speed: NDArray[np.float64]  # (n,) [m/s]
     priority: NDArray[np.float64]  # (n,) 0 to 1
@@ -61,7 +61,7 @@ class Scene(NamedTuple):
 
 @inlined
 def any_priority(priority: NDArray[np.float64]) -> bool:
-    """Whether anybody has priority."""
+    """Return whether anybody has priority."""
     most = 0.0
     for i in range(priority.shape[0]):
         most = max(most, priority[i])
@@ -181,7 +181,7 @@ def step_n(
 
 @inlined
 def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
-    """What Python has handed over as one plain tuple, by name."""
+    """Return by name the arrays that Python has handed over as one plain tuple."""
     a = borrowed(arrays)
     routes = Routes(a[5], a[6], a[7], a[8])
     scene = Scene(a[3], a[4], routes, a[9], a[10], a[11])

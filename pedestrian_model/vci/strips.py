@@ -55,7 +55,7 @@ _GHOST = 0.25  # the work of a ghost, relative to a pedestrian's (benchmarks/spe
 
 
 class DomainMemory:
-    """What one domain works in, and nobody else.
+    """The memory of one domain, which no other one uses.
 
     Attributes:
         arrays: the rows (ROWS + 1, capacity): one more, so that they can be seen shifted; the
@@ -79,13 +79,13 @@ class DomainMemory:
 
 
 def layout_memory(threads: int) -> NDArray[np.float64]:
-    """What ``lay_out`` fills: the grid, then the first strip of each domain and the end."""
+    """The layout that ``lay_out`` fills: the grid, the first strip of each domain, the end."""
     return np.zeros(_GRID + threads + 1)
 
 
 @inlined
 def _halo(grid: Grid) -> int:
-    """How many strips above its own a tile may reach."""
+    """Return the number of strips above its own that a tile may reach."""
     return int(grid.reach * grid.per_y) + 1
 
 
@@ -145,15 +145,15 @@ def _add_pairs(
     A function of its own in machine code, as ``add_near_pairs``.
 
     Args:
-        rows: of the domain, filled as far as its tiles and those of its ghosts reach.
+        rows: Rows of the domain, filled as far as its tiles and those of its ghosts reach.
         index: order and cells.
-        buffer: of the domain.
-        segments: of the domain.
-        grid: of the cells.
+        buffer: Buffer of the domain.
+        segments: Segments of the domain.
+        grid: Grid of the cells.
         begin_strip: the domain's first strip.
         end_strip: its last plus one.
         filled: the last row that is filled, plus one.
-        constants: of the model.
+        constants: Constants of the model.
     """
     c = pair_constants(constants[0])
     order, first = index[0], index[2]
@@ -207,13 +207,13 @@ def step_domain(
     Args:
         arrays: those of State, Scene and Scratch, one after the other; of the scratch only the
             sorted index is read, of the state only the way-points' index is changed.
-        memory: of ``DomainMemory``.
-        layout: by ``lay_out``.
+        memory: Arrays of ``DomainMemory``.
+        layout: Layout, filled by ``lay_out``.
         domain: which.
         after: (n, 4) the next positions and velocities; filled.
         vehicles: (m, 7).
         travelled: [s] for which the vehicles have driven straight on since.
-        constants: of the model.
+        constants: Constants of the model.
         dt: [s].
     """
     state, scene, scratch = parts(arrays)

@@ -60,7 +60,7 @@ class CrowdThreads:
             arrays: those of State, Scene and Scratch, one after the other; somebody is there.
             workspace: that the scratch is of.
             vehicles: (m, 7).
-            constants: of the model.
+            constants: Constants of the model.
             dt: [s].
             substeps: how many steps.
         """

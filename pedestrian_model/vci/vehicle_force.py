@@ -210,7 +210,7 @@ def add_near_vehicles(
     relied_on: bool,
     constants: NDArray[Any],
 ) -> None:
-    """As ``add_vehicles`` for rows sorted by the cells of ``grid``: only where a vehicle reaches.
+    """Add the forces of vehicles to rows sorted by the cells of ``grid``, where a vehicle reaches.
 
     Whom it does not reach is left out strip by strip, by a box round its contour; with few
     vehicles nobody is, so that a crowd's size does not show in the last bits of their force.
@@ -233,7 +233,7 @@ def add_vehicles_to_strips(
     relied_on: bool,
     constants: NDArray[Any],
 ) -> None:
-    """As ``add_near_vehicles``, only for the rows of the strips begin_strip ... end_strip - 1."""
+    """Add them as ``add_near_vehicles`` does, to the strips begin_strip ... end_strip - 1 only."""
     if vehicles.shape[0] < _MANY:
         start, stop = first[begin_strip * grid.columns], first[end_strip * grid.columns]
         for v in range(vehicles.shape[0]):

@@ -31,7 +31,7 @@ def findings_table(
     """A row per finding.
 
     Args:
-        title: above the table.
+        title: Title above the table.
         styles: Style of each level.
         findings: level, subject, text and remedy of each; the remedy may be empty.
     """

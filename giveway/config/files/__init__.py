@@ -1,1 +1,1 @@
-"""How a configuration is read from files and flags."""
+"""The reading of a configuration from files and flags."""

@@ -23,11 +23,11 @@ from giveway.errors import ControlError
 
 
 def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
-    """What a controller is told of its drive.
+    """Return what a controller is told of its drive.
 
     Args:
-        config: of the ego; its reference speed is a number by the time that it drives.
-        time_step: of the co-simulation [s].
+        config: Configuration of the ego, with a number as its reference speed.
+        time_step: Time step of the co-simulation [s].
     """
     vehicle, regulation = config.vehicle, config.regulation
     speed = config.reference_speed
@@ -46,8 +46,8 @@ def prepared(config: EgoRunConfig, time_step: float) -> PreparedController:
     """The controller FMU of one ego, with the run's settings and the user's options.
 
     Args:
-        config: of the ego.
-        time_step: of the co-simulation [s].
+        config: Configuration of the ego.
+        time_step: Time step of the co-simulation [s].
 
     Raises:
         ControlError: the file or its profile cannot be read, or they do not fit each other.
@@ -79,7 +79,7 @@ def fmu_hash(path: str) -> str:
 
 
 def fmu_described(config: EgoRunConfig) -> dict[str, Any]:
-    """What the manifest says of a controller FMU.
+    """Return the manifest's entries on a controller FMU.
 
     Raises:
         ControlError: it cannot be read.

@@ -1,4 +1,4 @@
-"""What somebody else's controller declares of itself, written into the configuration."""
+"""The declarations of controllers of other packages, written into the configuration."""
 
 from __future__ import annotations
 

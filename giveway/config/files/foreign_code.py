@@ -31,8 +31,8 @@ class Named(NamedTuple):
     Attributes:
         socket: that it is for.
         whose: the ego's id, "the crowd", or "the run".
-        name: as the user wrote it; perhaps a path to an FMU.
-        options: as the user has set them.
+        name: Name as the user wrote it; perhaps a path to an FMU.
+        options: Options as the user has set them.
         ego: whose controller it is; None: it is none.
     """
 
@@ -44,12 +44,12 @@ class Named(NamedTuple):
 
     @property
     def key(self) -> str:
-        """By which the inputs of a study's cell know it, wherever a file lies."""
+        """The key by which the inputs of a study's cell know it, wherever a file lies."""
         return f"{self.socket.what} of {self.whose}: {shown(self.name)}"
 
     @property
     def sha256(self) -> str:
-        """Of its package, or of its file.
+        """The SHA-256 of its package, or of its file.
 
         Raises:
             ControlError: it is not there.
@@ -95,7 +95,7 @@ def code_hashes(
     """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
 
     Args:
-        config: of the run.
+        config: Configuration of the run.
         sockets: those that count.
 
     Raises:
@@ -106,11 +106,11 @@ def code_hashes(
 
 
 def named_in(failure: str, config: RunConfig) -> str:
-    """What is said of a process that died in somebody else's code, with that code's name.
+    """Return a message about a process that died in foreign code, with the name of that code.
 
     Args:
-        failure: as the supervisor tells it.
-        config: of the run.
+        failure: Failure as the supervisor tells it.
+        config: Configuration of the run.
     """
     code = foreign_code(config)
     for socket, place, named in _PLACES:
@@ -125,8 +125,8 @@ def require_code(config: RunConfig, time_step: float = PAPER_STEP) -> None:
     """Make sure, before anything runs, that every plug-in is there and takes its options.
 
     Args:
-        config: of the run.
-        time_step: of the co-simulation [s].
+        config: Configuration of the run.
+        time_step: Time step of the co-simulation [s].
 
     Raises:
         ConfigError: one has no such option.
@@ -140,7 +140,7 @@ def require_code(config: RunConfig, time_step: float = PAPER_STEP) -> None:
 
 
 def provenance(config: RunConfig) -> dict[str, dict[str, dict[str, Any]]]:
-    """For the manifest: distribution, version, hash and all options of each plug-in."""
+    """Return each plug-in's distribution, version, hash and options, for the manifest."""
     told: dict[str, dict[str, dict[str, Any]]] = {}
     for one in foreign_code(config):
         if one.ego is not None and is_fmu(one.name):

@@ -1,4 +1,4 @@
-"""From layers of settings (scenario, TOML file, flags) to one validated configuration, and back."""
+"""Layers of settings (scenario, TOML file, flags), merged into one validated configuration."""
 
 import difflib
 import os
@@ -41,7 +41,7 @@ class Layer:
     results: Path | None = None  # the folder of results that it was read from; None: from none
 
     def holds(self, location: Location) -> bool:
-        """Whether this layer sets the key at ``location``."""
+        """Return whether this layer sets the key at ``location``."""
         node: Any = self.values
         for key in location:
             if not isinstance(node, Mapping) or key not in node:
@@ -50,7 +50,7 @@ class Layer:
         return True
 
     def name(self, location: Location) -> str:
-        """How the user calls the key at ``location`` in this layer."""
+        """Return the name by which the user knows the key at ``location`` in this layer."""
         if self.from_flags:
             if len(location) > 1 and location[0] in PLUGGED:
                 return f"{PLUGGED[location[0]].set_flag} {location[1]}"
@@ -113,7 +113,7 @@ def read_toml(path: Path) -> Layer:
 
 
 def results_of(path: Path) -> Path | None:
-    """The results folder that a file of settings was written into; None: it is a user's."""
+    """Return the results folder that a file of settings lies in, or None if it is a user's."""
     written = path.name in {"config.toml", "study.toml"}
     return path.parent if written and path.with_name("manifest.json").is_file() else None
 

@@ -1,4 +1,4 @@
-"""Which settings win: the scenario's, then the user's file, then flags or arguments."""
+"""The order of settings: the scenario's, the user's file, then flags or arguments."""
 
 import os
 from collections.abc import Collection, Mapping, Sequence
@@ -25,7 +25,7 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
     """The configuration that ``layers`` amount to on top of their scenario's own settings.
 
     Args:
-        layers: of settings.
+        layers: Layers of settings.
         trusted: controllers that may be imported though only a results folder names them.
 
     Raises:
@@ -57,7 +57,7 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
 
 
 def _identified(layers: Sequence[Layer]) -> list[Layer]:
-    """What the profile of the run's vehicle knows of it: the lowest layer.
+    """Return the lowest layer: what the profile of the run's vehicle knows of it.
 
     Raises:
         VehicleError: the profile cannot be used.
@@ -77,7 +77,7 @@ def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfi
     """``config`` in which those entries of ``egos`` that name an FMU have what belongs to it.
 
     Args:
-        config: of the run; its vehicle's M and alpha may be those of its profile.
+        config: Configuration of the run; its vehicle's M and alpha may be those of its profile.
         set_model: M and alpha without that: what was identified of another FMU is no other's.
     """
     identified = {} if _model_of(config) == set_model else set_model
@@ -186,7 +186,7 @@ def _presets_read(config: RunConfig) -> RunConfig:
 
 
 def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:
-    """What a caller of the Python API has set, and nothing of the defaults.
+    """Return what a caller of the Python API has set, without the defaults.
 
     Raises:
         ConfigError: it is neither a configuration nor the name of a scenario or TOML file.

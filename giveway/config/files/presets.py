@@ -48,7 +48,7 @@ def require_steady_preset(preset: str, time_step: float, where: str) -> None:
 
     Args:
         preset: a name or a file, as for :func:`parameters_of`.
-        time_step: of the crowd [s].
+        time_step: Time step of the crowd [s].
         where: the option that names the preset; the message begins with it.
 
     Raises:
@@ -91,7 +91,7 @@ def require_parameter(name: str, where: str) -> None:
 
 
 def is_preset_file(preset: str) -> bool:
-    """Whether ``preset`` names a file, not a preset that is built in."""
+    """Return whether ``preset`` names a file, not a preset that is built in."""
     return preset not in PRESETS and preset.endswith(SUFFIX)
 
 
@@ -99,7 +99,7 @@ def preset_text(name: str, parameters: VciParameters, provenance: Mapping[str, A
     """A preset file: every parameter, and where the numbers come from.
 
     Args:
-        name: of the preset.
+        name: Name of the preset.
         parameters: all of them are written, to the last digit.
         provenance: what was fitted, on what, how well: text, numbers, lists of them.
     """
@@ -132,7 +132,7 @@ def _read(path: Path, _stamp: object) -> VciParameters:
 
 
 def _base(path: Path, base: object) -> dict[str, float]:
-    """What a file that names a ``base`` need not repeat."""
+    """Return the values that a file with a ``base`` need not repeat."""
     if base is None:
         return {}
     if not isinstance(base, str) or base not in PRESETS:

@@ -10,10 +10,10 @@ _DEEPEST: Final = 20  # levels of tables and lists; nothing that we read has hal
 
 
 def read_toml_file(file: Path, expected: str, called: str | None = None) -> dict[str, Any]:
-    """What a TOML file says.
+    """Return the content of a TOML file.
 
     Args:
-        file: to be read.
+        file: File to be read.
         expected: what it should be, for messages: "a preset file".
         called: how messages call it; None: by its path.
 
@@ -33,10 +33,10 @@ def read_toml_file(file: Path, expected: str, called: str | None = None) -> dict
 
 
 def parse_toml(text: str, origin: str) -> dict[str, Any]:
-    """What a TOML text says.
+    """Return the content of a TOML text.
 
     Args:
-        text: of a file.
+        text: Text of a file.
         origin: what messages call it.
 
     Raises:
@@ -61,7 +61,7 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
 
 
 def _is_deep(values: dict[str, Any]) -> bool:
-    """Whether there are levels that would be too many for whatever walks through them."""
+    """Return whether there are levels that would be too many for whatever walks through them."""
     level: list[Any] = [values]
     for _ in range(_DEEPEST):
         level = [child for node in level for child in _children(node)]

@@ -27,7 +27,7 @@ def require_trusted(
 
     Args:
         config: what the layers amount to.
-        layers: of settings.
+        layers: Layers of settings.
         trusted: code that the user has named apart from the layers.
 
     Raises:
@@ -89,7 +89,7 @@ def hashes_in(folder: Path, name: str, socket: Socket) -> set[str]:
 
 
 def _named_in(values: Mapping[str, Any], socket: Socket) -> set[str]:
-    """What settings plug in, of the run and of its egos."""
+    """Return the plug-ins that settings name, of the run and of its egos."""
     egos = values.get("egos")
     named = set()
     for node in (values, *(egos if isinstance(egos, list | tuple) else ())):

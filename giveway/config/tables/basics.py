@@ -174,7 +174,7 @@ class VehicleConfig(Section):
 
 
 class TrafficConfig(Section):
-    """What SUMO's own vehicles know of the pedestrians that giveway moves."""
+    """The behaviour of SUMO's own vehicles towards the pedestrians that giveway moves."""
 
     yielding: bool = option(
         True, None, "SUMO's vehicles brake for pedestrians and egos in their way", flag="--yield"
@@ -182,7 +182,7 @@ class TrafficConfig(Section):
 
 
 class SumoConfig(Section):
-    """How SUMO is run, and which of its own outputs are wanted."""
+    """The settings of SUMO, and the outputs of its own that are wanted."""
 
     step_length: float | None = option(
         None,
@@ -215,7 +215,7 @@ class SumoConfig(Section):
 
 
 class RecordConfig(Section):
-    """How densely trajectories are recorded, and what counts as a stop."""
+    """The density of recorded trajectories, and the speed that counts as a stop."""
 
     near: float = option(
         50.0,

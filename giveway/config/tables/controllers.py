@@ -147,7 +147,7 @@ class TunedPidOptions(Section):
 
 
 class PlannerConfig(Section):
-    """What users choose of the planning MPC (controller = "mpc"); docs/controllers.md."""
+    """The choices that users have with the planning MPC (controller = "mpc")."""
 
     horizon: float = option(
         2.5,

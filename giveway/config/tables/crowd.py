@@ -166,23 +166,23 @@ class CrowdConfig(Section):
 
     @property
     def adds_people(self) -> bool:
-        """Whether giveway adds anybody."""
+        """Return whether giveway adds anybody."""
         return self.pedestrians > 0 or bool(self.flow and self.flow_scale)
 
     @property
     def has_distracted(self) -> bool:
-        """Whether anybody may be distracted."""
+        """Return whether anybody may be distracted."""
         each = (self.people, *(flow.people for flow in self.flow if flow.people is not None))
         return any(people.shares[DISTRACTED] for people in each)
 
     @property
     def has_groups(self) -> bool:
-        """Whether anybody may walk in a group that stays together."""
+        """Return whether anybody may walk in a group that stays together."""
         return self.groups > 0.0 or any(flow.groups for flow in self.flow)
 
     @property
     def plugged_in(self) -> bool:
-        """Whether the model of people is somebody else's."""
+        """Return whether the model of people is somebody else's."""
         return self.model not in BUNDLED_MODELS
 
     @model_validator(mode="after")

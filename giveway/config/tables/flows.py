@@ -23,7 +23,7 @@ Place = Point | Line | Box
 
 
 def is_line(place: Place) -> bool:
-    """Whether a place is a line."""
+    """Return whether a place is a line."""
     return not isinstance(place[0], int | float)
 
 
@@ -32,7 +32,7 @@ def _refused(expected: str) -> PydanticCustomError:
 
 
 def _point(value: Any) -> Point | None:
-    """``value`` as a point; None: it is none."""
+    """Return ``value`` as a point, or None if it is none."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         return None
     if not all(is_number(c) and abs(c) <= _FARTHEST for c in value):
@@ -41,7 +41,7 @@ def _point(value: Any) -> Point | None:
 
 
 def _line(value: Any) -> Line | None:
-    """``value`` as a line; None: it is none."""
+    """Return ``value`` as a line, or None if it is none."""
     ends = [_point(end) for end in value] if isinstance(value, list | tuple) else []
     if len(ends) != 2 or ends[0] is None or ends[1] is None:
         return None
@@ -51,7 +51,7 @@ def _line(value: Any) -> Line | None:
 
 
 def _box(value: Any) -> Box | None:
-    """``value`` as a rectangle; None: it is none."""
+    """Return ``value`` as a rectangle, or None if it is none."""
     if not isinstance(value, list | tuple) or len(value) != 4:
         return None
     if not all(is_number(c) and abs(c) <= _FARTHEST for c in value):
@@ -63,7 +63,7 @@ def _box(value: Any) -> Box | None:
 
 
 def _origin(value: Any) -> Place:
-    """Where people come from: somewhere with room for several."""
+    """Return the place where people come from, which has room for several."""
     found = _line(value) or _box(value)
     if found is None:
         raise _refused("expected a line or a rectangle")
@@ -71,7 +71,7 @@ def _origin(value: Any) -> Place:
 
 
 def _destination(value: Any) -> Place:
-    """Where people go to."""
+    """Return the place where people go to."""
     found = _point(value) or _line(value) or _box(value)
     if found is None:
         raise _refused(
@@ -81,7 +81,7 @@ def _destination(value: Any) -> Place:
 
 
 def _via(value: Any) -> tuple[Point | Line, ...]:
-    """Where people come through, one after the other."""
+    """Return the places that people come through, one after the other."""
     places = value if isinstance(value, list | tuple) else [value]
     found = [_point(place) or _line(place) for place in places]
     if not all(found):
@@ -152,7 +152,7 @@ class FlowConfig(Section):
         return self
 
     def settings(self) -> dict[str, Any]:
-        """As a table of a TOML file has it."""
+        """Return the entries of a table of a TOML file."""
         values: dict[str, Any] = self.model_dump(mode="json", exclude_defaults=True)
         return values
 

@@ -28,7 +28,7 @@ class MeasureConfig(Section):
         return self.line or self.area
 
     def settings(self) -> dict[str, Any]:
-        """As a table of a TOML file has it."""
+        """Return the entries of a table of a TOML file."""
         kind = "line" if self.line else "area"
         places = [list(place) for place in self.places]
         return {"name": self.name, kind: places, "interval": self.interval}

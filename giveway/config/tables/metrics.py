@@ -9,6 +9,6 @@ from giveway.plug_ins.sockets import METRIC, Socket
 
 
 class MetricsConfig(PlugInTable):
-    """Which metrics of other packages a run has; giveway's own are always there."""
+    """The metrics of other packages that a run has; giveway's own are always there."""
 
     socket: ClassVar[Socket] = METRIC

@@ -1,4 +1,4 @@
-"""``[crowd.people]``: how many of the people are children, old, distracted, in a hurry."""
+"""The table ``[crowd.people]``: shares of children and of old, distracted, hurried people."""
 
 from __future__ import annotations
 
@@ -50,5 +50,5 @@ class PeopleConfig(Section):
 
     @property
     def mixed(self) -> bool:
-        """Whether anybody is to be told apart."""
+        """Return whether anybody is to be told apart."""
         return any(self.shares.values())

@@ -12,7 +12,7 @@ from giveway.config.plug_in_names import (
 
 
 class PerceptionConfig(Section):
-    """What the controllers know of the pedestrians, as far as it is not the truth."""
+    """The controllers' knowledge of the pedestrians, as far as it is not the truth."""
 
     sensor: SensorName = option(
         "all",
@@ -58,10 +58,10 @@ class PerceptionConfig(Section):
 
     @property
     def plugged_in_sensor(self) -> bool:
-        """Whether the sensor is somebody else's."""
+        """Return whether the sensor is somebody else's."""
         return self.sensor not in BUNDLED_SENSORS
 
     @property
     def plugged_in(self) -> bool:
-        """Whether the model of people that is believed in is somebody else's."""
+        """Return whether the model of people that is believed in is somebody else's."""
         return self.model not in BUNDLED_MODELS

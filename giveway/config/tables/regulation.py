@@ -11,7 +11,7 @@ CORRIDOR_MARGIN = 0.25
 
 
 class RegulationConfig(Section):
-    """What both controllers aim at, and who counts as being in front."""
+    """The aims of all controllers, and the corridor in front."""
 
     reference_speed: SpeedOrLane | None = option(
         None,

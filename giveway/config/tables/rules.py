@@ -13,7 +13,7 @@ OF_PRIORITY = frozenset({"crossings", "right_of_way", "merging"})
 
 
 class RulesConfig(PlugInTable):
-    """Which rules of the road the ego heeds; a rule that is left out is up to its controller."""
+    """The rules of the road that the ego heeds; its controller decides on one that is left out."""
 
     socket: ClassVar[Socket] = RULE
 

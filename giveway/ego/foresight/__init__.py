@@ -1,1 +1,1 @@
-"""What an ego expects of the people ahead under each of its manoeuvres."""
+"""The foresight of an ego: the people ahead under each of its manoeuvres."""

@@ -1,4 +1,4 @@
-"""What a predicted crowd means to a manoeuvre: gaps, persons on a collision course, calm speeds."""
+"""The assessment of a manoeuvre in a predicted crowd: gaps, conflicts, calm speeds."""
 
 from typing import Any, NamedTuple
 
@@ -58,7 +58,7 @@ def interval_of(j: int, every: int, predicted: int, horizon: int) -> tuple[int, 
     """The steps (less one) of a manoeuvre in the j-th of the predicted ones; the last has the rest.
 
     Args:
-        j: from 0.
+        j: Number of the predicted step, from 0.
         every: see :class:`View`.
         predicted: M, how many.
         horizon: N [steps] of the manoeuvre.

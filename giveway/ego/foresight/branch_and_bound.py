@@ -35,7 +35,7 @@ def run_race(
     candidates: tuple[NDArray[np.int64], bool],
     judged: tuple[Array, float, tuple[Any, ...]],
 ) -> tuple[int, bool, int]:
-    """The row of the cheapest entrant, which has finished; -1: no cost is a number.
+    """Return the row of the cheapest candidate, found by branch and bound, or -1.
 
     Also whether nobody is in the way of the first, and how many have been compared.
 
@@ -46,8 +46,8 @@ def run_race(
         ego: Poses of all vehicles, (M, m, 7), in which the ego's row is changed; that row; the
             station of its front bumper [m].
         sight: Numbers of a ``View`` and of an ``Alarm``.
-        trials: of ``Trials``.
-        memory: of :class:`giveway.ego.foresight.workspace.Lanes`.
+        trials: Trials of ``Trials``.
+        memory: Memory of :class:`giveway.ego.foresight.workspace.Lanes`.
         candidates: Rows to evaluate, see :meth:`giveway.ego.foresight.workspace.Lanes.line_up`;
             and whether the first runs alone until somebody is in its way, and wins if nobody is.
         judged: Distances [m] that may be driven, (N,); speed [m/s] that time is lost against;

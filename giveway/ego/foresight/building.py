@@ -1,4 +1,4 @@
-"""What a waiting ego will foresee the crowd with, made of its options."""
+"""The foresight of an ego, made from its options before it departs."""
 
 from giveway.ego.foresight.contingency import load
 from giveway.ego.foresight.crowd_foresight import CrowdForesight
@@ -12,13 +12,13 @@ from pedestrian_model import Predictor
 def foresight_of(
     waiting: WaitingEgo, path: EgoPath, shape: VehicleShape, half_width: float, time_step: float
 ) -> CrowdForesight | None:
-    """What answers a planning controller how pedestrians would react; None: nobody asks.
+    """Return the foresight for a planning controller, or None if no controller asks for it.
 
     Args:
         waiting: the ego before its departure.
-        path: of it.
-        shape: of its body.
-        half_width: of its corridor [m].
+        path: Path of it.
+        shape: Shape of its body.
+        half_width: Half width of its corridor [m].
         time_step: [s] of the control.
     """
     config, predictor = waiting.config, waiting.predictor

@@ -30,15 +30,15 @@ def load() -> None:
 def hedged(
     cost: Cost, trials: Trials, rows: Sequence[int], likely: float, wanted: float, time_step: float
 ) -> int:
-    """The manoeuvre of least weighted cost; -1: that is no number.
+    """Return the manoeuvre of least weighted cost, or -1 if that cost is no number.
 
     Args:
-        cost: of the best of some rows of the trials [s]; whether under the less likely hypothesis.
+        cost: Cost [s] of the best of some rows, under the likelier hypothesis or the other.
         trials: the manoeuvres.
         rows: which of them are compared.
         likely: how likely the likelier hypothesis is.
         wanted: the speed [m/s] where nobody is in the way.
-        time_step: of a manoeuvre [s].
+        time_step: Time step of a manoeuvre [s].
     """
     first = min(max(round(_COMMON / time_step), 1), trials.speed.shape[1] - 1)
     every = list(range(BRANCHES))

@@ -1,4 +1,4 @@
-"""What a manoeuvre would lead to: the crowd predicted under it, as seen from the ego."""
+"""The outcome of a manoeuvre: the crowd predicted under it, as seen from the ego."""
 
 from math import inf
 from typing import Any
@@ -37,7 +37,7 @@ _Judged = tuple[Array, float, tuple[Any, ...]]  # what is allowed, the speed wan
 
 
 def steps_at_once(time_step: float, horizon: int) -> int:
-    """How many steps of a manoeuvre make one of the crowd under it."""
+    """Return the number of a manoeuvre's steps in one step of the predicted crowd."""
     return min(max(1, int(_STEP / time_step + 1e-9)), horizon)
 
 
@@ -51,7 +51,7 @@ def plan_predictor(
 
     Args:
         parameters: the model by which people are believed to walk.
-        time_step: of the manoeuvres [s].
+        time_step: Time step of the manoeuvres [s].
         horizon: N of them.
         readings: options of :class:`pedestrian_model.Predictor`.
     """
@@ -70,12 +70,12 @@ class CrowdForesight:
     The manoeuvres are tried in poses of its own: what other egos see does not change by them.
 
     Args:
-        predictor: of M steps, each of them some of a manoeuvre's.
+        predictor: Predictor of M steps, each of them some of a manoeuvre's.
         path: the ego's.
-        shape: of its body.
+        shape: Shape of its body.
         horizon: N [steps] of a manoeuvre.
-        time_step: of a manoeuvre [s]; the predictor's is some of them.
-        half_width: of the corridor [m].
+        time_step: Time step of a manoeuvre [s]; the predictor's is some of them.
+        half_width: Half width of the corridor [m].
         clearance: [m] that the safety layer keeps to pedestrians' bodies.
         braking: [m/s^2] of the ego at most.
         worst: what the safety layer takes people to do; None: there is none.
@@ -148,7 +148,7 @@ class CrowdForesight:
         """Begin an instant.
 
         Args:
-            pedestrians: to be predicted; the ways of those who are believed to yield are changed.
+            pedestrians: Pedestrians to be predicted; the ways of those who yield are changed.
             surroundings: the walls and lights that they heed.
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
             row: the ego's.
@@ -189,7 +189,7 @@ class CrowdForesight:
         return np.asarray((1.0 - share) * known[before] + share * known[before + 1])
 
     def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
-        """What a manoeuvre would lead to; valid until the next call."""
+        """Return the predicted outcome of a manoeuvre; it is valid until the next call."""
         self._predict(manoeuvre.distance, manoeuvre.speed)
         gap, conflicts, calm, _ = self._prospect
         assess(
@@ -251,7 +251,7 @@ class CrowdForesight:
         people: Crowd,
         halting: Halting,
     ) -> tuple[int, bool, int]:
-        """As :func:`run_race`, with people who do as either hypothesis says."""
+        """Run :func:`run_race` with people who do as one of the hypotheses says."""
         vci = self._vci
         assert vci is not None  # else there is no race
         ended: tuple[int, bool, int] = run_race(
@@ -272,7 +272,7 @@ class CrowdForesight:
     def _hedge(
         self, lanes: Lanes, trials: Trials, heats: Heats, judged: _Judged, other: Otherwise
     ) -> tuple[int, bool, int]:
-        """As :meth:`_run`: of all trials the best one where either hypothesis may be true."""
+        """Run as :meth:`_run` does, for the best trial where either hypothesis may be true."""
         time_step, n = View(*self._view).time_step, len(other.people)
         if self._aside.people < n:  # what the trials lead to stays in their own lanes
             self._aside = Lanes(BRANCHES, len(judged[0]), len(self._poses), n)

@@ -1,4 +1,4 @@
-"""Who walks on, and who lets the ego pass: found out by what people do.
+"""The intent of people, to walk on or to let the ego pass, estimated from what they do.
 
 A planner that believes in one model of people is wrong about those who walk by another. Of each
 person beside the way who wants to cross it two hypotheses are kept:
@@ -50,8 +50,8 @@ class Beliefs:
 
     Args:
         path: the ego's.
-        half_width: of its corridor [m], the way.
-        predictor: of the model by which people walk on.
+        half_width: Half width of its corridor [m], the way.
+        predictor: Predictor of the model by which people walk on.
         time_step: [s] between two looks; the predictor's is some of them.
     """
 
@@ -81,13 +81,13 @@ class Beliefs:
 
     @property
     def halting(self) -> Halting:
-        """Who yields, as of the latest look, and what :func:`walk_up` needs of the model."""
+        """The people who yield, as of the latest look, and what :func:`walk_up` needs."""
         return self._yield, *self._law[1:], self._step
 
     def weigh(
         self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array
     ) -> Otherwise | None:
-        """As :meth:`update`; and what if those whose intent is open do the less likely?
+        """Update, and return the alternative in which people of open intent do the less likely.
 
         None: nobody's is, or that is no other expectation.
         """
@@ -116,7 +116,7 @@ class Beliefs:
         """See how people walk now, and send those who are believed to yield to the edge only.
 
         Args:
-            people: as they are seen; the ways of those who yield are changed.
+            people: People as they are seen; the ways of those who yield are changed.
             numbers: (n,) who they are.
             front: the front bumper's station [m].
             expected: (4 m,) x, y [m], v_x, v_y [m/s] of the m people of the latest look, where its
@@ -157,18 +157,18 @@ def _update(
     yields: NDArray[np.bool_],
     law: tuple[float, float, float],
 ) -> int:
-    """As :meth:`Beliefs.update`; a number that the memory has no room for, and nothing done, or -1.
+    """Update as :meth:`Beliefs.update` does; return -1, or a number that needs more memory.
 
     Args:
-        vertices: of the path.
+        vertices: Vertices of the path.
         stations: [m] of these.
         front: station [m].
         people: state, desired speeds and routes.
         numbers: (n,).
         look: counts the looks.
-        latest: of the latest look: numbers, who was believed to yield, what was expected.
-        memory: by number: log odds; by number and look, in turn: at which look speeds [m/s] were
-            expected, and which, and (1) whether of somebody who yields.
+        latest: Latest of the latest look: numbers, who was believed to yield, what was expected.
+        memory: Log odds by number; and by number and look: the look at which speeds [m/s] were
+            expected, these speeds, and (1) whether those of a yielding person.
         yields: (n,) filled: who is believed to yield.
         law: half-width [m], share of a wish that is taken up in a step, s_des [m].
     """
@@ -225,7 +225,7 @@ def _update(
 
 @kernel
 def _is_open(odds: Array, numbers: NDArray[np.int64]) -> bool:
-    """Whether anybody's intent is open, and all are known."""
+    """Return whether anybody's intent is open, and all are known."""
     some = False
     for n in numbers:
         if n >= odds.size:
@@ -245,8 +245,8 @@ def walk_up(
     Args:
         halting: see :attr:`Beliefs.halting`.
         at: where in ``state`` the step before begins.
-        state: by person: x, y [m], v_x, v_y [m/s].
-        scene: of the prediction.
+        state: State by person: x, y [m], v_x, v_y [m/s].
+        scene: Scene of the prediction.
         position: (n, 2) [m] of everybody after the step.
         velocity: (n, 2) [m/s].
     """
@@ -269,7 +269,7 @@ def shifted(odds: float, off: float, slower: float, yields: bool) -> float:
     """The log odds that somebody yields, after a look.
 
     Args:
-        odds: before it.
+        odds: Odds before it.
         off: [m/s] by which the person is faster towards the way than was predicted.
         slower: [m/s] by which one who yields is slower than one who walks on.
         yields: whether that was predicted.

@@ -1,4 +1,4 @@
-"""Who comes onto the ego's way beyond the horizon, when, and where."""
+"""The people who come onto the ego's way beyond the horizon, with time and place."""
 
 import numpy as np
 
@@ -23,10 +23,10 @@ def fill_crossers(
     Where the way bends, each walks past the part that is nearest, as if it went on straight.
 
     Args:
-        vertices: of the path.
+        vertices: Vertices of the path.
         stations: [m] of these.
         front: the front bumper's station [m] at the horizon's end.
-        half_width: of the corridor [m].
+        half_width: Half width of the corridor [m].
         people: (n, 5) position [m], velocity [m/s], and for how long it is kept [s]; at the
             horizon's end.
         crossers: (n, 4).

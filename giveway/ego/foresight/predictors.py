@@ -1,4 +1,4 @@
-"""What predicts the crowd for an ego: the model that its controller believes in."""
+"""The predictor of the crowd for an ego: the model that its controller believes in."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from pedestrian_model import (
 def predictor_of(
     config: EgoRunConfig, controller: Controller, time_step: float, parameters: VciParameters
 ) -> CrowdPredictor | None:
-    """What predicts the crowd for a controller; None: it looks at the present only.
+    """Return the predictor for a controller, or None if it looks at the present only.
 
     VCI is compiled into the planner's race between manoeuvres, and so is constant velocity, as VCI
     of people whom nothing moves; any other model is asked step by step.
 
     Args:
-        config: of the ego.
+        config: Configuration of the ego.
         controller: that looks ahead.
-        time_step: of the co-simulation [s].
+        time_step: Time step of the co-simulation [s].
         parameters: bodies and limits that people are believed to have.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Who of a crowd can matter to an ego's plan."""
+"""The people of a crowd who can matter to an ego's plan."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ class Relevance:
     Args:
         waiting: the ego before its departure.
         span: that it looks ahead [s].
-        size: of its body and its corridor [m].
+        size: Size of its body and its corridor [m].
     """
 
     def __init__(self, waiting: WaitingEgo, span: float, size: float) -> None:
@@ -38,7 +38,7 @@ class Relevance:
             self._beyond += predictor.parameters.interaction_radius
 
     def of(self, crowd: Crowd, x: float, y: float, speed: float) -> Mask | None:
-        """(n,) who can matter to a plan from (x, y) [m] at ``speed`` [m/s]; None: everybody."""
+        """Return who matters to a plan from (x, y) [m] at ``speed`` [m/s], (n,); None if all do."""
         if len(crowd) <= PREDICT_ALL:
             return None
         reach = speed * self._span + self._beyond
@@ -59,9 +59,9 @@ class Nearby:
     Args:
         waiting: the ego before its departure.
         path: the ego's.
-        shape: of its body.
+        shape: Shape of its body.
         span: that it looks ahead [s].
-        half_width: of its corridor [m].
+        half_width: Half width of its corridor [m].
         time_step: until its brake acts [s].
     """
 
@@ -86,7 +86,7 @@ class Nearby:
         self._lunge = 0.0 if safety is None else safety.walking_acceleration
 
     def of(self, crowd: Crowd, front: float, speed: float) -> Mask:
-        """(n,) who can matter to a plan from the station ``front`` [m] on at ``speed`` [m/s]."""
+        """Return who matters to a plan from station ``front`` [m] on at ``speed`` [m/s], (n,)."""
         path, span = self._path, self._span
         reach = min(speed * span + self._gain, max(speed, self._wanted) * span)
         stop = self._time_step + speed / self._strongest
@@ -121,7 +121,7 @@ def come_near(
     """Fill ``mask`` (n,): who comes within ``margin`` [m] of a part of a path on a straight way.
 
     Args:
-        vertices: of the path; it goes on straight beyond its ends.
+        vertices: Vertices of the path; it goes on straight beyond its ends.
         stations: [m] of these.
         begin: station [m] where the part begins.
         end: where it ends, farther on.
@@ -153,7 +153,7 @@ def come_near(
 
 @inner
 def _farther(x: float, y: float, to_x: float, to_y: float, length: float, margin: float) -> bool:
-    """Whether a way stays farther than ``margin`` from the axis between 0 and ``length``."""
+    """Return whether a way stays farther than ``margin`` from the axis between 0 and ``length``."""
     if min(y, to_y) > margin or max(y, to_y) < -margin:
         return True
     if min(x, to_x) > length + margin or max(x, to_x) < -margin:

@@ -115,7 +115,7 @@ def conflicts_and_calm(
 
 
 class Outline(NamedTuple):
-    """What a full braking from a speed looks like, the same for everybody."""
+    """The outline of a full braking from a speed, the same for everybody."""
 
     speed: float  # [m/s] from which it is braked
     step: float  # [m] driven until the brake acts
@@ -156,20 +156,20 @@ def is_threat(
     alarm: Alarm,
     kerb: tuple[float, float, float] = _NOT_BEHIND_ONE,
 ) -> bool:
-    """Whether a pedestrian could get before the front while the ego brakes fully from here on.
+    """Return whether a pedestrian could get before the front of the fully braking ego.
 
     The safety layer would act then (controller/safety/layer.py knows exactly; this is its outline).
 
     Args:
         x: ahead of the front's middle [m].
-        y: to the left of it [m].
+        y: Distance to the left of it [m].
         w_x: the velocity along the ego's heading [m/s].
         w_y: across it [m/s].
-        o: of the braking.
-        half_width: of the ego [m].
+        o: Outline of the braking.
+        half_width: Half width of the ego [m].
         time_step: [s] until the brake acts.
         alarm: the limits.
-        kerb: of somebody on a sidewalk: the unit vector to it, and how far it is [m].
+        kerb: Kerb of somebody on a sidewalk: the unit vector to it, and how far it is [m].
     """
     to_x, to_y, depth = kerb
     last = o.stop * time_step

@@ -15,7 +15,7 @@ class Lanes:
     """Memory of a race: what each manoeuvre has led to so far.
 
     Args:
-        count: of manoeuvres.
+        count: Count of manoeuvres.
         horizon: N [steps].
         predicted: M [steps] of the crowd.
         people: n, at most.
@@ -50,11 +50,11 @@ class Lanes:
 
     @property
     def bad(self) -> int:
-        """A pedestrian whose predicted state is not finite; -1: none."""
+        """The pedestrian whose predicted state is not finite, or -1."""
         return int(self._bad[0])
 
     def line_up(self, heats: Heats) -> NDArray[np.int64]:
-        """(3, k + 1) who runs when; -1 behind them."""
+        """Return the candidate rows, one line per batch: (3, k + 1), padded with -1."""
         key = tuple(map(tuple, heats))
         entrants = self._lined_up.get(key)
         if entrants is None:
@@ -64,7 +64,7 @@ class Lanes:
         return entrants
 
     def positions(self, k: int, n: int) -> Array:
-        """(M, n, 2) [m] of the people under a manoeuvre that has finished."""
+        """Return the positions of people under a finished manoeuvre, (M, n, 2) [m]."""
         M = self._predicted
         size = M * n * 4
         return self._state[k * size : (k + 1) * size].reshape(M, n, 4)[:, :, :2]
@@ -75,5 +75,5 @@ class Lanes:
         return self._state[at : at + 4 * n]
 
     def verdict(self, best: int, clear: bool, tried: int) -> Verdict:
-        """How the race ended."""
+        """Return the result of the search."""
         return Verdict(best, float(self._sums[2, best]), clear, tried, self._prospects[best])

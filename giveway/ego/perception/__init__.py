@@ -1,4 +1,4 @@
-"""What an ego perceives: sensors, and what is in front on its path.
+"""Perception of an ego: sensors, and the people and vehicles in front on its path.
 
 Packages with a sensor of their own import these names from here.
 """

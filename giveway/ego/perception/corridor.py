@@ -1,4 +1,4 @@
-"""Who and what is in front of the ego: the corridor about its path, now and in the future.
+"""The corridor about the ego's path: people and vehicles in front, now and in the future.
 
 The paper speaks of "the closest pedestrian in front" without defining it. Our reading (an option):
 pedestrians whose body centre is ahead of the front bumper and at most ``half_width`` from the ego's
@@ -24,7 +24,7 @@ class Corridor:
         horizon: N [steps].
         time_step: [s].
         walking_speed_limit: [m/s] that no pedestrian exceeds.
-        body_length: of the ego [m].
+        body_length: Body length of the ego [m].
         straight: steps for which vehicles beside the path are taken to go straight on; None: N.
     """
 
@@ -51,7 +51,7 @@ class Corridor:
 
     @property
     def empty(self) -> Array:
-        """(N,) what :meth:`closest_predicted` gives when no pedestrian is ever in front."""
+        """The answer (N,) of :meth:`closest_predicted` when no pedestrian is ever in front."""
         return self._empty
 
     def closest_now(self, positions: Array, front: float) -> tuple[float, bool]:
@@ -104,7 +104,7 @@ class Corridor:
             own: the ego's own row.
             front: the front bumper's station now [m].
             speed: the ego's speed [m/s], held over the horizon.
-            beside: of the last rows, those whose lanes lead them past the path; or none.
+            beside: Marks of those of the last rows whose lanes lead them past the path; or none.
         """
         path, ahead = self.path, self._vehicles_ahead
         station, along = vehicles_in_front(
@@ -171,7 +171,7 @@ def fill_steady_poses(
     row: int,
     poses: Array,
 ) -> None:
-    """As :func:`fill_poses`, for a body that drives ``advance`` [m] in each step."""
+    """Fill as :func:`fill_poses` does, for a body that drives ``advance`` [m] in each step."""
     for i in range(poses.shape[0]):
         station = front + i * advance
         set_pose(vertices, stations, headings, station, speed, length, poses[i, row])
@@ -192,14 +192,14 @@ def fill_poses(
     """Fill ``poses[:, row]`` with a body's centre, heading and speed at steps 0 ... N-1.
 
     Args:
-        vertices: of the path, as ``stations`` and ``headings``.
+        vertices: Vertices of the path, as ``stations`` and ``headings``.
         stations: see ``vertices``.
         headings: see ``vertices``.
         front: the front bumper's station now [m].
         distance: (at least N,) [m] driven until each step.
         speeds: (at least N,) [m/s] at each step.
-        length: of the body [m].
-        row: to be filled.
+        length: Length of the body [m].
+        row: Row to be filled.
         poses: (N, m, 7).
     """
     for i in range(poses.shape[0]):
@@ -273,7 +273,7 @@ def closest_in_sight(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """As :func:`closest_in_front`, on the path within sight."""
+    """Search as :func:`closest_in_front` does, on the path within sight."""
     first, last = window(stations, front, max(BEHIND, reach))
     return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
 

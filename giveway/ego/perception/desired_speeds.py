@@ -1,4 +1,4 @@
-"""How fast people want to walk, learnt from how fast they are seen to walk.
+"""The speeds at which people want to walk, learnt from their speeds as seen.
 
 Others and the ego slow people down, hardly anything makes them faster than they like to be: the
 estimate rises to a faster pace soon, sinks to a slower one with patience, and whoever stands, or

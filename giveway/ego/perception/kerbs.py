@@ -42,9 +42,9 @@ class Kerbs:
 
     Args:
         path: the ego's.
-        width: of its body [m].
-        sidewalks: of the network, those that reach into some place.
-        crossings: of the network.
+        width: Width of its body [m].
+        sidewalks: Sidewalks of the network, those that reach into some place.
+        crossings: Crossings of the network.
         change_of: the next change of a traffic light by its id; None: nobody can tell.
 
     Attributes:
@@ -114,7 +114,7 @@ class Kerbs:
         return found
 
     def kept(self, people: Crowd, kerbs: Array, whom: NDArray[np.bool_] | None) -> Array:
-        """(n, 3) as ``kerbs``, but 0 for those who will soon be about to use a crossing.
+        """Return ``kerbs`` (n, 3) with 0 for those who will soon be about to use a crossing.
 
         They get beside, before or on it, or are there when it is about to be open.
 
@@ -122,7 +122,7 @@ class Kerbs:
         before the ego would make it brake hard.
 
         Args:
-            people: as they are seen; where they want to go next counts, and their velocity.
+            people: People as they are seen; where they want to go next counts, and their velocity.
             kerbs: (m, 3) from :meth:`of`.
             whom: (m,) of these are the people; None: all.
         """
@@ -163,7 +163,7 @@ def _pieces(ring: Array) -> Array:
 
 
 def _passed(line: shapely.LineString, edges: Array) -> tuple[NDArray[np.int64], Array]:
-    """Which edges a path passes, and at which stations [m]: twice where it comes by again."""
+    """Return the edges that a path passes, and the stations [m]; twice if it passes again."""
     lines = shapely.STRtree(shapely.linestrings(edges.reshape(-1, 2, 2)))
     middles = shapely.points((edges[:, :2] + edges[:, 2:]) / 2.0)
     which, where = [np.empty(0, dtype=np.int64)], [np.empty(0)]
@@ -186,7 +186,7 @@ def _near(crossings: Sequence[Crossing], line: shapely.LineString) -> list[Cross
 
 
 def _mouths(crossings: Sequence[Crossing]) -> Array:
-    """(k, 6) of each crossing a kerb [m], the unit vector over it, its length, half width [m]."""
+    """Return for each crossing a kerb, the unit vector over it, length, half width [m], (k, 6)."""
     rows = []
     for crossing in crossings:
         kerb, other = crossing.ends
@@ -198,7 +198,7 @@ def _mouths(crossings: Sequence[Crossing]) -> Array:
 def _closed_for(
     crossing: Crossing, states: Mapping[str, str], change: SignalChange | None
 ) -> float:
-    """For how long [s] people will have a red light before a crossing; 0: they have none."""
+    """Return how long [s] people will have a red light at a crossing, or 0."""
     state = states.get(crossing.system, "")
     if not state or is_open(state, crossing.link, zebra=crossing.zebra):
         return 0.0
@@ -325,7 +325,7 @@ def arrival(depth: float, pace: float) -> float:
 
 @inner
 def in_mouth(x: float, y: float, mouths: Array) -> bool:
-    """Whether somebody is beside, before or on a crossing."""
+    """Return whether somebody is beside, before or on a crossing."""
     for i in range(mouths.shape[0]):
         d_x, d_y = x - mouths[i, 0], y - mouths[i, 1]
         u = d_x * mouths[i, 2] + d_y * mouths[i, 3]

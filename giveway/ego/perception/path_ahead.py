@@ -18,7 +18,7 @@ class PathView:
         path: the ego's.
 
     Attributes:
-        station: of the front bumper [m]; the ego keeps it up to date.
+        station: Station of the front bumper [m]; the ego keeps it up to date.
     """
 
     def __init__(self, path: EgoPath) -> None:
@@ -35,7 +35,7 @@ class PathView:
         return at, np.concatenate([[0.0], np.cumsum(steps)])
 
     def remaining(self) -> float:
-        """How much of the path is left [m]."""
+        """Return the length of path that is left [m]."""
         return max(0.0, self._path.length - self.station)
 
     def poses(self, distances: Array) -> Array:
@@ -48,7 +48,7 @@ class PathView:
         return np.column_stack([x, y, heading])
 
     def curvature(self, distances: Array) -> Array:
-        """(k,) [1/m] at ``distances`` (k,) [m] ahead, the mean over 5 m; positive to the left.
+        """Return the curvature at ``distances`` (k,) [m] ahead, the mean over 5 m, (k,) [1/m].
 
         A polyline turns in its corners only: what counts is how the mean headings of the 2.5 m
         before and behind a place differ.

@@ -37,7 +37,7 @@ def sensor_of(config: EgoRunConfig, time_step: float) -> PluggedInSensor | None:
 
 
 def setup_of(config: EgoRunConfig, time_step: float) -> SensorSetup:
-    """What the sensor of one ego is made for.
+    """Return the setup that the sensor of one ego is made for.
 
     Args:
         config: Configuration of the ego.
@@ -86,7 +86,7 @@ class PluggedInSensor:
         self._known = np.zeros(0, dtype=np.bool_)  # by person id: it has been shown
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
-        """What the sensor perceives, checked.
+        """Return the checked percept of the sensor.
 
         Args:
             truth: World as it is; the sensor is shown a copy.

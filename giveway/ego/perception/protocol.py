@@ -1,4 +1,4 @@
-"""What a sensor is asked and what it answers, and what refines its answer."""
+"""The protocol of sensors, and of the refinements of their answers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Ids = NDArray[np.int64]
 
 
 class Percept(NamedTuple):
-    """What an ego perceives of the pedestrians; its rows are its own, not those of the truth.
+    """The pedestrians that an ego perceives; the rows are its own, not those of the truth.
 
     Attributes:
         people: Perceived pedestrians, n of them: where they are expected to be now.
@@ -37,7 +37,7 @@ class Percept(NamedTuple):
 
 @dataclass(slots=True)
 class OwnState:
-    """What an ego knows of itself; one object per ego is refilled in place.
+    """The ego's own state; one object per ego is refilled in place.
 
     Attributes:
         pose: Centre of the front bumper [m] and heading of the body [rad].
@@ -54,7 +54,7 @@ class OwnState:
 
 @dataclass(frozen=True)
 class SensorSetup:
-    """What a sensor is made for.
+    """The setup that a sensor is made for.
 
     Attributes:
         time_step: Time between two observations [s].

@@ -56,7 +56,7 @@ class Perception:
         self.exact = own is None and not self._chain
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
-        """What the ego perceives; the next call overwrites it.
+        """Return what the ego perceives; the next call overwrites it.
 
         Args:
             truth: World as it is; not changed. Arrays are shared where they are seen as they are.

@@ -1,4 +1,4 @@
-"""Who on a sidewalk sets out for the road more suddenly than an ego's safety layer assumes."""
+"""Sudden starts: people who leave a sidewalk faster than an ego's safety layer assumes."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ class SettingOut:
     """Compares people's velocities from step to step.
 
     Args:
-        limit: of their acceleration towards the kerb [m/s^2].
+        limit: Limit of their acceleration towards the kerb [m/s^2].
         time_step: [s].
     """
 
@@ -24,7 +24,7 @@ class SettingOut:
         self._velocity = self._kerbs = np.empty((0, 2))
 
     def beyond(self, numbers: Numbers, velocity: Array, kerbs: Array) -> Numbers:
-        """Who, on a sidewalk a step ago, has accelerated harder towards its kerb since then.
+        """Return who was on a sidewalk a step ago and has accelerated harder since then.
 
         Args:
             numbers: (n,) one for each person that it keeps.

@@ -1,4 +1,4 @@
-"""Where people are, from positions that are seen with a bounded error: bounds, and an estimate.
+"""The positions of people, estimated with bounds from positions of bounded error.
 
 Set-membership estimation (Schweppe, IEEE TAC 1968), with boxes: who was within a box is, a step
 later, within the box moved by the step's way and widened by what the way may differ; who is seen is

@@ -54,7 +54,7 @@ _ROOM = STRIDE - 2 * BLOCK  # candidates the buffer holds
 
 
 class Grid(NamedTuple):
-    """Where the cells lie."""
+    """The place and size of the cells."""
 
     x_0: float  # [m] the lower left corner
     y_0: float
