@@ -11,7 +11,7 @@ from controller.errors import (
     PlugInError,
     SolverSetupError,
 )
-from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials, Verdict
+from controller.foresight import Foresight, Manoeuvre, Prospect
 from controller.model import LongitudinalModel
 from controller.observation import (
     EgoState,
@@ -36,18 +36,13 @@ from controller.planning import (
     PlannerParameters,
     PlanningController,
     StyleName,
-    add_cost_of_others,
-    branch_off,
-    later_cost,
-    own_cost,
 )
 from controller.plug_ins.conformance import Finding, check_controller
 from controller.plug_ins.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
 from controller.plug_ins.plugged_in import PluggedIn
 from controller.protocol import Controller, Decision
 from controller.qp.least_squares import Outcome
-from controller.safety.layer import SafeForce, SafetyLayer, SafetyParameters, largest_safe_force
-from controller.safety.stopping import towards_kerb
+from controller.safety.layer import SafeForce, SafetyLayer, SafetyParameters
 from controller.safety.worst_motion import PeopleName, WorstMotion, worst_motion
 from controller.speed_controller import SpeedController
 
@@ -65,7 +60,6 @@ __all__ = [
     "Finding",
     "Force",
     "Foresight",
-    "Heats",
     "Limits",
     "LongitudinalModel",
     "Manoeuvre",
@@ -101,17 +95,9 @@ __all__ = [
     "SpeedReference",
     "StyleName",
     "Traffic",
-    "Trials",
     "TunedPid",
     "TunedPidParameters",
-    "Verdict",
     "WorstMotion",
-    "add_cost_of_others",
-    "branch_off",
     "check_controller",
-    "largest_safe_force",
-    "later_cost",
-    "own_cost",
-    "towards_kerb",
     "worst_motion",
 ]

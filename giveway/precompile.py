@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from llvmlite.binding import get_host_cpu_name
 
-from controller import LongitudinalModel, Mpc, MpcParameters, branch_off
+from controller import LongitudinalModel, Mpc, MpcParameters
+from controller.kernels import branch_off
 from giveway._kernels.cache import FOLDERS, kernel_cache
 from giveway.processes.child import die_with
 from giveway.processes.interpreter import command

@@ -1,7 +1,5 @@
 """The planning MPC: a search over manoeuvres, and a QP that smooths the one chosen."""
 
-from controller.planning.costs import add_cost_of_others, later_cost, own_cost
-from controller.planning.motions import branch_off
 from controller.planning.parameters import (
     STYLES,
     ManoeuvreParameters,
@@ -18,8 +16,4 @@ __all__ = [
     "PlannerParameters",
     "PlanningController",
     "StyleName",
-    "add_cost_of_others",
-    "branch_off",
-    "later_cost",
-    "own_cost",
 ]

@@ -5,13 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from controller import (
-    Decision,
-    LongitudinalModel,
-    SafetyLayer,
-    SafetyParameters,
-    largest_safe_force,
-)
+from controller import Decision, LongitudinalModel, SafetyLayer, SafetyParameters
+from controller.kernels import largest_safe_force
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.geometry.bodies import VehicleShape
@@ -97,7 +92,7 @@ def watch(
     people: tuple[Array, Array, Array, Array],
     memory: tuple[Any, ...],
 ) -> tuple[float, int]:
-    """Return the largest safe force on a path, as :func:`controller.largest_safe_force` does.
+    """Return the largest safe force on a path, see :func:`controller.kernels.largest_safe_force`.
 
     Args:
         path: Vertices, stations and headings of the ego's path.

@@ -17,8 +17,8 @@ from controller import (
     ParameterError,
     SafetyLayer,
     SafetyParameters,
-    towards_kerb,
 )
+from controller.kernels import towards_kerb
 from controller.safety.worst_motion import RECORDED
 
 DT, R, HALF = 0.05, 0.27, 1.0

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import add_cost_of_others, later_cost, own_cost
+from controller.kernels import add_cost_of_others, later_cost, own_cost
 from giveway.ego.foresight.assessment import View, assess_step, interval_of
 from giveway.ego.foresight.intent import walk_up
 from giveway.ego.foresight.later_crossings import fill_crossers

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from controller import Trials, branch_off
+from controller.kernels import Trials, branch_off
 
 _COMMON = 0.5  # [s] of a manoeuvre, after which one knows: a walker slows by 1 m/s in it
 _BRAKING = (-2.5, -5.0)  # [m/s^2] of the branches, beside going on

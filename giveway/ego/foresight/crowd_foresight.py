@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
+from controller import Manoeuvre, Prospect, WorstMotion
+from controller.kernels import Heats, Trials, Verdict
 from giveway.ego.foresight.assessment import View, assess
 from giveway.ego.foresight.branch_and_bound import run_race
 from giveway.ego.foresight.contingency import BRANCHES, hedged

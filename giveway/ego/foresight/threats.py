@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controller import towards_kerb
+from controller.kernels import towards_kerb
 from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import Array, inner

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Heats, Prospect, Verdict
+from controller import Prospect
+from controller.kernels import Heats, Verdict
 from giveway.geometry.kernel import Array
 
 Arrays = tuple[NDArray[Any], ...]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from controller import Trials, branch_off
+from controller.kernels import Trials, branch_off
 from giveway.ego.foresight.contingency import hedged
 from giveway.ego.foresight.crowd_foresight import plan_predictor
 from giveway.ego.foresight.intent import Beliefs

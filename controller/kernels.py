@@ -1,0 +1,22 @@
+"""Compiled parts of the controllers that giveway builds into kernels of its own, and their types.
+
+The types are those of the search over manoeuvres, which a compiled foresight does itself.
+"""
+
+from controller.foresight import Heats, Trials, Verdict
+from controller.planning.costs import add_cost_of_others, later_cost, own_cost
+from controller.planning.motions import branch_off
+from controller.safety.layer import largest_safe_force
+from controller.safety.stopping import towards_kerb
+
+__all__ = [
+    "Heats",
+    "Trials",
+    "Verdict",
+    "add_cost_of_others",
+    "branch_off",
+    "largest_safe_force",
+    "later_cost",
+    "own_cost",
+    "towards_kerb",
+]
