@@ -37,19 +37,19 @@ class Trials(NamedTuple):
         distance: (k, N + 1) [m] driven from now on.
         speed: (k, N + 1) [m/s].
         acceleration: (k, N + 1) [m/s^2].
-        handicap: (k,) [s] that each pays in addition to what it costs.
+        penalty: (k,) [s] that each pays in addition to what it costs.
     """
 
     distance: Array
     speed: Array
     acceleration: Array
-    handicap: Array
+    penalty: Array
 
     @classmethod
-    def empty(cls, count: int, horizon: int, handicap: Array) -> Self:
+    def empty(cls, count: int, horizon: int, penalty: Array) -> Self:
         """Room for ``count`` manoeuvres of N steps."""
         distance, speed, acceleration = np.zeros((3, count, horizon + 1))
-        return cls(distance, speed, acceleration, handicap)
+        return cls(distance, speed, acceleration, penalty)
 
     def of(self, k: int) -> tuple[Array, Array, Array]:
         """Distance, speed and acceleration of one of them."""
@@ -66,7 +66,7 @@ class Prospect(NamedTuple):
             people did that they can; inf: the manoeuvre's is calm.
         crossers: (n, 4) who will be on the ego's way beyond the horizon: how far ahead of its front
             [m] at the horizon's end, how fast along the way [m/s], from when [s] after that end,
-            and until when; 0: never. A race fills none.
+            and until when; 0: never. A compiled search fills none.
     """
 
     gap: Array
@@ -85,7 +85,7 @@ class Foresight(Protocol):
         """Remember the outcome of the latest manoeuvre as that of the best so far."""
 
 
-class Heats(NamedTuple):
+class Batches(NamedTuple):
     """The batches of a branch and bound: rows of candidates; the first of equals is the best.
 
     Attributes:
@@ -99,7 +99,7 @@ class Heats(NamedTuple):
     wanting: list[int]
 
 
-class Verdict(NamedTuple):
+class SearchResult(NamedTuple):
     """The result of a branch and bound over candidate manoeuvres.
 
     Attributes:
@@ -117,25 +117,25 @@ class Verdict(NamedTuple):
     prospect: Prospect
 
 
-class RacingForesight(Foresight, Protocol):
+class SearchingForesight(Foresight, Protocol):
     """A foresight that compares manoeuvres itself, and looks no farther than it takes."""
 
-    def race(
+    def cheapest(
         self,
         trials: Trials,
-        heats: Heats,
-        lead: bool,
+        batches: Batches,
+        probe: bool,
         allowed: Array,
         wanted: float,
         weights: tuple[Any, ...],
-    ) -> Verdict:
-        """The cheapest of some manoeuvres: the same as by asking for the prospect of each.
+    ) -> SearchResult:
+        """Return the cheapest manoeuvre, the same as by asking for the prospect of each.
 
         Args:
-            trials: all manoeuvres.
-            heats: which of them are compared.
-            lead: ask first whether anybody is in the way of the first one; if nobody is, it wins.
-            allowed: (N,) [m] that may be driven until steps 1 ... N.
-            wanted: the speed [m/s] that time is lost against.
-            weights: the numbers of the cost.
+            trials: Manoeuvres, compared or not.
+            batches: Rows of the manoeuvres that are compared.
+            probe: Whether the first one is evaluated alone first; it wins if nobody is in its way.
+            allowed: Distances [m] that may be driven until steps 1 ... N, (N,).
+            wanted: Speed [m/s] that time is lost against.
+            weights: Numbers of the cost.
         """

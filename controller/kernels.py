@@ -3,16 +3,16 @@
 The types are those of the search over manoeuvres, which a compiled foresight does itself.
 """
 
-from controller.foresight import Heats, Trials, Verdict
+from controller.foresight import Batches, SearchResult, Trials
 from controller.planning.costs import add_cost_of_others, later_cost, own_cost
 from controller.planning.motions import branch_off
 from controller.safety.layer import largest_safe_force
 from controller.safety.stopping import towards_kerb
 
 __all__ = [
-    "Heats",
+    "Batches",
+    "SearchResult",
     "Trials",
-    "Verdict",
     "add_cost_of_others",
     "branch_off",
     "largest_safe_force",

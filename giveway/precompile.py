@@ -45,7 +45,7 @@ _STREET: Final[dict[str, Any]] = {
     "controller": "pid-paper",
     "sumo": {"step_length": 1.0},  # between SUMO's steps our kernels move its cars
 }
-# In this order two processes hardly compile the same: the crowd, and the race, which predicts it,
+# In this order two processes hardly compile the same: the crowd, and the search, which predicts it,
 # in one; the vehicle, its plans, what is measured and the other controllers in the other.
 _WALKS: Final[tuple[dict[str, Any], ...]] = (
     {"time_limit": 0.2, "crowd": _PEOPLE, "ego": {"none": True}},

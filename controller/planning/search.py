@@ -13,7 +13,7 @@ from math import inf
 import numpy as np
 
 from controller._jit import Array, kernel
-from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials
+from controller.foresight import Batches, Foresight, Manoeuvre, Prospect, Trials
 from controller.model import LongitudinalModel
 from controller.planning.costs import cost, cost_of_blocking
 from controller.planning.motions import aim, approach, shift
@@ -63,11 +63,11 @@ class Search:
         ]
         self._last = Manoeuvre.empty(N)
         count = len(self._names)
-        handicap = np.full(count, m.persistence)
+        penalty = np.full(count, m.persistence)
         self._up_to_end, self._as_planned = count - 2, count - 1
-        handicap[self._as_planned] = 0.0
-        self._handicap, self._charged = handicap, False
-        self._trials = Trials.empty(count, N, handicap.copy())
+        penalty[self._as_planned] = 0.0
+        self._penalty, self._charged = penalty, False
+        self._trials = Trials.empty(count, N, penalty.copy())
         self._motions = (self._trials.distance, self._trials.speed, self._trials.acceleration)
         self._each = [self._trials.of(trial) for trial in range(count)]
         self.gap, self.conflicts, self.calm = np.full(N, inf), np.zeros(N), np.full(N, inf)
@@ -121,11 +121,11 @@ class Search:
         content = others
         if planned:
             content = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
-        heats = Heats(first, content, others if drive_on else [_DRIVE_ON, *others])
+        batches = Batches(first, content, others if drive_on else [_DRIVE_ON, *others])
         self._lay_out(speed, before, fastest, end if ends else inf)
         if to_clear > 0.0 or self._charged:
             self._charge(fastest, min(to_clear, float(allowed[-1])))
-        if self._compare(heats, drive_on, fastest, allowed, foresight):
+        if self._compare(batches, drive_on, fastest, allowed, foresight):
             self._drives_on = True
             return "clear"
         name = self._names[self._best]
@@ -147,17 +147,17 @@ class Search:
     def _charge(self, fastest: float, to_clear: float) -> None:
         """Let each trial pay for standing within ``to_clear`` [m], which are to be kept free."""
         self._charged = to_clear > 0.0
-        handicap = self._trials.handicap
-        handicap[:] = self._handicap
+        penalty = self._trials.penalty
+        penalty[:] = self._penalty
         if self._charged:
             distance, speeds, _ = self._motions
             wanted = max(fastest, self._slowest)
-            cost_of_blocking(distance, speeds, wanted, to_clear, self._time_step, handicap)
+            cost_of_blocking(distance, speeds, wanted, to_clear, self._time_step, penalty)
 
     def _compare(
         self,
-        heats: Heats,
-        lead: bool,
+        batches: Batches,
+        probe: bool,
         fastest: float,
         allowed: Array,
         foresight: Foresight | None,
@@ -165,41 +165,41 @@ class Search:
         """Find the cheapest of the trials, and keep it with what it would lead to.
 
         Args:
-            heats: which ones.
-            lead: ask first whether anybody is in the way of the first one.
-            fastest: [m/s] wanted where nobody is in the way.
-            allowed: (N,) [m] that may be driven.
+            batches: Rows of the trials that are compared.
+            probe: Whether the first one is evaluated alone first.
+            fastest: Speed [m/s] wanted where nobody is in the way.
+            allowed: Distances [m] that may be driven, (N,).
             foresight: Foresight of the crowd, or None.
 
         Returns:
             Whether it was asked for and nobody is; then that one is the best.
         """
         wanted = max(fastest, self._slowest)
-        race = getattr(foresight, "race", None)
-        if race is None:
-            return self._one_by_one(heats, lead, wanted, allowed, foresight)
-        verdict = race(self._trials, heats, lead, allowed, wanted, self.weights)
-        self.tried, self.missing = verdict.tried, verdict.missing
-        if verdict.best >= 0:
-            self._take(verdict.best)
-            self.gap, self.conflicts, self.calm, _ = verdict.prospect
-        return bool(verdict.clear)
+        cheapest = getattr(foresight, "cheapest", None)
+        if cheapest is None:
+            return self._one_by_one(batches, probe, wanted, allowed, foresight)
+        result = cheapest(self._trials, batches, probe, allowed, wanted, self.weights)
+        self.tried, self.missing = result.tried, result.missing
+        if result.best >= 0:
+            self._take(result.best)
+            self.gap, self.conflicts, self.calm, _ = result.prospect
+        return bool(result.clear)
 
     def _one_by_one(
         self,
-        heats: Heats,
-        lead: bool,
+        batches: Batches,
+        probe: bool,
         wanted: float,
         allowed: Array,
         foresight: Foresight | None,
     ) -> bool:
         """Judge each of the trials to its end, whatever model people are believed to walk by."""
         self.tried, self.missing, lowest = 0, inf, inf
-        for heat in (0, 1):
-            if heat == 0:
-                trials = heats.first
+        for batch in (0, 1):
+            if batch == 0:
+                trials = batches.first
             else:
-                trials = heats.content if self.missing <= 0.0 else heats.wanting
+                trials = batches.content if self.missing <= 0.0 else batches.wanting
             self.tried += len(trials)
             for trial in trials:
                 manoeuvre = self._trials.of(trial)
@@ -214,14 +214,14 @@ class Search:
                     self._time_step,
                     self.weights,
                 )
-                whole += self._trials.handicap[trial]
+                whole += self._trials.penalty[trial]
                 if whole < lowest:
                     lowest, self.missing = whole, missing
                     self._take(trial)
                     self.gap, self.conflicts, self.calm = (a.copy() for a in prospect[:3])
                     if foresight is not None:
                         foresight.prefer()
-                if lead and disturbed <= 0.0 and trial == heats.first[0]:
+                if probe and disturbed <= 0.0 and trial == batches.first[0]:
                     return True
         return False
 

@@ -1,4 +1,4 @@
-"""A race between manoeuvres in one compiled call: the cheapest so far is rolled out by a step.
+"""Branch and bound over manoeuvres in one compiled call: the cheapest so far is advanced a step.
 
 A manoeuvre's cost never falls along its way, nor by what comes beyond it, so that one whose cost so
 far exceeds another's whole cost need not be looked at any farther: branch and bound, best first.
@@ -24,7 +24,7 @@ _FINE = -1  # no pedestrian whose state is not finite
 
 
 @kernel
-def run_race(
+def branch_and_bound(
     path: Arrays,
     people: Arrays,
     law: tuple[Any, ...],
@@ -47,31 +47,31 @@ def run_race(
             station of its front bumper [m].
         sight: Numbers of a ``View`` and of an ``Alarm``.
         trials: Trials of ``Trials``.
-        memory: Memory of :class:`giveway.ego.foresight.workspace.Lanes`.
-        candidates: Rows to evaluate, see :meth:`giveway.ego.foresight.workspace.Lanes.line_up`;
+        memory: Memory of :class:`giveway.ego.foresight.workspace.Workspace`.
+        candidates: Rows to evaluate, see :meth:`giveway.ego.foresight.workspace.Workspace.rows_of`;
             and whether the first runs alone until somebody is in its way, and wins if nobody is.
         judged: Distances [m] that may be driven, (N,); speed [m/s] that time is lost against;
             weights of the cost.
     """
     (poses, row, front), (view, alarm) = ego, sight
-    (entrants, lead), (allowed, wanted, weights) = candidates, judged
+    (rows, probe), (allowed, wanted, weights) = candidates, judged
     path, people, trials, memory = borrowed((path, people, trials, memory))
-    poses, alarm, entrants, allowed = borrowed((poses, alarm, entrants, allowed))
-    distance, speed, acceleration, handicap = trials
+    poses, alarm, rows, allowed = borrowed((poses, alarm, rows, allowed))
+    distance, speed, acceleration, penalty = trials
     sums, steps, alike, _, ends, crossers, bad = memory[3:]
     M, time_step = poses.shape[0], View(*view).time_step
     ahead, scene, scratch = start(people)
     n = ahead.state.position.shape[0]
     bad[0] = _FINE
     steps[:] = -1
-    running = np.empty(entrants.shape[1], dtype=np.int64)
-    count, tried, best, first = 0, 0, -1, entrants[0, 0]
-    for heat in range(2):
+    running = np.empty(rows.shape[1], dtype=np.int64)
+    count, tried, best, first = 0, 0, -1, rows[0, 0]
+    for batch in range(2):
         row_of = 0
-        if heat == 1:
+        if batch == 1:
             running[0], count = best, 1
             row_of = 1 if sums[2, best] <= 0.0 else 2
-        for k in entrants[row_of]:
+        for k in rows[row_of]:
             if k < 0:
                 break
             enter(k, distance, speed, steps, alike)
@@ -82,20 +82,20 @@ def run_race(
             running[count] = k
             count += 1
             tried += 1
-        leads = lead and heat == 0
+        probing = probe and batch == 0
         while True:
             best, least = -1, np.inf
-            if leads:
+            if probing:
                 best = first
                 if time_step * sums[1, first] > 0.0:
-                    leads = False
+                    probing = False
                     continue
                 if steps[1, first] == M:
                     return first, True, tried
             else:
                 for e in range(count):
                     k = running[e]
-                    bound = sums[0, k] + time_step * sums[1, k] + handicap[k]
+                    bound = sums[0, k] + time_step * sums[1, k] + penalty[k]
                     if bound < least:
                         best, least = k, bound
                 if best < 0 or steps[1, best] == M:

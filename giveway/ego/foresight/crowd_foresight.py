@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import Manoeuvre, Prospect, WorstMotion
-from controller.kernels import Heats, Trials, Verdict
+from controller.kernels import Batches, SearchResult, Trials
 from giveway.ego.foresight.assessment import View, assess
-from giveway.ego.foresight.branch_and_bound import run_race
+from giveway.ego.foresight.branch_and_bound import branch_and_bound
 from giveway.ego.foresight.contingency import BRANCHES, hedged
 from giveway.ego.foresight.intent import Beliefs, Halting, Otherwise
 from giveway.ego.foresight.later_crossings import fill_crossers
 from giveway.ego.foresight.threats import Alarm
-from giveway.ego.foresight.workspace import Lanes
+from giveway.ego.foresight.workspace import Workspace
 from giveway.ego.perception.corridor import fill_poses
 from giveway.ego.perception.kerbs import NO_KERBS, kerb_lines
 from giveway.geometry.bodies import VehicleShape
@@ -129,11 +129,11 @@ class CrowdForesight:
         self._poses = np.empty((M, 0, 7))
         self._copied, self._preferred = False, False
         self._otherwise: Otherwise | None = None
-        self._winner = -1  # of the latest race, whose lanes hold it
-        self._lanes = self._aside = Lanes(0, N, M, 0)
+        self._winner = -1  # row of the best manoeuvre of the latest search, in the workspace
+        self._workspace = self._aside = Workspace(0, N, M, 0)
         # Only VCI is part of the compiled search: else manoeuvres are judged one by one.
         self._vci = predictor if isinstance(predictor, Predictor) else None
-        self.race = self._race if self._vci is not None else None
+        self.cheapest = self._cheapest if self._vci is not None else None
 
     def look(
         self,
@@ -182,7 +182,7 @@ class CrowdForesight:
         if self._winner < 0 and not self._preferred:
             return None
         people, row = self._pedestrians.position, self._winner
-        known = self._best if row < 0 else self._lanes.positions(row, len(people))
+        known = self._best if row < 0 else self._workspace.positions(row, len(people))
         known = np.concatenate([people[None], known])
         after = np.minimum(np.arange(1, len(self._distance)) / self._every, len(known) - 1.0)
         before = np.minimum(after.astype(np.int64), len(known) - 2)
@@ -212,81 +212,88 @@ class CrowdForesight:
         )
         return self._prospect._replace(crossers=crossers)
 
-    def _race(
+    def _cheapest(
         self,
         trials: Trials,
-        heats: Heats,
-        lead: bool,
+        batches: Batches,
+        probe: bool,
         allowed: Array,
         wanted: float,
         weights: tuple[Any, ...],
-    ) -> Verdict:
-        """The cheapest of some manoeuvres, see :class:`controller.foresight.RacingForesight`.
+    ) -> SearchResult:
+        """Return the cheapest manoeuvre, see :class:`controller.foresight.SearchingForesight`.
 
         Raises:
             DivergenceError: a predicted state is not finite.
         """
         if not self._copied:
             self._copy()
-        n, lanes = len(self._pedestrians), self._lanes
-        if lanes.people < n or lanes.count < len(trials.handicap):
-            lanes = self._lanes = Lanes(len(trials.handicap), len(allowed), len(self._poses), n)
-        raced, whom = (lanes, trials, heats), (self._pedestrians, self._halting)
+        n, workspace = len(self._pedestrians), self._workspace
+        if workspace.people < n or workspace.count < len(trials.penalty):
+            workspace = self._workspace = Workspace(
+                len(trials.penalty), len(allowed), len(self._poses), n
+            )
+        searched, whom = (workspace, trials, batches), (self._pedestrians, self._halting)
         judged, other = (allowed, wanted, weights), self._otherwise
         if other is not None:
-            best, clear, tried = self._hedge(*raced, judged, other)
+            best, clear, tried = self._hedge(*searched, judged, other)
         else:
-            best, clear, tried = self._run(*raced, lead, judged, *whom)
+            best, clear, tried = self._run(*searched, probe, judged, *whom)
         if best >= 0:
             self._winner = best
-            self._soon = lanes.soon(best, n)
-        return lanes.verdict(best, clear, tried)
+            self._soon = workspace.soon(best, n)
+        return workspace.result(best, clear, tried)
 
     def _run(
         self,
-        lanes: Lanes,
+        workspace: Workspace,
         trials: Trials,
-        heats: Heats,
-        lead: bool,
+        batches: Batches,
+        probe: bool,
         judged: _Judged,
         people: Crowd,
         halting: Halting,
     ) -> tuple[int, bool, int]:
-        """Run :func:`run_race` with people who do as one of the hypotheses says."""
+        """Run :func:`branch_and_bound` with people who do as one of the hypotheses says."""
         vci = self._vci
-        assert vci is not None  # else there is no race
-        ended: tuple[int, bool, int] = run_race(
+        assert vci is not None  # else there is no compiled search
+        ended: tuple[int, bool, int] = branch_and_bound(
             self._way,
             vci.arrays(people, self._surroundings),
             (*vci.law, halting),
             (self._poses, self._row, self._front),
             (self._view, self._alarm),
             tuple(trials),
-            lanes.arrays,
-            (lanes.line_up(heats), lead),
+            workspace.arrays,
+            (workspace.rows_of(batches), probe),
             judged,
         )
-        if lanes.bad >= 0:
-            raise vci.divergence(people, lanes.bad)
+        if workspace.bad >= 0:
+            raise vci.divergence(people, workspace.bad)
         return ended
 
     def _hedge(
-        self, lanes: Lanes, trials: Trials, heats: Heats, judged: _Judged, other: Otherwise
+        self,
+        workspace: Workspace,
+        trials: Trials,
+        batches: Batches,
+        judged: _Judged,
+        other: Otherwise,
     ) -> tuple[int, bool, int]:
         """Run as :meth:`_run` does, for the best trial where either hypothesis may be true."""
         time_step, n = View(*self._view).time_step, len(other.people)
-        if self._aside.people < n:  # what the trials lead to stays in their own lanes
-            self._aside = Lanes(BRANCHES, len(judged[0]), len(self._poses), n)
-        likelier, less = (lanes, self._pedestrians, self._halting), (self._aside, *other[:2])
+        if self._aside.people < n:  # what the trials lead to stays in a second workspace
+            self._aside = Workspace(BRANCHES, len(judged[0]), len(self._poses), n)
+        likelier, less = (workspace, self._pedestrians, self._halting), (self._aside, *other[:2])
 
         def cost(trials: Trials, rows: list[int], otherwise: bool) -> float:
             among, people, halting = less if otherwise else likelier
-            raced = among, trials, Heats(rows, [], [])
-            best, _, _ = self._run(*raced, False, judged, people, halting)
+            searched = among, trials, Batches(rows, [], [])
+            best, _, _ = self._run(*searched, False, judged, people, halting)
             own, others = among.arrays[3][:2, best]
-            return float(own + time_step * others + trials.handicap[best]) if best >= 0 else inf
+            return float(own + time_step * others + trials.penalty[best]) if best >= 0 else inf
 
-        rows = list(dict.fromkeys([*heats.first, *heats.content, *heats.wanting]))
+        rows = list(dict.fromkeys([*batches.first, *batches.content, *batches.wanting]))
         return hedged(cost, trials, rows, other.likely, judged[1], time_step), False, 1
 
     def prefer(self) -> None:

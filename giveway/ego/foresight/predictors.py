@@ -21,7 +21,7 @@ def predictor_of(
 ) -> CrowdPredictor | None:
     """Return the predictor for a controller, or None if it looks at the present only.
 
-    VCI is compiled into the planner's race between manoeuvres, and so is constant velocity, as VCI
+    VCI is compiled into the planner's search over manoeuvres, and so is constant velocity, as VCI
     of people whom nothing moves; any other model is asked step by step.
 
     Args:

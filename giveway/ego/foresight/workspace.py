@@ -1,4 +1,4 @@
-"""The lanes of a race between manoeuvres: what each has led to so far, reused from race to race."""
+"""The workspace of a branch and bound: what each manoeuvre has led to so far, reused."""
 
 from typing import Any
 
@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import Prospect
-from controller.kernels import Heats, Verdict
+from controller.kernels import Batches, SearchResult
 from giveway.geometry.kernel import Array
 
 Arrays = tuple[NDArray[Any], ...]
 
 
-class Lanes:
-    """Memory of a race: what each manoeuvre has led to so far.
+class Workspace:
+    """Arrays of a branch and bound, which hold what each manoeuvre has led to so far.
 
     Args:
         count: Count of manoeuvres.
@@ -34,7 +34,7 @@ class Lanes:
         self._sums = np.zeros((4, count))  # own and later cost, of others, missing distance, own
         self._steps = np.zeros((2, count), dtype=np.int64)  # predicted, assessed
         self._alike = np.zeros((count, count), dtype=np.int64)  # steps before they part
-        self._lined_up: dict[tuple[tuple[int, ...], ...], NDArray[np.int64]] = {}  # some hundred
+        self._rows: dict[tuple[tuple[int, ...], ...], NDArray[np.int64]] = {}  # some hundred
         self._bad = np.zeros(1, dtype=np.int64)
         self.arrays: Arrays = (
             self._state,
@@ -54,15 +54,15 @@ class Lanes:
         """The pedestrian whose predicted state is not finite, or -1."""
         return int(self._bad[0])
 
-    def line_up(self, heats: Heats) -> NDArray[np.int64]:
+    def rows_of(self, batches: Batches) -> NDArray[np.int64]:
         """Return the candidate rows, one line per batch: (3, k + 1), padded with -1."""
-        key = tuple(map(tuple, heats))
-        entrants = self._lined_up.get(key)
-        if entrants is None:
-            entrants = self._lined_up[key] = np.full((3, self.count + 1), -1)
-            for heat, trials in enumerate(heats):
-                entrants[heat, : len(trials)] = trials
-        return entrants
+        key = tuple(map(tuple, batches))
+        rows = self._rows.get(key)
+        if rows is None:
+            rows = self._rows[key] = np.full((3, self.count + 1), -1)
+            for batch, trials in enumerate(batches):
+                rows[batch, : len(trials)] = trials
+        return rows
 
     def positions(self, k: int, n: int) -> Array:
         """Return the positions of people under a finished manoeuvre, (M, n, 2) [m]."""
@@ -75,6 +75,6 @@ class Lanes:
         at = 4 * k * self._predicted * n
         return self._state[at : at + 4 * n]
 
-    def verdict(self, best: int, clear: bool, tried: int) -> Verdict:
+    def result(self, best: int, clear: bool, tried: int) -> SearchResult:
         """Return the result of the search."""
-        return Verdict(best, float(self._sums[2, best]), clear, tried, self._prospects[best])
+        return SearchResult(best, float(self._sums[2, best]), clear, tried, self._prospects[best])

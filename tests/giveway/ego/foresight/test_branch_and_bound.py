@@ -1,4 +1,4 @@
-"""A race between manoeuvres comes to what judging each of them to its end comes to, bit by bit."""
+"""Branch and bound finds what judging each manoeuvre to its end finds, bit by bit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ BEND = EgoPath.through([(0.0, 0.0), (25.0, 0.0), (40.0, 5.0), (60.0, 25.0)])
 
 
 class OneByOne:
-    """A foresight without a race."""
+    """A foresight that cannot search itself."""
 
     def __init__(self, foresight):
         self.prospect, self.prefer = foresight.prospect, foresight.prefer
@@ -68,11 +68,11 @@ def poses():
     return there
 
 
-def drive(seed, racing, steps=25):
+def drive(seed, searching, steps=25):
     """What the planner decides on, step by step, and what it expects of people."""
     parameters = PlannerParameters(horizon=N, manoeuvres=ManoeuvreParameters())
     planner, ahead, crowd = Planner(MODEL, parameters), foresight(), people(seed)
-    asked = ahead if racing else OneByOne(ahead)
+    asked = ahead if searching else OneByOne(ahead)
     walk = CrowdModel(SIM, DT)
     speed, force, front, told = 4.0, 0.0, FRONT, []
     for _ in range(steps):
@@ -89,10 +89,10 @@ def drive(seed, racing, steps=25):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_branch_and_bound_finds_the_same_manoeuvres_and_plans(seed):
-    raced, judged = drive(seed, racing=True), drive(seed, racing=False)
+    searched, judged = drive(seed, searching=True), drive(seed, searching=False)
     manoeuvres = {plan.manoeuvre for plan, *_ in judged}
     assert len(manoeuvres) > 1
-    for (plan, *found), (other, *expected) in zip(raced, judged, strict=True):
+    for (plan, *found), (other, *expected) in zip(searched, judged, strict=True):
         assert plan == other
         for one, two in zip(found, expected, strict=True):
             assert np.array_equal(one, two)
@@ -103,7 +103,7 @@ def test_who_has_lost_is_not_rolled_out_any_farther():
     planner = Planner(MODEL, PlannerParameters(horizon=N))
     ahead.look(crowd, OPEN_GROUND, poses(), 0, FRONT, 4.0)
     planner.plan(4.0, 0.0, 4.0, np.full(N, 30.0), ahead)
-    predicted = ahead._lanes.arrays[4][0]
+    predicted = ahead._workspace.arrays[4][0]
     assert predicted.max() == N // 2
     assert (predicted[predicted >= 0] < N // 4).any()
 
