@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -29,8 +30,11 @@ def child_of(parent: int) -> int | None:
 
 def written_in(journals: Path) -> int:
     """How much a running child has written so far [bytes]."""
-    files = [file for file in journals.rglob("*") if file.is_file()]
-    return sum(file.stat().st_size for file in files)
+    written = 0
+    for file in journals.rglob("*"):
+        with contextlib.suppress(FileNotFoundError):  # renamed by the child since it was listed
+            written += file.stat().st_size if file.is_file() else 0
+    return written
 
 
 @linux
