@@ -43,7 +43,7 @@ class Identification:
 
     Attributes:
         model: Model for the profile.
-        intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
+        intervals: Half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
         drive_limit: Largest drive force that the vehicle carries out [N]; None: not reached.
         brake_limit: Largest brake force that arrives [N]; None: not reached.
         largest_force: Largest force of the tests [N].

@@ -49,10 +49,10 @@ class Convergence:
     """The result of the self-check.
 
     Attributes:
-        step: the FMU's, as the run would take it [s].
+        step: The FMU's, as the run would take it [s].
         finer: Step [s] that it was compared with; None if the FMU can do no finer steps.
         problem: why ``step`` is too coarse, one clause; empty if it is not.
-        advised: the largest step that converges [s]; None: none was found, or none is needed.
+        advised: The largest step that converges [s]; None: none was found, or none is needed.
         traces: Traces of the manoeuvre from the start speed: with ``step`` and ``finer``, where
             they ran.
     """
@@ -76,7 +76,7 @@ def require_converged(
 
     Args:
         opener: makes the vehicle for a step of its FMU; how long a force is held stays the same.
-        fmu_step: the FMU's in the run [s].
+        fmu_step: The FMU's in the run [s].
         path: Path of the FMU, for messages.
         force: Force [N] that drives and brakes.
         start_speed: Start speed of the run [m/s]; the manoeuvre is driven from it and from rest.

@@ -111,7 +111,7 @@ def misfit(start: bytes, wanted: Platform) -> str:
     """Return why a library cannot be loaded on a platform, as a phrase; empty if it seems to fit.
 
     Args:
-        start: its first bytes, up to :data:`START`.
+        start: Its first bytes, up to :data:`START`.
         wanted: Platform on which it is to run.
     """
     try:

@@ -123,8 +123,8 @@ class Interface:
     """One of the kinds in which an FMU can run.
 
     Attributes:
-        identifier: the name of its binaries.
-        flags: its capability flags that are numbers or text or true, as the FMU writes them.
+        identifier: The name of its binaries.
+        flags: Its capability flags that are numbers or text or true, as the FMU writes them.
     """
 
     kind: Kind

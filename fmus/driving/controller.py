@@ -18,7 +18,7 @@ class ControllerFmu:
     is no lag, whether the FMU computes its outputs with its inputs or with its step.
 
     Args:
-        prepared: the controller.
+        prepared: The controller.
         folder: Folder of its unpacked FMU, which stays.
 
     Attributes:

@@ -31,7 +31,7 @@ class Guard:
             speed: Speed [m/s].
             acceleration: Acceleration [m/s2].
             jump: Difference between the position and the integrated speed [m].
-            at: time [s].
+            at: Time [s].
         """
         for role, value in (
             ("position", position),
@@ -59,10 +59,10 @@ class Guard:
         """Return the message that the position is not the integrated speed.
 
         Args:
-            moved: distance by the position [m].
-            way: distance by the integrated speed [m].
+            moved: Distance by the position [m].
+            way: Distance by the integrated speed [m].
             duration: Time over which they were driven [s]; 0: since the start.
-            at: time [s].
+            at: Time [s].
         """
         position, speed = self._names["position"], self._names["speed"]
         lately = f" in {duration:.4g} s" if duration else ""
@@ -79,7 +79,7 @@ class Guard:
             force: Force held over the step [N].
             speed: Speed [m/s].
             step: Step [s].
-            at: time [s].
+            at: Time [s].
         """
         if changed or (speed == 0.0 and force < DRIVEN) or abs(force) < DRIVEN:
             self._frozen = 0.0

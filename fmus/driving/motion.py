@@ -18,7 +18,7 @@ class Motion:
     """Position, speed and acceleration along the path, as the FMU gives them or as derived.
 
     Args:
-        prepared: the vehicle.
+        prepared: The vehicle.
 
     Attributes:
         position: Position [m].
@@ -80,7 +80,7 @@ class Motion:
 
         Args:
             outputs: Outputs of the FMU.
-            force: held over the step [N].
+            force: Held over the step [N].
             duration: Duration of the step [s].
             time: Time at its end [s].
 

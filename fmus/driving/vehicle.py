@@ -27,11 +27,11 @@ class VehicleFmu(Drivable):
     Its position, speed, acceleration and time are those of :class:`Vehicle`.
 
     Args:
-        path: the .fmu file.
+        path: The .fmu file.
         step_size: Step size of the controller [s].
         profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
-        start_values: further start values by variable name, set at every :meth:`start`.
+        start_values: Further start values by variable name, set at every :meth:`start`.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

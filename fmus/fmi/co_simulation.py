@@ -27,9 +27,9 @@ class CoSimulation(Instance):
     """An FMU that steps by itself.
 
     Args:
-        calls: the FMU's functions.
+        calls: The FMU's functions.
         tolerance: relative, told to the FMU; None: its own.
-        rewinds: save the state before every step, so that it can be done again in smaller ones.
+        rewinds: Save the state before every step, so that it can be done again in smaller ones.
     """
 
     def __init__(self, calls: Calls, tolerance: float | None, *, rewinds: bool) -> None:
@@ -131,7 +131,7 @@ class CoSimulation(Instance):
 
         Args:
             event_tick: does a step.
-            failed: the status without event mode; it stays if there is no instance with it.
+            failed: The status without event mode; it stays if there is no instance with it.
         """
         past, self._past = self._past, None
         component = self.calls.component

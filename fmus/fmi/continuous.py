@@ -26,8 +26,8 @@ class ContinuousSystem:
     """The right-hand side and the event indicators of an FMU in continuous-time mode.
 
     Attributes:
-        nx: number of continuous states.
-        nz: number of event indicators.
+        nx: Number of continuous states.
+        nz: Number of event indicators.
     """
 
     def __init__(self, calls: Calls) -> None:
@@ -84,8 +84,8 @@ class ContinuousSystem:
 
         Args:
             time: Time [s].
-            x: address of the states.
-            slope: address for the derivatives.
+            x: Address of the states.
+            slope: Address for the derivatives.
 
         Raises:
             UndefinedError: the FMU discards this point.

@@ -33,7 +33,7 @@ class ModelExchange(Instance):
     """An FMU that is integrated.
 
     Args:
-        calls: the FMU's functions.
+        calls: The FMU's functions.
         tolerance: relative, of the solver; None: :data:`TOLERANCE`.
         solver: None: CVode where it runs.
 

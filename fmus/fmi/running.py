@@ -20,14 +20,14 @@ class Instance(ABC):
     Whole numbers, booleans and elements of arrays are doubles in the buffers, too.
 
     Args:
-        calls: the FMU's functions.
+        calls: The FMU's functions.
         tolerance: relative, told to the FMU; None: its own.
 
     Attributes:
-        inputs: one double per input channel; the next :attr:`tick` hands them to the FMU.
-        outputs: one double per output channel, as of the last tick.
+        inputs: One double per input channel; the next :attr:`tick` hands them to the FMU.
+        outputs: One double per output channel, as of the last tick.
         tick: does one step and fills :attr:`outputs`.
-        messages: the FMU's last messages, and what was found wrong with it.
+        messages: The FMU's last messages, and what was found wrong with it.
     """
 
     def __init__(self, calls: Calls, tolerance: float | None) -> None:

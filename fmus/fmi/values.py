@@ -121,7 +121,7 @@ class Transfer:
     is then the C function. Otherwise values are copied, and whole arrays are set or got.
 
     Attributes:
-        view: one double per channel.
+        view: One double per channel.
         function, arguments: Call of every step, which returns a status.
     """
 

@@ -95,7 +95,7 @@ class Drivable(Vehicle):
     """A vehicle whose FMU has been prepared and whose steps can be counted.
 
     Attributes:
-        prepared: its FMU, with the wiring of the profile.
+        prepared: Its FMU, with the wiring of the profile.
     """
 
     prepared: Prepared

@@ -33,11 +33,11 @@ def open_vehicle(
     """A vehicle that runs an FMU.
 
     Args:
-        path: the .fmu file.
+        path: The .fmu file.
         step_size: Step size [s].
         profile: Roles of the FMU's variables; None: see :func:`fmus.prepare`.
-        start_values: further start values by variable name.
-        isolated: run it in a process of its own; None: yes, unless it is a shipped FMU.
+        start_values: Further start values by variable name.
+        isolated: Run it in a process of its own; None: yes, unless it is a shipped FMU.
 
     Raises:
         FmuError: see :class:`IsolatedVehicle`.

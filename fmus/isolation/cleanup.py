@@ -18,7 +18,7 @@ def scratch_of(folder: Path) -> Path:
     """The folder in which an FMU's processes work; it is also their TMPDIR.
 
     Args:
-        folder: the vehicle's temporary one.
+        folder: The vehicle's temporary one.
     """
     return folder / "scratch"
 

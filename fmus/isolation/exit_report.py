@@ -24,11 +24,11 @@ class ExitReport:
     """The way in which a process ended.
 
     Attributes:
-        code: its exit status, or minus the signal that killed it; None: unknown, because the
+        code: Its exit status, or minus the signal that killed it; None: unknown, because the
             watchdog is dead too.
         killed: giveway killed it.
         oom: meanwhile the system killed some process for lack of memory.
-        printed: the last line that it printed; empty without one.
+        printed: The last line that it printed; empty without one.
     """
 
     code: int | None

@@ -51,7 +51,7 @@ class HostedVehicle:
     """Adapter of a vehicle: START position [m], speed [m/s]; STEP force [N], grade [rad].
 
     Args:
-        prepared: the vehicle.
+        prepared: The vehicle.
         folder: Folder of its unpacked FMU.
     """
 
@@ -97,7 +97,7 @@ class HostedController:
     """Adapter of a controller: START nothing; STEP its inputs, in its own units.
 
     Args:
-        prepared: the controller.
+        prepared: The controller.
         folder: Folder of its unpacked FMU.
     """
 

@@ -19,7 +19,7 @@ class IsolatedController:
     Nothing is started before the first question. Every :meth:`restart` uses a new process.
 
     Args:
-        prepared: the controller.
+        prepared: The controller.
 
     Attributes:
         warnings: Warnings for the user.

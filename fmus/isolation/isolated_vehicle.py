@@ -24,10 +24,10 @@ class IsolatedVehicle(Vehicle):
     is reported there.
 
     Args:
-        path: the .fmu file.
+        path: The .fmu file.
         step_size: Step size [s].
         profile: Roles of the FMU's variables, and time-outs; None as for ``VehicleFmu``.
-        start_values: further start values by variable name.
+        start_values: Further start values by variable name.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

@@ -22,7 +22,7 @@ class LinuxHost:
 
     Args:
         path: Path of the FMU.
-        folder: temporary; the watchdog removes it when this process has ended.
+        folder: Temporary; the watchdog removes it when this process has ended.
 
     Attributes:
         sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.

@@ -21,7 +21,7 @@ class PortableHost:
 
     Args:
         path: Path of the FMU.
-        folder: temporary.
+        folder: Temporary.
 
     Attributes:
         sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.

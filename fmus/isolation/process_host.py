@@ -17,7 +17,7 @@ class ProcessHost(Protocol):
     """Starts and ends the processes of one FMU.
 
     Attributes:
-        sound: the FMU has not crashed, hung or broken its connection so far.
+        sound: The FMU has not crashed, hung or broken its connection so far.
     """
 
     sound: bool
@@ -33,7 +33,7 @@ class ProcessHost(Protocol):
         """End the FMU's process and everything that it has started; return how it ended.
 
         Args:
-            patience: time that it has to end by itself first [s].
+            patience: Time that it has to end by itself first [s].
         """
 
     def close(self) -> None:
@@ -45,7 +45,7 @@ def make_process_host(order: Order, folder: Path) -> ProcessHost:
 
     Args:
         order: FMU and adapter that run in its processes.
-        folder: temporary, for the host to write to; by the time that a process starts, the
+        folder: Temporary, for the host to write to; by the time that a process starts, the
             unpacked FMU is in the order's folder.
     """
     (folder / "order").write_bytes(pickle.dumps(order))

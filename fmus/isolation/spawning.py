@@ -34,11 +34,11 @@ def spawn(
 
     Args:
         path: Path of the FMU, named in errors.
-        module: name of the module in this package.
+        module: Name of the module in this package.
         arguments: Arguments of its ``main``: numbers and texts.
-        folder: the vehicle's temporary folder.
+        folder: The vehicle's temporary folder.
         output: File for the output of the interpreter.
-        pass_fds: file descriptors that it inherits.
+        pass_fds: File descriptors that it inherits.
 
     Raises:
         FmuCrashError: it cannot be started.

@@ -44,9 +44,9 @@ def main(control: int, parent: int, folder: str) -> None:
     """Serve the vehicle of process ``parent``.
 
     Args:
-        control: file descriptor of a socket of whole messages (SOCK_SEQPACKET).
-        parent: process id.
-        folder: the vehicle's temporary folder, with the pickled order in ``order``.
+        control: File descriptor of a socket of whole messages (SOCK_SEQPACKET).
+        parent: Process id.
+        folder: The vehicle's temporary folder, with the pickled order in ``order``.
     """
     # os.fork warns of threads (Python 3.12): those of libraries sleep, and no FMU has run here.
     warnings.simplefilter("ignore", DeprecationWarning)

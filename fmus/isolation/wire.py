@@ -47,7 +47,7 @@ class Client:
     """The vehicle's or controller's end of the connection.
 
     Args:
-        connection: a stream socket, owned by the client from now on.
+        connection: A stream socket, owned by the client from now on.
         asked: Number of values in each request.
         answered: Number of values in each reply.
     """

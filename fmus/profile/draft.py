@@ -33,10 +33,10 @@ class Entry:
     """A table of the profile, certain or open.
 
     Attributes:
-        table: such as ``inputs.force``.
+        table: Such as ``inputs.force``.
         why: Evidence for it.
         doubt: Open decision; empty if there is none.
-        sure: the table belongs to the draft, even if one of its lines is a question.
+        sure: The table belongs to the draft, even if one of its lines is a question.
     """
 
     table: str

@@ -19,9 +19,9 @@ class Role:
 
     Attributes:
         dimension: Dimension of its quantity.
-        names: whole names (without separators and fillers), the strongest evidence.
-        words: parts of a name that point at the role.
-        never: parts of a name that exclude the role, besides those of :data:`OTHER_PARTS`.
+        names: Whole names (without separators and fillers), the strongest evidence.
+        words: Parts of a name that point at the role.
+        never: Parts of a name that exclude the role, besides those of :data:`OTHER_PARTS`.
     """
 
     dimension: Dimension

@@ -76,11 +76,11 @@ def prepare(
     """Check and read an FMU, and fit a profile to it.
 
     Args:
-        path: the .fmu file.
+        path: The .fmu file.
         step_size: Step size of the controller [s].
         profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
-        start_values: further start values by variable name.
+        start_values: Further start values by variable name.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

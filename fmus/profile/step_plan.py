@@ -118,8 +118,8 @@ def between(
     """Position [m] and speed [m/s] within a step, from those at its ends (cubic Hermite).
 
     Args:
-        start: position and speed.
-        end: position and speed.
+        start: Position and speed.
+        end: Position and speed.
         duration: Duration of the step [s].
         share: Share of the step that has passed, 0 to 1.
     """

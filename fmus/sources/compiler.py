@@ -134,8 +134,8 @@ class Compiler:
 
     Attributes:
         name: Name for messages.
-        c: the command for C.
-        cpp: the command for C++.
+        c: The command for C.
+        cpp: The command for C++.
     """
 
     name: str

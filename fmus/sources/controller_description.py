@@ -236,10 +236,10 @@ def model_description(
 
     Args:
         version: Version of FMI.
-        parameters: the start values; in FMI 2 the horizon is also the number of inputs.
+        parameters: The start values; in FMI 2 the horizon is also the number of inputs.
         token: Token of :func:`token_of`.
         tool: Name of the tool that generated the FMU.
-        sources: the C files, in the order of compilation.
+        sources: The C files, in the order of compilation.
     """
     head = {
         "fmiVersion": version,

@@ -50,11 +50,11 @@ class Recipe:
     """The files that one of our models is made of.
 
     Attributes:
-        model: its name, also that of the libraries.
+        model: Its name, also that of the libraries.
         folder: Folder of the sources.
-        files: headers and C files but for the front end, in the order of the archive.
-        archives: the .fmu file per FMI version.
-        flags: more of them for the compiler.
+        files: Headers and C files but for the front end, in the order of the archive.
+        archives: The .fmu file per FMI version.
+        flags: More of them for the compiler.
     """
 
     model: str

@@ -37,7 +37,7 @@ class Sources:
     Attributes:
         identifier: Identifier of the model, the library's name.
         files: C and C++.
-        includes: folders.
+        includes: Folders.
         definitions: Definitions of the preprocessor, ``NAME`` or ``NAME=VALUE``.
     """
 
@@ -51,8 +51,8 @@ def compile_fmu(path: Path, out: Path) -> list[str]:
     """Write a copy of an FMU that has a binary for this platform, compiled from its sources.
 
     Args:
-        path: the FMU.
-        out: the file to write; one that is there is replaced once everything has been compiled.
+        path: The FMU.
+        out: The file to write; one that is there is replaced once everything has been compiled.
 
     Returns:
         the names of the binaries that are new or replaced.

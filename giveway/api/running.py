@@ -44,11 +44,11 @@ def run(
     The command line isolates it.
 
     Args:
-        config: the options that differ from the scenario's settings and the defaults, as a
+        config: The options that differ from the scenario's settings and the defaults, as a
             ``RunConfig`` or as a dictionary with the keys of the TOML file, by tables or dotted
             (``{"crowd.pedestrians": 30}``); or the name of a scenario, or a .toml file.
-        results: a folder to write tables, summary, manifest and pictures to; None writes nothing.
-        force: replace the results that are there.
+        results: A folder to write tables, summary, manifest and pictures to; None writes nothing.
+        force: Replace the results that are there.
         parquet: also write the tables as Parquet.
         pictures: also draw the state figure and the top view.
         watcher: Function that is called with a ``Progress`` at every control step.

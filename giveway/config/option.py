@@ -36,11 +36,11 @@ def option(
     """A documented option.
 
     Args:
-        default: its value where nobody sets it.
+        default: Its value where nobody sets it.
         unit: Unit of a quantity.
         description: what it means.
-        flag: its name on the command line, where the derived one is clumsy.
-        least: the smallest value above 0 that makes sense; a bound says whether 0 does.
+        flag: Its name on the command line, where the derived one is clumsy.
+        least: The smallest value above 0 that makes sense; a bound says whether 0 does.
         because: why other values than those within ``least`` and ``bounds`` make no sense.
         bounds: Bounds as of a pydantic field.
     """
@@ -58,8 +58,8 @@ def expectation(error: Any, field: FieldInfo) -> str:
     """Return what was expected instead of a refused value: range, unit, reason, meaning.
 
     Args:
-        error: one of those of a ``ValidationError``.
-        field: the option's.
+        error: One of those of a ``ValidationError``.
+        field: The option's.
     """
     extra = declared(field)
     expected = str(error["msg"]).removeprefix("Input ")

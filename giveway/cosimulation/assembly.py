@@ -105,8 +105,8 @@ def assemble(
     Args:
         checked: what is to be run.
         stack: closes SUMO and the FMUs.
-        outputs: folder for SUMO's own outputs; None drops them.
-        native_log: file for what SUMO prints; None: a temporary one.
+        outputs: Folder for SUMO's own outputs; None drops them.
+        native_log: File for what SUMO prints; None: a temporary one.
         goes_on: asked, with SUMO's clock, at each step until the first departure.
         driven: how the egos drove in a run that is to be gone through again without FMUs and
             controllers; None: these decide.

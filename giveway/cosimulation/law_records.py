@@ -38,8 +38,8 @@ def way_of(
 
     Args:
         ego_id: SUMO's.
-        path: the ego's.
-        departure: station [m] of the front bumper where the ego's position is 0.
+        path: The ego's.
+        departure: Station [m] of the front bumper where the ego's position is 0.
         length: Length of the ego's body [m].
         crossings: Crossings of the network.
         lights: Traffic lights on the path.
@@ -107,7 +107,7 @@ class LawRecords:
     """Records what the judgement needs, from the first ego on on whose way the law has a say.
 
     Args:
-        session: the running simulation.
+        session: The running simulation.
         recorder: gathers the rows.
 
     Attributes:

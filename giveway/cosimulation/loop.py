@@ -51,7 +51,7 @@ class Loop:
     Args:
         parts: what the run is made of, set up and at its initial state.
         recorder: gathers the rows.
-        follow: note how people and traffic get on, for :meth:`follow_up`.
+        follow: Note how people and traffic get on, for :meth:`follow_up`.
 
     Attributes:
         endings: Ending of each ego that has left the road or was on it when the run ended.

@@ -32,7 +32,7 @@ class Mirror:
     lanes at the speed they had.
 
     Args:
-        session: the running simulation.
+        session: The running simulation.
         time_step: Control step [s].
         substeps: Control steps per SUMO step.
         horizon: N, the most steps that any ego looks ahead.
@@ -41,8 +41,8 @@ class Mirror:
         background: SUMO's own vehicles at its latest instant.
         poses: (N, e + b, 7) vehicles over the prediction horizon; the first e rows of each step
             are the egos, which their corridors fill in; ``poses[0]`` is now.
-        vehicles: a view of ``poses[0]`` for the crowd's step.
-        others: the same without the egos.
+        vehicles: A view of ``poses[0]`` for the crowd's step.
+        others: The same without the egos.
     """
 
     background: BackgroundVehicles
@@ -208,7 +208,7 @@ def _relevant(
     """Indices of the vehicles that matter to a pedestrian or an ego within ``ahead`` [s].
 
     Args:
-        vehicles: the background vehicles.
+        vehicles: The background vehicles.
         pedestrians: (n, 2) [m].
         egos: x, y [m] and speed [m/s] of each.
         ahead: [s].

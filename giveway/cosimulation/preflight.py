@@ -23,12 +23,12 @@ class CheckedRun:
     """A run whose scenario, options and vehicles have been found to fit each other.
 
     Attributes:
-        config: the effective configuration.
+        config: The effective configuration.
         scenario: where its files are.
         files: what the scenario's own configuration says.
-        egos: the configuration of each ego.
+        egos: The configuration of each ego.
         zone: where the scenario's own pedestrians are ours.
-        time_step: the control step [s].
+        time_step: The control step [s].
     """
 
     config: RunConfig

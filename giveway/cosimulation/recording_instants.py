@@ -46,10 +46,10 @@ class Instants:
         """Record the pedestrians near an ego, and from time to time all of them.
 
         Args:
-            k: the instant.
+            k: The instant.
             roster: who is there.
             places: (e, 2) [m] the egos' front bumpers.
-            everybody: record all now.
+            everybody: Record all now.
         """
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :], roster.traits)
@@ -64,7 +64,7 @@ class Instants:
         """Record the background vehicles near an ego, and from time to time all of them.
 
         Args:
-            k: the instant.
+            k: The instant.
             time: Time [s] of the instant on SUMO's clock.
             background: Background vehicles.
             places: Stations of the egos, as for :meth:`crowd`.

@@ -22,10 +22,10 @@ class Contents:
     """The contents of one or several files.
 
     Attributes:
-        elements: the number of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
+        elements: The number of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
             network of walkingarea, crossing, sidewalk; those in comments are counted, too.
-        network: the attributes of the ``<net>`` element.
-        remote: addresses that are referred to.
+        network: The attributes of the ``<net>`` element.
+        remote: Addresses that are referred to.
     """
 
     elements: Counter[str] = field(default_factory=Counter)

@@ -24,7 +24,7 @@ def examine_scenario(scenario: str | Path, patience: float = PATIENCE) -> list[F
     """Check a scenario as a run would use it; SUMO tries it in a process of its own.
 
     Args:
-        scenario: a bundled name, a folder or a .sumocfg.
+        scenario: A bundled name, a folder or a .sumocfg.
         patience: Time limit [s] for loading it.
     """
     try:

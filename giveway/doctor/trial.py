@@ -31,7 +31,7 @@ def try_in_sumo(
     """Let SUMO load the scenario and run it for a moment, in a process of its own.
 
     Args:
-        config_file: the .sumocfg.
+        config_file: The .sumocfg.
         patience: Time limit [s].
         people: True if the scenario has people of its own: find their encounters.
         net_file: Network of the scenario; None: search no place for people of the user's own.

@@ -43,8 +43,8 @@ class Painter:
     """Paints the frames of a run.
 
     Args:
-        run: the results folder.
-        sampled: its trajectories.
+        run: The results folder.
+        sampled: Its trajectories.
         size: Size of a frame, width and height [pixels].
     """
 

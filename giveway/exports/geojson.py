@@ -24,7 +24,7 @@ class Projection:
     """The projection between a network's coordinates and longitude and latitude.
 
     Args:
-        net: the network.
+        net: The network.
 
     Raises:
         InstallationError: pyproj is not installed.

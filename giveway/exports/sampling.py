@@ -79,7 +79,7 @@ def sampled(run: RunFolder, step: float | None = None) -> Sampled:
     """Return the trajectories of a run at equal times.
 
     Args:
-        run: the results folder.
+        run: The results folder.
         step: Step between two instants [s], whole milliseconds as SUMO's; None: the control step.
 
     Raises:

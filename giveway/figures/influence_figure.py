@@ -41,9 +41,9 @@ def influence_figure(
     Figure 2 of Yang & Özgüner 2019, seen from the vehicle: x ahead of its centre, y to its left.
 
     Args:
-        influence: the model; its vehicle's centre must be at (0, 0), its heading 0.
+        influence: The model; its vehicle's centre must be at (0, 0), its heading 0.
         speeds: Speeds of the vehicle [m/s].
-        shape: the vehicle's rectangle; the paper's 5 m x 2 m if left out.
+        shape: The vehicle's rectangle; the paper's 5 m x 2 m if left out.
         title: Title of the whole figure.
 
     Raises:

@@ -89,8 +89,8 @@ def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
 
     Args:
         figure: Figure to write.
-        path: its suffix says the format: .png, .svg or .pdf.
-        dpi: pixels per inch of a PNG.
+        path: Its suffix says the format: .png, .svg or .pdf.
+        dpi: Pixels per inch of a PNG.
 
     Raises:
         OSError: the file cannot be written.

@@ -29,8 +29,8 @@ def look(
     Args:
         vertices: Points (k + 1, 2) [m] of the path.
         stations: Stations (k + 1,) [m] of its vertices.
-        first: the first segment that counts.
-        last: the last segment that counts.
+        first: The first segment that counts.
+        last: The last segment that counts.
         x: Coordinate x of the point [m].
         y: Coordinate y of the point [m].
         front: Station [m] of the ego's front.

@@ -29,7 +29,7 @@ def vehicle_contacts(
 
     Args:
         ego: Track of the ego, T instants.
-        background: the background vehicles.
+        background: The background vehicles.
         shape: Rectangle of the ego.
     """
     if not len(background.time) or not len(ego.time):

@@ -39,7 +39,7 @@ class Found:
         socket: Socket that it is for.
         name: Name as the user wrote it.
         reference: ``module:attribute``.
-        distribution: the installed distribution that has it.
+        distribution: The installed distribution that has it.
         version: Version of the distribution.
         sha256: SHA-256 of all files of its package.
     """

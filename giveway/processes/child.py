@@ -97,7 +97,7 @@ def die_with(supervisor: int) -> None:
     keeps Python's lock; Windows has no such relation between processes.
 
     Args:
-        supervisor: its process id; 0 means that there is none.
+        supervisor: Its process id; 0 means that there is none.
     """
     global _supervised
     _supervised = bool(supervisor)

@@ -69,7 +69,7 @@ class Heartbeat:
             this process's own.
 
     Attributes:
-        slots: the memory, one int64 each. The loop stores into ``slots[PHASE]`` and
+        slots: The memory, one int64 each. The loop stores into ``slots[PHASE]`` and
             ``slots[INSTANT]`` itself, which saves it five calls a step.
         instant: Buffer of step and time, before they are stored.
 

@@ -44,7 +44,7 @@ class Verdict:
     """The end of a supervised process.
 
     Attributes:
-        code: the exit code to pass on: the child's own, or a shell's 128 + n for a signal;
+        code: The exit code to pass on: the child's own, or a shell's 128 + n for a signal;
             never 0 after a crash.
         crashed: it ended without having told so; what it had recorded is in the journal.
         interrupted: it ended by a signal that the user sent us, or after one.
@@ -145,9 +145,9 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
     passed on; a second one 10 s later kills the child. Should we be killed, so is the child.
 
     Args:
-        command: program and arguments; the child finds the journal in ``GIVEWAY_JOURNAL``.
-        journal: an existing folder for the journal.
-        hang_limit: wall clock [s] without a sign of life from the loop after which the child is
+        command: Program and arguments; the child finds the journal in ``GIVEWAY_JOURNAL``.
+        journal: An existing folder for the journal.
+        hang_limit: Wall clock [s] without a sign of life from the loop after which the child is
             killed; infinity waits for ever.
 
     Raises:
@@ -208,7 +208,7 @@ class _Relay(SignalHandler):
     """Passes the signals by which a user ends a run to the child, which decides when to end.
 
     Attributes:
-        first: the first such signal.
+        first: The first such signal.
         killed: True if a second one had to kill the child.
     """
 

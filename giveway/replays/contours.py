@@ -30,8 +30,8 @@ def influence_contours(
     The force is that on a standing pedestrian, as ``giveway plot influence`` draws it.
 
     Args:
-        shape: length and width [m].
-        fastest: the highest speed [m/s] that is needed.
+        shape: Length and width [m].
+        fastest: The highest speed [m/s] that is needed.
         parameters: Parameters of the pedestrian model.
 
     Returns:

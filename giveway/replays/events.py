@@ -40,7 +40,7 @@ def why(reason: str, status: str) -> dict[str, Any]:
 
     Args:
         reason: Reason as written in ``ego.csv``.
-        status: the solver's.
+        status: The solver's.
     """
     infeasible = reason.startswith("infeasible") or status.startswith("infeasible")
     text = _SAFETY.get(reason) or _INFEASIBLE.get(status) or _REASONS.get(reason)
@@ -67,7 +67,7 @@ def events(rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig) -> list[
     """The events on the time line, in the order of time.
 
     Args:
-        rows: one ego's of ``ego.csv``.
+        rows: One ego's of ``ego.csv``.
         met: this ego's rows of ``pedestrians.csv``.
         config: Configuration of this ego.
 

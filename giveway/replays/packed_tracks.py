@@ -34,7 +34,7 @@ class Frame:
     """The frame of the page's coordinates: integers in it stay small.
 
     Attributes:
-        x, y: its origin in the network [m].
+        x, y: Its origin in the network [m].
         time: (T,) [s] all instants; samples name theirs by its index.
     """
 

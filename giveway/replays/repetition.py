@@ -18,7 +18,7 @@ class Predicted:
     """The outcome of repeating a run.
 
     Attributes:
-        file: the predictions, until the context is left; None if there are none.
+        file: The predictions, until the context is left; None if there are none.
         remark: Reason why there are none.
     """
 
@@ -34,7 +34,7 @@ def predicted_again(folder: Path) -> Iterator[Predicted]:
     was interrupted ends earlier than its repetition does.
 
     Args:
-        folder: the results of ``giveway run``.
+        folder: The results of ``giveway run``.
     """
     with tempfile.TemporaryDirectory(prefix="giveway-replay-", ignore_cleanup_errors=True) as place:
         again = Path(place) / "run"

@@ -55,9 +55,9 @@ def write_replay(
     """Make the page that plays the run in ``folder``.
 
     Args:
-        folder: the results of ``giveway run``, completed or not.
-        target: the HTML file to write; replaced if it exists.
-        predictions: a ``predictions.csv`` of the same run; None: the folder's own, if it has one.
+        folder: The results of ``giveway run``, completed or not.
+        target: The HTML file to write; replaced if it exists.
+        predictions: A ``predictions.csv`` of the same run; None: the folder's own, if it has one.
         remark: Reason for missing predictions, for the page.
 
     Returns:
@@ -74,7 +74,7 @@ def write_beside(contents: Sequence[dict[str, Any]], target: Path) -> Path:
 
     Args:
         contents: Content of each page, as :func:`content_of` gives it.
-        target: the HTML file to write; replaced if it exists.
+        target: The HTML file to write; replaced if it exists.
 
     Returns:
         ``target``.

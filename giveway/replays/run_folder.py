@@ -36,12 +36,12 @@ class RunFolder:
 
     Attributes:
         config: Configuration of the run.
-        egos: the configuration of each ego that has rows, by its id, in the order of departure.
-        ego, trajectories, pedestrians: the tables.
+        egos: The configuration of each ego that has rows, by its id, in the order of departure.
+        ego, trajectories, pedestrians: The tables.
         summary: Content of ``summary.json``: the first ego's row, all rows under ``egos`` if
             several.
         manifest: Content of ``manifest.json``.
-        scene: the road and the bodies.
+        scene: The road and the bodies.
         signals: Recorded states of the lights with their times; empty if no light is recorded.
         time: (T,) [s] every instant that has a row.
     """

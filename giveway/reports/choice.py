@@ -21,14 +21,14 @@ class ExamplePair:
 
     Attributes:
         reason: Reason to show it: median (with a stop), best, worst or stop-and-wait.
-        context: label of the other factors' levels; empty without any.
-        ego: its id; empty where a run has none.
-        treatment: label of the compared level.
-        baseline: label of the level that is subtracted.
+        context: Label of the other factors' levels; empty without any.
+        ego: Its id; empty where a run has none.
+        treatment: Label of the compared level.
+        baseline: Label of the level that is subtracted.
         seed: Seed of both runs.
-        run: id of the treatment's run.
-        run_baseline: id of the baseline's run.
-        metric: name of the one by which the pair was chosen.
+        run: Id of the treatment's run.
+        run_baseline: Id of the baseline's run.
+        metric: Name of the one by which the pair was chosen.
         difference: treatment minus baseline, in the metric's unit.
     """
 
@@ -52,8 +52,8 @@ class WorstRun:
         reason: Heading of its table.
         run: Id of the run; of a pair, the treatment's.
         partner: Id of the baseline's run of a pair; else empty.
-        cell: label of its levels.
-        ego: id of the ego; may be empty.
+        cell: Label of its levels.
+        ego: Id of the ego; may be empty.
         metric: Name of the metric that is extreme.
         value: Value of the metric, or the pair's difference.
         unit: Unit of the value.
@@ -80,7 +80,7 @@ def worst_runs(study: StudyFolder, count: int = 5) -> list[WorstRun]:
     """The runs that are extreme in safety or time, at most ``count`` for each reason.
 
     Args:
-        study: its runs, design and definition are read.
+        study: Its runs, design and definition are read.
         count: Count per reason.
     """
     return [
@@ -100,7 +100,7 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
     car stops, as far as there are any: in the others hardly anything happens. A pair is shown once.
 
     Args:
-        study: its runs, design and definition are read.
+        study: Its runs, design and definition are read.
         count: Largest number of them.
     """
     pairs = paired(study)

@@ -26,7 +26,7 @@ class Drive:
     """The drive of one ego in a run.
 
     Attributes:
-        ego: its id.
+        ego: Its id.
         track: Track of the run.
         safe_distance: d_safe [m].
         buffer_distance: d_buffer [m].

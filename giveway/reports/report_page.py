@@ -48,7 +48,7 @@ class Drawn:
         picture: Picture with its caption; its name is its id in the page.
         title: Title above it; may be empty.
         svg: Picture as SVG for the page.
-        links: label and address of replays that belong to it.
+        links: Label and address of replays that belong to it.
     """
 
     picture: Picture
@@ -94,13 +94,13 @@ def write_report(
     Both replace existing ones.
 
     Args:
-        study: its folder, read.
-        examples: pairs of which speed, gap and force are drawn, at most; None: as befits the
+        study: Its folder, read.
+        examples: Pairs of which speed, gap and force are drawn, at most; None: as befits the
             study's size.
         worst: runs that are listed, for each reason; None: as befits the study's size.
         drives: gives those of a run, by its id, for the examples; None: there are no examples.
         replay: gives the page that plays a run, by its id, or None; None: no links.
-        target: the file to write; None: ``report.html`` in the study's folder. Figures go to
+        target: The file to write; None: ``report.html`` in the study's folder. Figures go to
             the folder ``figures`` of the study.
 
     Returns:

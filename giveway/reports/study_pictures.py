@@ -57,9 +57,9 @@ class Picture:
     Attributes:
         name: Name of its files, without suffix; unique within the study.
         section: Section of the report that it belongs to.
-        caption: one or two sentences beneath it.
-        alt: description for readers who do not see the picture.
-        figure: the picture.
+        caption: One or two sentences beneath it.
+        alt: Description for readers who do not see the picture.
+        figure: The picture.
     """
 
     name: str

@@ -26,11 +26,11 @@ def write_report_of(
     """Write figures, replays and ``report.html`` into the study's folder.
 
     Args:
-        study: its folder.
-        replays: make the runs that the report shows once more, for pages that play them and
+        study: Its folder.
+        replays: Make the runs that the report shows once more, for pages that play them and
             for the examples of speed and gap; those that a former report has made are kept.
         tell: takes one line at each step.
-        trusted: code, as module:Class, that the study may have imported.
+        trusted: Code, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: the disk is full.

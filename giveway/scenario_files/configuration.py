@@ -36,18 +36,18 @@ class ScenarioFiles:
     """The contents of a .sumocfg; all paths are absolute.
 
     Attributes:
-        config_file: the .sumocfg.
-        options: each option that it sets, under the name that SUMO's help lists, to its value.
-        net_file: the road network.
+        config_file: The .sumocfg.
+        options: Each option that it sets, under the name that SUMO's help lists, to its value.
+        net_file: The road network.
         route_files, additional_files: Files in the order in which SUMO
             reads them.
-        begin: first instant [s].
-        end: last instant [s]; None if the scenario ends when nobody is left.
+        begin: First instant [s].
+        end: Last instant [s]; None if the scenario ends when nobody is left.
         step_length: SUMO's step [s].
         seed: Seed that the scenario names; None: SUMO's own.
         random: True if SUMO is to seed itself with the clock.
-        pedestrian_model: one of SUMO's, ``striping`` where none is named.
-        outputs: each output option set, to the file or files as the scenario names them.
+        pedestrian_model: One of SUMO's, ``striping`` where none is named.
+        outputs: Each output option set, to the file or files as the scenario names them.
     """
 
     config_file: Path

@@ -50,8 +50,8 @@ class Copies:
     outputs placed in the results folder and the names of other files made absolute.
 
     Args:
-        config_file: the .sumocfg, to which the names in vehicles' parameters are relative.
-        scratch: folder for the copies; they are needed as long as the simulation runs.
+        config_file: The .sumocfg, to which the names in vehicles' parameters are relative.
+        scratch: Folder for the copies; they are needed as long as the simulation runs.
         outputs: Folder of the outputs.
 
     Attributes:

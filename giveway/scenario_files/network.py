@@ -22,7 +22,7 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
     """Call a handler with the attributes of each element that has one.
 
     Args:
-        net_file: the network.
+        net_file: The network.
         handlers: Handlers by the elements' names; a missing attribute may raise ``KeyError``, a bad
             value ``ValueError``.
 

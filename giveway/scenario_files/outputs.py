@@ -18,7 +18,7 @@ class OutputFolder:
     """The folder in which every file that SUMO would write gets a name of its own.
 
     Args:
-        folder: the folder; created with the first file.
+        folder: The folder; created with the first file.
     """
 
     def __init__(self, folder: Path) -> None:

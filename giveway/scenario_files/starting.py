@@ -23,14 +23,14 @@ class StartOptions:
 
     Attributes:
         seed: SUMO's seed; None keeps the scenario's, or SUMO's own where it names none.
-        fallback_seed: the seed of a scenario that wants a random one, where neither ``seed`` nor
+        fallback_seed: The seed of a scenario that wants a random one, where neither ``seed`` nor
             the scenario names one.
         step_length: SUMO's step [s]; None keeps the scenario's.
         interact: True if persons or vehicles are to be moved; if not, SUMO simulates the scenario
             exactly as without giveway.
-        outputs: the folder for SUMO's output files; None drops them.
-        fcd, tripinfo, summary, ssm: write this output even if the scenario does not.
-        extra: further options as on SUMO's command line; they win over ours.
+        outputs: The folder for SUMO's output files; None drops them.
+        fcd, tripinfo, summary, ssm: Write this output even if the scenario does not.
+        extra: Further options as on SUMO's command line; they win over ours.
     """
 
     seed: int | None = None
@@ -52,10 +52,10 @@ class Start:
     Attributes:
         command: Command for ``libsumo.start``.
         remarks: Differences from the scenario, one line each, for the user.
-        outputs: each output file as the scenario has it, to the file written instead.
-        copies: each rewritten copy of a scenario file, to its original.
-        read: the scenario's network, routes and additional files, with all that they include.
-        seed: the seed in effect.
+        outputs: Each output file as the scenario has it, to the file written instead.
+        copies: Each rewritten copy of a scenario file, to its original.
+        read: The scenario's network, routes and additional files, with all that they include.
+        seed: The seed in effect.
     """
 
     command: tuple[str, ...]
@@ -82,10 +82,10 @@ def prepare_start(
     """Prepare a start of SUMO that runs ``scenario`` without touching its folder.
 
     Args:
-        scenario: the scenario's files.
+        scenario: The scenario's files.
         options: Settings for SUMO.
-        scratch: a folder of the caller's own, to be kept until SUMO is closed.
-        types: an additional file's text, read before the scenario's own: the types of whatever
+        scratch: A folder of the caller's own, to be kept until SUMO is closed.
+        types: An additional file's text, read before the scenario's own: the types of whatever
             is going to be added.
 
     Raises:

@@ -18,7 +18,7 @@ class Context:
 
     Attributes:
         levels: Level of each other factor; empty if one factor alone is varied.
-        cells: number of the cell, by the label of the compared level.
+        cells: Number of the cell, by the label of the compared level.
     """
 
     levels: dict[str, Level]

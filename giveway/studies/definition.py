@@ -119,7 +119,7 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
 
     Args:
         text: Text of the file.
-        origin: name of the file, for messages.
+        origin: Name of the file, for messages.
         folder: Folder to which relative paths refer.
 
     Raises:
@@ -136,7 +136,7 @@ def make_definition(values: dict[str, Any], origin: str) -> StudyDefinition:
     """The study in a dictionary with the keys of a study's TOML file.
 
     Args:
-        values: file names in it are relative to the working folder.
+        values: File names in it are relative to the working folder.
         origin: Origin of it, for messages.
 
     Raises:

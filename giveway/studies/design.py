@@ -52,7 +52,7 @@ class Level:
 
     Attributes:
         label: Name of it in tables and pictures.
-        value: the option's value; the label, for a level that has a name.
+        value: The option's value; the label, for a level that has a name.
         settings: Options that it sets.
     """
 
@@ -66,8 +66,8 @@ class Factor:
     """Something that the study varies.
 
     Attributes:
-        name: an option, as ``crowd.pedestrians``, or a name of the user's.
-        levels: its values.
+        name: An option, as ``crowd.pedestrians``, or a name of the user's.
+        levels: Its values.
         unit: Unit of an option; None without a unit.
     """
 
@@ -130,8 +130,8 @@ def design(definition: StudyDefinition, origin: str) -> Design:
     """The cells of a study: every combination, or those that it lists.
 
     Args:
-        definition: the study.
-        origin: its file, for messages.
+        definition: The study.
+        origin: Its file, for messages.
 
     Raises:
         ConfigError: a factor or a cell cannot be used.

@@ -74,7 +74,7 @@ def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str
     The content of the files matters, their place does not.
 
     Args:
-        config: the effective configuration; its seed is left out.
+        config: The effective configuration; its seed is left out.
         inputs: Hashes of the input files from :func:`input_hashes`.
         software: Identity of the code from :func:`software_identity`.
     """

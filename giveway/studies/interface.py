@@ -24,10 +24,10 @@ def study(
     """Run a study: many paired runs in processes of their own, compared.
 
     Args:
-        definition: a dictionary with the keys of a study's TOML file (``factors`` at least; 20
+        definition: A dictionary with the keys of a study's TOML file (``factors`` at least; 20
             seeds unless ``replications`` says more), a bundled study's name, or a .toml file.
-        out: its folder; None: ``results/study_NAME``.
-        jobs: worker processes; None: one per processor.
+        out: Its folder; None: ``results/study_NAME``.
+        jobs: Worker processes; None: one per processor.
         resume: True to continue the study in the folder.
         force: True to replace the content of the folder.
         watcher: called after every run.

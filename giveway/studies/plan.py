@@ -23,8 +23,8 @@ class PlannedCell:
     """A cell whose scenario and settings have been found to fit.
 
     Attributes:
-        cell: levels and number.
-        config: the effective configuration of its first run.
+        cell: Levels and number.
+        config: The effective configuration of its first run.
         inputs: SHA-256 of each file that its runs read.
         digest: Hash of everything that its runs have in common.
     """
@@ -94,8 +94,8 @@ def plan(definition: StudyDefinition, origin: str) -> Plan:
     """Look at every cell's scenario and vehicles, and give every run its key.
 
     Args:
-        definition: the study.
-        origin: its file, for messages.
+        definition: The study.
+        origin: Its file, for messages.
 
     Raises:
         GivewayError: a cell cannot be run; the message names it.

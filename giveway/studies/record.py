@@ -27,11 +27,11 @@ class Task:
     """One run to be made, in any process, on any machine.
 
     Attributes:
-        run: id in its study, such as ``c2-s17`` (cell 2, seed 17).
-        key: content hash of everything that can change a number of it.
-        config: the effective configuration as JSON.
+        run: Id in its study, such as ``c2-s17`` (cell 2, seed 17).
+        key: Content hash of everything that can change a number of it.
+        config: The effective configuration as JSON.
         inputs: SHA-256 of each input file, by its name; a worker on another machine checks them.
-        software: identity of the code that planned it; a worker must be the same.
+        software: Identity of the code that planned it; a worker must be the same.
     """
 
     run: str
@@ -51,12 +51,12 @@ class Computing:
     """The execution of a run, which may differ between two equal studies.
 
     Attributes:
-        seconds: wall clock of the run, set-up and metrics included.
+        seconds: Wall clock of the run, set-up and metrics included.
         attempts: Number of attempts.
-        worker: host and process id.
-        memory: resident set of the worker after the run [MB].
+        worker: Host and process id.
+        memory: Resident set of the worker after the run [MB].
         control_median: Median time of one control step, prediction and controller [ms].
-        control_max: the longest one [ms]; the run's first step is left out of both.
+        control_max: The longest one [ms]; the run's first step is left out of both.
         twin: Part of the seconds spent on following the run and on its twin; nan without a twin.
     """
 
@@ -74,12 +74,12 @@ class RunRecord:
     """One finished run.
 
     Attributes:
-        run: id in its study.
-        key: content hash of everything that can change a number of it.
+        run: Id in its study.
+        key: Content hash of everything that can change a number of it.
         ending: Ending as in the summary: completed, time limit, ..., failed, crashed.
-        rows: one per ego: the columns of ``summary.csv``; one row of the run's head without egos.
+        rows: One per ego: the columns of ``summary.csv``; one row of the run's head without egos.
         remarks: notes on what is unusual about the run.
-        failure: one line: why it failed or crashed, and where; empty if it did not.
+        failure: One line: why it failed or crashed, and where; empty if it did not.
         computing: Execution of the run.
         columns: Columns of the rows that metrics of other packages have added.
     """

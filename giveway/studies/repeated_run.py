@@ -30,9 +30,9 @@ def checked_run(
 
     Args:
         study: Study that has the run.
-        run_id: such as ``c2-s17``.
-        predictions: the predicted positions are to be kept, for the replay.
-        trusted: code, as module:Class, that the study may have imported.
+        run_id: Such as ``c2-s17``.
+        predictions: The predicted positions are to be kept, for the replay.
+        trusted: Code, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: there is no such run, or its scenario is no longer there.
@@ -60,14 +60,14 @@ def rerun(
     """Make one run of a study once more, in this process.
 
     Args:
-        study: its folder.
-        run_id: such as ``c2-s17``.
-        out: folder for its results; None writes nothing.
-        checked: the run, where it is known already; None: as :func:`checked_run` gives it.
-        force: replace the results that are there.
+        study: Its folder.
+        run_id: Such as ``c2-s17``.
+        out: Folder for its results; None writes nothing.
+        checked: The run, where it is known already; None: as :func:`checked_run` gives it.
+        force: Replace the results that are there.
         pictures: also draw the state figure and the top view.
         watcher: told of every control step.
-        journal: an empty folder for the rows, to be read should this process die.
+        journal: An empty folder for the rows, to be read should this process die.
 
     Raises:
         OtherNumbersError: its numbers are not the study's.

@@ -73,8 +73,8 @@ def run_study(
 
     Args:
         definition: Definition of the study.
-        origin: its file, for messages.
-        out: its folder.
+        origin: Its file, for messages.
+        out: Its folder.
         options: Options of computing it.
         watcher: told of every finished run.
         tell: takes one line for each kept file that is broken, and when the runs of another

@@ -16,7 +16,7 @@ class StudyOptions:
         cluster: Address of a Dask scheduler instead, or "local:N".
         resume: True to continue the study in the folder.
         force: True to replace the content of the folder.
-        retry_failed: make failed runs again.
+        retry_failed: Make failed runs again.
         hang_limit: [s] without progress after which a run's worker is killed.
         run_limit: [s] of wall clock that one run may take; None: no limit.
 

@@ -19,7 +19,7 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
 
     Args:
         variations: like ``controller_options.conflict_weight=0.3,0.6``.
-        settings: a TOML file with the other settings of every run; None: giveway's own.
+        settings: A TOML file with the other settings of every run; None: giveway's own.
 
     Raises:
         ConfigError: a variation is none, or the file cannot be used.

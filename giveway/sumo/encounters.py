@@ -20,7 +20,7 @@ class Encounters:
     """Counts, once a second, the pedestrians within 10 m of a moving road vehicle.
 
     Args:
-        sumo: the libsumo module, while a simulation runs.
+        sumo: The libsumo module, while a simulation runs.
     """
 
     def __init__(self, sumo: Any) -> None:

@@ -26,7 +26,7 @@ def direct(sumo: Any, domain: str, function: str) -> Any:
     """Return ``sumo.domain.function`` without its wrapper, which doubles the time of a call.
 
     Args:
-        sumo: the libsumo module.
+        sumo: The libsumo module.
         domain: Domain of SUMO's interface, such as ``vehicle``.
         function: Function of the domain.
     """

@@ -27,8 +27,8 @@ def look(config_file: Path, people: bool = False) -> dict[str, Any]:
     """Load the scenario as a run would and let it run for a moment.
 
     Args:
-        config_file: the .sumocfg.
-        people: let it run for longer, and count which vehicles meet people on foot.
+        config_file: The .sumocfg.
+        people: Let it run for longer, and count which vehicles meet people on foot.
     """
     sumo = import_libsumo()
     began = perf_counter()

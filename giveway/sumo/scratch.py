@@ -16,7 +16,7 @@ class KeptFolder:
     """A folder that one session after the other uses, and leaves empty.
 
     Attributes:
-        name: its path, as that of a ``tempfile.TemporaryDirectory``.
+        name: Its path, as that of a ``tempfile.TemporaryDirectory``.
     """
 
     name: str

@@ -50,11 +50,11 @@ class SumoSession:
     """A running simulation; one per process at a time, closed in every case.
 
     Args:
-        scenario: the scenario's files; nothing is written beside them.
+        scenario: The scenario's files; nothing is written beside them.
         options: Options for SUMO's start.
         types: Text of an additional file with the types of all that is going to be added.
         native_log: File for the output of SUMO; None: a temporary one.
-        careful: let a child read the scenario first if a crash of this process costs everything.
+        careful: Let a child read the scenario first if a crash of this process costs everything.
 
     Raises:
         ScenarioError: an input file is missing or cannot be read.
@@ -171,7 +171,7 @@ class SumoSession:
         """The scenario's own persons, to take over and hand back.
 
         Args:
-            added: ids of persons that giveway added, which are never touched.
+            added: Ids of persons that giveway added, which are never touched.
         """
         return ScenarioPersons(self._sumo, added)
 

@@ -44,7 +44,7 @@ class SignalPlans:
     """The plans of a running simulation's traffic lights, each read when it is first asked for.
 
     Args:
-        sumo: the libsumo module, with a loaded simulation.
+        sumo: The libsumo module, with a loaded simulation.
     """
 
     def __init__(self, sumo: Any) -> None:

@@ -43,7 +43,7 @@ def all_types(egos: Mapping[str, VehicleShape]) -> str:
     """The additional file with every type that giveway may give to a vehicle or person.
 
     Args:
-        egos: the type's id of each inserted ego, to its body.
+        egos: The type's id of each inserted ego, to its body.
     """
     # timeToTeleport: an ego that waits for a crowd is not stuck. speedDev=0: a drawn speed factor
     # would shift SUMO's random stream and with it the background traffic.

@@ -53,9 +53,9 @@ class SumoVehicles:
     """The access to SUMO's vehicles: reading them, and acting on them.
 
     Args:
-        sumo: the libsumo module.
+        sumo: The libsumo module.
         call: Function that calls a function of it and explains its failure.
-        lanes: the network's lanes.
+        lanes: The network's lanes.
     """
 
     def __init__(self, sumo: Any, call: Callable[..., Any], lanes: Lanes) -> None:

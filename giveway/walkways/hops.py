@@ -45,7 +45,7 @@ class Pieces:
 
     Args:
         survey: Contents of the network file.
-        graph: its walkingareas and crossings.
+        graph: Its walkingareas and crossings.
     """
 
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:

@@ -48,7 +48,7 @@ class Interior:
     """The inside of one walkingarea and its corners that jut in.
 
     Args:
-        area: the walkingarea.
+        area: The walkingarea.
     """
 
     def __init__(self, area: PedLane) -> None:
@@ -92,9 +92,9 @@ class Interior:
         """The gates (k, 7) of the route from one gate (1, 7) to another, without those two.
 
         Args:
-            start: the gate where people come from.
-            end: the gate where they go.
-            side: the route is for people on or near this side [-1, 1].
+            start: The gate where people come from.
+            end: The gate where they go.
+            side: The route is for people on or near this side [-1, 1].
         """
         if not len(self._corners):
             return NO_GATES

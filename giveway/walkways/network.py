@@ -30,7 +30,7 @@ class WalkNetwork:
     """The places where people can walk in a SUMO network.
 
     Attributes:
-        signals: the traffic-light links that govern crossings.
+        signals: The traffic-light links that govern crossings.
         has_walkingareas: True if the network has any.
         has_sidewalks: True if there is a lane that pedestrians may use and cars may not.
         boundary: x_min, y_min, x_max, y_max [m] of the network.
@@ -71,13 +71,13 @@ class WalkNetwork:
         """The route from where a person is to the end of its walk; never fails.
 
         Args:
-            edges: the remaining edges, the present one first; for somebody in a walkingarea or on
+            edges: The remaining edges, the present one first; for somebody in a walkingarea or on
                 a crossing the first is the edge that was left, as SUMO lists them.
             position: Place of the person [m].
             lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
-            arrival_position: the end of the walk on the last edge, in SUMO's metres; a negative
+            arrival_position: The end of the walk on the last edge, in SUMO's metres; a negative
                 one counts from the edge's end.
-            offset_side: the side of the walkway, from -1 (right end of its usable width) to 1
+            offset_side: The side of the walkway, from -1 (right end of its usable width) to 1
                 (left), that decides round which corners the person goes; None takes the side on
                 which the person is now.
         """

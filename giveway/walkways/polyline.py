@@ -26,7 +26,7 @@ class Polyline:
 
     Attributes:
         points: Points (k, 2) [m], k >= 2.
-        stations: arc length [m] at each point, from 0; plain numbers, since every person asks.
+        stations: Arc length [m] at each point, from 0; plain numbers, since every person asks.
     """
 
     points: Array

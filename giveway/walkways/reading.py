@@ -66,11 +66,11 @@ class Survey:
     """The part of a network file that concerns walking; edges are listed by id.
 
     Attributes:
-        edges: normal edges with a lane for pedestrians.
-        walkingareas, crossings: the lane of each, whose shape is an area or a centre line.
-        links: connections with a walkingarea or crossing at one end.
-        junctions: the outline (k, 2) [m] of each junction, as far as it has one.
-        has_sidewalks: a lane that pedestrians may use and cars may not.
+        edges: Normal edges with a lane for pedestrians.
+        walkingareas, crossings: The lane of each, whose shape is an area or a centre line.
+        links: Connections with a walkingarea or crossing at one end.
+        junctions: The outline (k, 2) [m] of each junction, as far as it has one.
+        has_sidewalks: A lane that pedestrians may use and cars may not.
         boundary: x_min, y_min, x_max, y_max [m] as the file says; None where it does not.
     """
 

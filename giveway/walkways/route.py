@@ -27,7 +27,7 @@ class WalkRoute:
         passages: Unit direction (k, 3) in which a way-point's line is crossed, and how far [m]
             beside the way-point a crossing of the line still counts as a passage.
         signals: Index (k,) into ``WalkNetwork.signals`` where people wait for green, else -1.
-        gaps: number of missing connections and the route goes straight on.
+        gaps: Number of missing connections and the route goes straight on.
     """
 
     waypoints: Array
@@ -50,7 +50,7 @@ class Router:
 
     Args:
         survey: Contents of the network file.
-        graph: its walkingareas and crossings.
+        graph: Its walkingareas and crossings.
     """
 
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:

@@ -48,7 +48,7 @@ def fit_apart(drives: Sequence[Drive], delay: float) -> Sides:
 
     Args:
         drives: Drives in which both forces occur, one after the other.
-        delay: dead time of both together [s]; a side has it, or none.
+        delay: Dead time of both together [s]; a side has it, or none.
     """
     return Sides(_fit_side(drives, 1.0, delay), _fit_side(drives, -1.0, delay))
 

@@ -58,11 +58,11 @@ def prepare_controller(
     """Check and read a controller FMU, and fit a profile to it.
 
     Args:
-        path: the .fmu file.
+        path: The .fmu file.
         step_size: Step size between two questions [s].
         setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
         profile: Roles of the FMU's variables; None: a draft from names, if it leaves no doubt.
-        start_values: further start values by variable name.
+        start_values: Further start values by variable name.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

@@ -30,7 +30,7 @@ class Named(NamedTuple):
 
     Attributes:
         socket: that it is for.
-        whose: the ego's id, "the crowd", or "the run".
+        whose: The ego's id, "the crowd", or "the run".
         name: Name as the user wrote it; perhaps a path to an FMU.
         options: Options as the user has set them.
         ego: whose controller it is; None: it is none.
@@ -96,7 +96,7 @@ def code_hashes(
 
     Args:
         config: Configuration of the run.
-        sockets: those that count.
+        sockets: Those that count.
 
     Raises:
         ControlError: one is not installed.

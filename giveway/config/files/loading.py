@@ -26,7 +26,7 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
 
     Args:
         layers: Layers of settings.
-        trusted: controllers that may be imported though only a results folder names them.
+        trusted: Controllers that may be imported though only a results folder names them.
 
     Raises:
         ConfigError: a key or value cannot be used.

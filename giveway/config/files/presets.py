@@ -25,7 +25,7 @@ def parameters_of(preset: str) -> VciParameters:
     """The parameters of a preset: one that is built in, or a preset file.
 
     Args:
-        preset: a name (SIM, TABLE2) or the path of a ``.toml`` file.
+        preset: A name (SIM, TABLE2) or the path of a ``.toml`` file.
 
     Raises:
         ConfigError: naming the preset or the file, the key, the value and what was expected.
@@ -47,9 +47,9 @@ def require_steady_preset(preset: str, time_step: float, where: str) -> None:
     """Make sure that people do not tremble by the parameters of ``preset``.
 
     Args:
-        preset: a name or a file, as for :func:`parameters_of`.
+        preset: A name or a file, as for :func:`parameters_of`.
         time_step: Time step of the crowd [s].
-        where: the option that names the preset; the message begins with it.
+        where: The option that names the preset; the message begins with it.
 
     Raises:
         ConfigError: they do, or the preset cannot be read.
@@ -100,7 +100,7 @@ def preset_text(name: str, parameters: VciParameters, provenance: Mapping[str, A
 
     Args:
         name: Name of the preset.
-        parameters: all of them are written, to the last digit.
+        parameters: All of them are written, to the last digit.
         provenance: what was fitted, on what, how well: text, numbers, lists of them.
     """
     document = tomlkit.document()

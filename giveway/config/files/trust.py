@@ -28,7 +28,7 @@ def require_trusted(
     Args:
         config: what the layers amount to.
         layers: Layers of settings.
-        trusted: code that the user has named apart from the layers.
+        trusted: Code that the user has named apart from the layers.
 
     Raises:
         ConfigError: one does, or names code that has changed since.

@@ -68,12 +68,12 @@ def twin_of(
     """Go through a run again; SUMO must be free.
 
     Args:
-        checked: the run.
+        checked: The run.
         followed: how its people got on.
         driven: how its egos drove.
         heartbeat: Function that tells another process that this one is alive.
         interrupt: Flag that is read between two steps.
-        native_log: file for what SUMO prints; None: a temporary one.
+        native_log: File for what SUMO prints; None: a temporary one.
 
     Returns:
         The twin; None: it was interrupted.

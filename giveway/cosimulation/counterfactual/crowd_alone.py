@@ -13,10 +13,10 @@ class CrowdAlone:
     """Steps a crowd without vehicles, as far as it is asked to.
 
     Args:
-        roster: the crowd, and who is in it.
-        walking: its step.
+        roster: The crowd, and who is in it.
+        walking: Its step.
         walks: notes how people get on.
-        step: the control step that has been reached.
+        step: The control step that has been reached.
         flows: Flows of people who come in, or None if nobody does.
         every: Control steps between two arrivals: those of one SUMO step.
     """
@@ -47,7 +47,7 @@ class CrowdAlone:
         """Step until none of those named is on the way any more, or up to a control step.
 
         Args:
-            last: the control step.
+            last: The control step.
             names: Ids of the people who count.
             heartbeat: Function that tells another process that this one is alive.
         """

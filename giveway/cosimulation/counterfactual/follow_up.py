@@ -41,13 +41,13 @@ class Followed:
         parts: Parts of the run, at its initial state.
 
     Attributes:
-        beginning: the people that giveway adds, at first and later.
+        beginning: The people that giveway adds, at first and later.
         secluded: nobody but they and the egos is ever there.
         walks: how they get on.
         traffic: what the background vehicles do.
-        arrival: the control step at which the run itself ended.
+        arrival: The control step at which the run itself ended.
         time_loss: [s] of the background vehicles up to then.
-        last: the control step at which following ends at the latest.
+        last: The control step at which following ends at the latest.
     """
 
     def __init__(self, parts: Parts) -> None:
@@ -89,9 +89,9 @@ class Followed:
 
         Args:
             completed: whether every ego has arrived.
-            walking: the crowd's step.
-            mirror: the run's.
-            step: the last one of the run.
+            walking: The crowd's step.
+            mirror: The run's.
+            step: The last one of the run.
             start: SUMO's clock [s] at step 0.
             heartbeat: Function that tells another process that this one is alive.
             interrupt: Flag that is read between two steps.

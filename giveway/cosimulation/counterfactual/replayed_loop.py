@@ -37,7 +37,7 @@ class ReplayedLoop:
 
     Args:
         parts: what is stepped.
-        walking: the crowd's step.
+        walking: The crowd's step.
         walks: notes how people get on, and knows who counts.
         traffic: notes what the background vehicles do.
         heartbeat: Function that tells another process that this one is alive.
@@ -74,7 +74,7 @@ class ReplayedLoop:
         """Step up to the control step ``last``, or until nobody who counts is on the way.
 
         Args:
-            last: the control step.
+            last: The control step.
             interrupt: Flag that is read between two steps.
             to_the_end: whoever is on the way, up to ``last``.
 

@@ -35,8 +35,8 @@ class Departures:
 
     Args:
         egos: Waiting egos with their FMUs loaded.
-        session: the running simulation.
-        config_file: the scenario, for messages.
+        session: The running simulation.
+        config_file: The scenario, for messages.
         time_step: [s] of the co-simulation.
         network: where people can walk; None: nobody asks.
 

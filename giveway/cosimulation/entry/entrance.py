@@ -31,7 +31,7 @@ class Entrance:
     """Brings egos onto the road.
 
     Args:
-        session: the running simulation.
+        session: The running simulation.
         time_step: [s] of the co-simulation.
         network: where people can walk; None: nobody asks.
 

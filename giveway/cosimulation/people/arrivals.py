@@ -14,8 +14,8 @@ class Arrivals:
 
     Args:
         flows: into our crowd.
-        session: the running simulation.
-        hosts: the edge that hosts each flow's people inside SUMO.
+        session: The running simulation.
+        hosts: The edge that hosts each flow's people inside SUMO.
     """
 
     def __init__(self, flows: Flows, session: SumoSession, hosts: Sequence[str]) -> None:
@@ -34,8 +34,8 @@ def require_end(config: RunConfig, end: float) -> None:
     """Make sure that a run without an ego ends though people keep coming.
 
     Args:
-        config: the run's.
-        end: the scenario's [s]; infinite where it names none.
+        config: The run's.
+        end: The scenario's [s]; infinite where it names none.
 
     Raises:
         ConfigError: it does not.

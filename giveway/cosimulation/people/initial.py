@@ -33,11 +33,11 @@ def people_at_first(
     """The pedestrians that giveway adds at the start.
 
     Args:
-        config: the run's.
+        config: The run's.
         departures: Departures of its egos.
         way: Path that an ego would have, where none drives.
-        sumo: the running simulation, to which they are added.
-        net_file: the network's.
+        sumo: The running simulation, to which they are added.
+        net_file: The network's.
         network: where people can walk, if it is known already.
 
     Raises:
@@ -70,11 +70,11 @@ def people_to_come(
     """The people who are going to come in; None if nobody is.
 
     Args:
-        config: the run's.
-        roster: the crowd that they join.
+        config: The run's.
+        roster: The crowd that they join.
         time_step: Control step of the co-simulation [s].
         sumo: Running simulation, to which they are going to be added.
-        net_file: the network's.
+        net_file: The network's.
         network: where people can walk, if it is known already; with lights it has to be.
 
     Raises:

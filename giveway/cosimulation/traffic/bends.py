@@ -46,7 +46,7 @@ class Bends:
         """Find the vehicles that turn, after each SUMO step.
 
         Args:
-            background: the background vehicles now.
+            background: The background vehicles now.
             near: which of them have a row, in its order.
             looked_at: (rows,) which of these; None: all.
         """
@@ -91,8 +91,8 @@ class Bends:
 
         Args:
             poses: (N, m, 7) of all vehicles at the steps from now on.
-            first: the row of the first background vehicle.
-            step: control steps since SUMO's.
+            first: The row of the first background vehicle.
+            step: Control steps since SUMO's.
         """
         if self._rows:
             rows = first + np.array(self._rows)

@@ -22,11 +22,11 @@ class Meetings:
     """Lets egos and background vehicles know of each other, once after each of SUMO's steps.
 
     Args:
-        session: the running simulation.
+        session: The running simulation.
         yielding: slows background vehicles down; None: they do not heed what giveway moves.
 
     Attributes:
-        pending: background vehicles that were slowed down may have to be released.
+        pending: Background vehicles that were slowed down may have to be released.
     """
 
     pending: bool
@@ -44,8 +44,8 @@ class Meetings:
         Without background vehicles, egos that watch and :attr:`pending` it does nothing.
 
         Args:
-            background: the background vehicles.
-            crowd: the pedestrians.
+            background: The background vehicles.
+            crowd: The pedestrians.
             egos: Egos on the road.
         """
         rooms = self._look_ahead(background, egos)

@@ -27,7 +27,7 @@ class TrafficWatch:
     """Finds who approaches a junction, once after each of SUMO's steps.
 
     Args:
-        session: the running simulation.
+        session: The running simulation.
     """
 
     def __init__(self, session: SumoSession) -> None:
@@ -41,7 +41,7 @@ class TrafficWatch:
         """The vehicles that approach the junctions ahead of egos, egos included; nearest first.
 
         Args:
-            background: the background vehicles now.
+            background: The background vehicles now.
             egos: Egos on the road now.
         """
         found: dict[str, list[Approach]] = {}

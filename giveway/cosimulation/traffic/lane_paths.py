@@ -60,8 +60,8 @@ class LanePaths:
         vehicles: Vehicles of the running simulation.
 
     Attributes:
-        pool: all lane paths so far, with room for more.
-        lanes: those of each lane path, in its order.
+        pool: All lane paths so far, with room for more.
+        lanes: Those of each lane path, in its order.
     """
 
     pool: LanePathPool
@@ -79,7 +79,7 @@ class LanePaths:
         """The number of each vehicle's lane path (-1 off any lane) and its position along it [m].
 
         Args:
-            names: ids of the vehicles.
+            names: Ids of the vehicles.
             sights: how far each lane path has to be known [m].
         """
         numbers = np.empty(len(names), dtype=np.int64)

@@ -15,7 +15,7 @@ class TrafficNotes:
     """Notes lights, places and lost time, at SUMO's instants.
 
     Args:
-        session: the running simulation.
+        session: The running simulation.
     """
 
     def __init__(self, session: SumoSession) -> None:

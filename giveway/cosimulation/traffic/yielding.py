@@ -49,7 +49,7 @@ class Yielding:
         step_length: SUMO's step [s], in which a limit holds.
 
     Attributes:
-        limited: the speed [m/s] of those that yield at present, by their ids.
+        limited: The speed [m/s] of those that yield at present, by their ids.
     """
 
     limited: dict[str, float]
@@ -81,8 +81,8 @@ class Yielding:
         """Limit vehicles with somebody ahead after each SUMO step, and release the others.
 
         Args:
-            background: the background vehicles now.
-            crowd: the pedestrians now.
+            background: The background vehicles now.
+            crowd: The pedestrians now.
             egos: Egos on the road now.
             rooms: [m] up to the lines of those that wait there for an ego, by their names.
             merging: who keeps behind each ego that they come onto one lane with.

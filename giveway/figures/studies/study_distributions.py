@@ -44,9 +44,9 @@ def distributions_figure(
     """A line from the 5th to the 95th percentile, a bar between the quartiles, median and mean.
 
     Args:
-        rows: labels of the cells.
+        rows: Labels of the cells.
         colours: Colours of the cells.
-        columns: the metrics; values that are not finite are left out.
+        columns: The metrics; values that are not finite are left out.
         title: Title of the whole figure.
 
     Raises:

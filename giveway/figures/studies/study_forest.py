@@ -40,7 +40,7 @@ class Estimate:
         low: Lower end of its interval.
         high: Upper end of its interval.
         shown: True if interval and test show a difference; the marker is hollow otherwise.
-        published: the mean in the literature, or None.
+        published: The mean in the literature, or None.
     """
 
     mean: float
@@ -55,7 +55,7 @@ class ForestColumn:
     """One metric.
 
     Attributes:
-        quantity: its name in words.
+        quantity: Its name in words.
         unit: Unit of the difference.
         better: "lower", "higher" or empty.
         estimates: Estimates by the row's number and the situation.
@@ -78,8 +78,8 @@ def forest_figure(
     """Mean differences with intervals, one row per context and treatment, one panel per metric.
 
     Args:
-        rows: their labels.
-        columns: the metrics.
+        rows: Their labels.
+        columns: The metrics.
         title: Title of the whole figure.
         source: Source of the published numbers, for the legend.
 

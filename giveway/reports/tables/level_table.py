@@ -53,8 +53,8 @@ class Mean:
     """One metric of one level.
 
     Attributes:
-        text: mean and half width of its interval, as in "14.42 ±0.31".
-        verdict: better or worse than the baseline, pair by pair; empty otherwise.
+        text: Mean and half width of its interval, as in "14.42 ±0.31".
+        verdict: Better or worse than the baseline, pair by pair; empty otherwise.
     """
 
     text: str
@@ -81,7 +81,7 @@ class LevelTable:
 
     Attributes:
         headings: Metric and unit of each column of means.
-        rows: context by context.
+        rows: Context by context.
         baseline: Level with which the verdicts compare.
     """
 

@@ -27,11 +27,11 @@ class Table:
     """A table of the report.
 
     Attributes:
-        name: its id in the page.
+        name: Its id in the page.
         caption: Caption that says what the table shows.
         headings: Headings of the columns.
         rows: Rows of cells, as many cells as headings.
-        filters: columns by whose values rows can be chosen.
+        filters: Columns by whose values rows can be chosen.
         note: beneath it.
     """
 

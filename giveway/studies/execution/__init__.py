@@ -24,9 +24,9 @@ def local_executor(
 
     Args:
         jobs: Number of processes.
-        hang_limit: wall clock [s] without progress after which a run is ended; five times that
+        hang_limit: Wall clock [s] without progress after which a run is ended; five times that
             while it is being set up; infinity waits for ever.
-        run_limit: wall clock [s] of one run; None: any.
+        run_limit: Wall clock [s] of one run; None: any.
 
     Raises:
         WorkerError: a number that cannot be used.

@@ -27,9 +27,9 @@ def perform_there(study: str, limits: dict[str, float], task: dict[str, Any]) ->
     """Make a run.
 
     Args:
-        study: names the study's pool.
-        limits: the fields of :class:`Limits`.
-        task: the fields of :class:`Task`.
+        study: Names the study's pool.
+        limits: The fields of :class:`Limits`.
+        task: The fields of :class:`Task`.
 
     Returns:
         ``record``: its JSON; or ``refused``: why this worker makes no run of this study.

@@ -41,7 +41,7 @@ def perform(
     Args:
         task: Run to make.
         journal: Journal whose heartbeat tells another process how far the run is.
-        native_log: file for what SUMO prints, which is read if this process dies.
+        native_log: File for what SUMO prints, which is read if this process dies.
     """
     began = perf_counter()
     journal = journal or Journal(None)

@@ -76,7 +76,7 @@ class Pool:
         """Have a run made.
 
         Args:
-            task: the run.
+            task: The run.
             deliver: called once, from another thread, with the record, or with the error for
                 which no run can be made; not called any more once the pool is closed.
         """

@@ -32,7 +32,7 @@ class Line:
     """One end of the connection.
 
     Args:
-        connection: a stream socket, owned by the line from now on.
+        connection: A stream socket, owned by the line from now on.
     """
 
     def __init__(self, connection: socket.socket) -> None:

@@ -32,9 +32,9 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
     """Serve the study in process ``parent``.
 
     Args:
-        connection: file descriptor of the socket to it; the port to call, where there are none.
+        connection: File descriptor of the socket to it; the port to call, where there are none.
         folder: Folder of this worker for heartbeat and traceback.
-        parent: process id.
+        parent: Process id.
         token: Token by which a worker that connects proves itself.
     """
     die_with(parent)

@@ -13,7 +13,7 @@ def write_atomically(path: Path, text: str, *, durable: bool = False) -> None:
 
     Args:
         path: Path of the file; its folder is made if it does not exist.
-        text: its content; line ends are kept.
+        text: Its content; line ends are kept.
         durable: also flush it to the disk, so that it survives a crash of the machine.
 
     Raises:

@@ -184,7 +184,7 @@ def failures_frame(records: Iterable[tuple[Cell, int, RunRecord]], command: str)
 
     Args:
         records: Records with the cell and the seed of each; those that did not fail are left out.
-        command: the command that makes a run of this study again, without the run's id.
+        command: The command that makes a run of this study again, without the run's id.
     """
     rows = [
         {

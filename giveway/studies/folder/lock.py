@@ -31,8 +31,8 @@ def reserved(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
     The folder's content is not changed.
 
     Args:
-        out: the folder; it is made if it does not exist.
-        study: name of the study.
+        out: The folder; it is made if it does not exist.
+        study: Name of the study.
         options: Options that say whether it is to be resumed or replaced.
 
     Raises:

@@ -20,11 +20,11 @@ class BrokenFileError(ResultsError):
     """A file of a study is not what was written.
 
     Args:
-        file: the file.
+        file: The file.
         reason: Reason why it is refused.
 
     Attributes:
-        file: the file.
+        file: The file.
         reason: Reason why it is refused.
     """
 
@@ -46,7 +46,7 @@ def sealed(content: dict[str, Any], software: str) -> dict[str, Any]:
 
     Args:
         content: Content of a JSON file.
-        software: identity of the code that made it.
+        software: Identity of the code that made it.
     """
     return content | {SEAL: _seal(content, software)}
 
@@ -56,7 +56,7 @@ def read_sealed(file: Path, *, software: str | None = None) -> dict[str, Any]:
 
     Args:
         file: File to be read.
-        software: identity of the code that must have made it; None: any.
+        software: Identity of the code that must have made it; None: any.
 
     Raises:
         BrokenFileError: it is not what was written, or other code wrote it.
@@ -95,7 +95,7 @@ def put_aside(file: Path, study: Path) -> Path:
 
     Args:
         file: File of the study.
-        study: the study's folder.
+        study: The study's folder.
 
     Returns:
         Where it is now.

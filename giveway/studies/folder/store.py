@@ -21,7 +21,7 @@ class RecordStore:
 
     Args:
         folder: Folder of the study.
-        software: identity of the code that makes its records; None: an earlier giveway, which
+        software: Identity of the code that makes its records; None: an earlier giveway, which
             sealed none, has written the study.
     """
 

@@ -43,13 +43,13 @@ class StudyFolder:
     """The files that a study has written, or has written so far if it is running.
 
     Args:
-        path: its folder.
+        path: Its folder.
 
     Attributes:
-        path: its folder.
+        path: Its folder.
         definition: Definition of the study as it was run.
-        design: its factors and cells.
-        manifest: software, input files, the cells' digests.
+        design: Its factors and cells.
+        manifest: Software, input files, the cells' digests.
 
     Raises:
         ResultsError: there is no study, or one that was killed before it had begun.

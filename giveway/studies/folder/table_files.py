@@ -53,7 +53,7 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     """Write the tables into the study's folder.
 
     Args:
-        study: its folder.
+        study: Its folder.
         whole: also those tables that take some seconds to compute.
 
     Raises:

@@ -36,7 +36,7 @@ class Interval:
     """The confidence interval of a mean.
 
     Attributes:
-        low: lower end.
+        low: Lower end.
         high: Upper end of its interval.
         method: BCa; percentile, where BCa is not defined or not needed; constant, where nothing
             varies.
@@ -83,7 +83,7 @@ def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int
     """The BCa interval of the mean.
 
     Args:
-        sample: independent numbers (n,), at least one, all finite; taken to six decimals, so that
+        sample: Independent numbers (n,), at least one, all finite; taken to six decimals, so that
             whether a resample's mean equals the sample's is not up to rounding.
         confidence: Probability that the interval covers the mean, between 0 and 1.
         resamples: Number of resamples of the bootstrap.

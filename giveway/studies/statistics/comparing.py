@@ -73,7 +73,7 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     """The paired differences between the levels of one factor: ``comparison.csv``.
 
     Args:
-        runs: a row per run and ego, as ``runs.csv``.
+        runs: A row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor, its baseline, and the confidence.
 

@@ -21,7 +21,7 @@ def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.D
     mean time, and is on no front.
 
     Args:
-        levels: the table of :func:`levels`.
+        levels: The table of :func:`levels`.
         design: Design of the study.
         comparison: Factor whose levels are compared.
 

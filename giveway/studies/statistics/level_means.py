@@ -20,7 +20,7 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
     interval is wider, and two that overlap may still differ surely, pair by pair.
 
     Args:
-        runs: a row per run and ego, as ``runs.csv``.
+        runs: A row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Confidence of the intervals; fewer runs than ``minimum_pairs`` have none.
 

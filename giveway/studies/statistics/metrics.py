@@ -14,8 +14,8 @@ class Metric:
     """One column of a run's summary, as a study compares it.
 
     Attributes:
-        name: the column's.
-        unit: the column's; empty for shares and counts.
+        name: The column's.
+        unit: The column's; empty for shares and counts.
         better: Direction that is better.
         label: Name of it in tables and pictures.
     """

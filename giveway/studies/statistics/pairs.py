@@ -24,13 +24,13 @@ class Pairs:
     """One ego's runs under two levels, all else equal, seed by seed.
 
     Attributes:
-        context: the level of each other factor.
+        context: The level of each other factor.
         ego: SUMO id; empty without one.
-        treatment: label of the level that is compared.
-        baseline: label of the level that is subtracted.
+        treatment: Label of the level that is compared.
+        baseline: Label of the level that is subtracted.
         seeds: Seeds of the pairs (n,).
-        treated: metrics of the treatment's runs (n, metrics), nan where there is no number.
-        based: the same of the baseline's runs; row i of both has seed i.
+        treated: Metrics of the treatment's runs (n, metrics), nan where there is no number.
+        based: The same of the baseline's runs; row i of both has seed i.
     """
 
     context: Context
@@ -81,7 +81,7 @@ def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterat
     all. Levels that share no seed have no pairs.
 
     Args:
-        runs: a row per run and ego, as ``runs.csv``.
+        runs: A row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor and its baseline.
 

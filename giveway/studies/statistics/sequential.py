@@ -41,7 +41,7 @@ def precise_enough(
     """True if the interval is narrow enough in every context, for every ego and treatment.
 
     Args:
-        runs: a row per run and ego, as ``runs.csv``, from the study's first seed on; runs beyond
+        runs: A row per run and ego, as ``runs.csv``, from the study's first seed on; runs beyond
             the look do not matter.
         design: Design of the study.
         comparison: Compared factor, its baseline, and the confidence.

@@ -15,7 +15,7 @@ class SignedRank:
     """The result of the test.
 
     Attributes:
-        statistic: smaller one of the two signed-rank sums.
+        statistic: Smaller one of the two signed-rank sums.
         p_value: two-sided.
         direction: Side of zero to which the ranks lean, 1 or -1; 0 for neither.
     """
@@ -37,7 +37,7 @@ def signed_rank(differences: Array) -> SignedRank:
     approximation with its corrections for zeros, ties and continuity.
 
     Args:
-        differences: finite numbers (n,), at least one.
+        differences: Finite numbers (n,), at least one.
     """
     if not differences.any():
         return SignedRank(0.0, 1.0, 0)

@@ -21,7 +21,7 @@ def situations(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd
     """Count the pairs of which both sides stopped, one of them or none: ``situations.csv``.
 
     Args:
-        runs: a row per run and ego, as ``runs.csv``.
+        runs: A row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor and its baseline.
 

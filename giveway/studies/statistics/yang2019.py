@@ -39,10 +39,10 @@ def table2(
     """The nine numbers of Table 2, each with ours.
 
     Args:
-        comparison: the table of ``compare``.
+        comparison: The table of ``compare``.
         factor_column: Column that has the number of pedestrians.
-        treatment: the level that stands for the paper's MPC.
-        baseline: the level that stands for the paper's PID.
+        treatment: The level that stands for the paper's MPC.
+        baseline: The level that stands for the paper's PID.
 
     Returns:
         Nine rows, by pedestrians (30, 20, 10) and situation, for every ego and combination of

@@ -39,7 +39,7 @@ class FootPaths:
     """The lanes that people walk on, edge by edge.
 
     Args:
-        sumo: the libsumo module.
+        sumo: The libsumo module.
     """
 
     def __init__(self, sumo: Any) -> None:

@@ -23,7 +23,7 @@ def heights_of(sumo: Any, lane: str, shape: Array, begin: float, length: float) 
     the vertices are looked up twice, the second time by their distances in space.
 
     Args:
-        sumo: the libsumo module.
+        sumo: The libsumo module.
         lane: SUMO's id of the lane.
         shape: Centre line (k, 2) [m] of the lane.
         begin: Station [m] on the path at which the lane begins.

@@ -7,7 +7,7 @@ def lanes_inside(sumo: Any, lane: str) -> tuple[str, ...]:
     """Return the lanes inside a junction from ``lane`` on, in driving order.
 
     Args:
-        sumo: the libsumo module, while a simulation runs.
+        sumo: The libsumo module, while a simulation runs.
         lane: First of the lanes; empty where the network has none.
     """
     lanes: list[str] = []

@@ -35,9 +35,9 @@ class Junctions:
     """Reads the movements through junctions, each junction once.
 
     Args:
-        sumo: the libsumo module, while a simulation runs.
-        net_file: the network's file.
-        lanes: the network's.
+        sumo: The libsumo module, while a simulation runs.
+        net_file: The network's file.
+        lanes: The network's.
     """
 
     def __init__(self, sumo: Any, net_file: Path, lanes: Lanes) -> None:

@@ -34,8 +34,8 @@ class Lanes:
     """The lanes of the network, as libsumo knows them while a simulation runs.
 
     Args:
-        sumo: the libsumo module, as ``SumoSession`` owns it.
-        config_file: the scenario, for messages.
+        sumo: The libsumo module, as ``SumoSession`` owns it.
+        config_file: The scenario, for messages.
     """
 
     def __init__(self, sumo: Any, config_file: Path) -> None:
@@ -58,11 +58,11 @@ class Lanes:
         """Return the path along ``edges``, junctions included, with few lane changes.
 
         Args:
-            edges: the route.
-            lane: index of the lane to start on; None: the best one.
+            edges: The route.
+            lane: Index of the lane to start on; None: the best one.
             kind: SUMO's vehicle class.
             start: Station [m] on the first lane at which the vehicle starts, before lane changes.
-            by: the lane on which to leave an edge, by the edge's place in the route, as far as the
+            by: The lane on which to leave an edge, by the edge's place in the route, as far as the
                 way can go on from there.
 
         Raises:

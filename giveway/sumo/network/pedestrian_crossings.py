@@ -34,7 +34,7 @@ def crossings(
     """All crossings of the network.
 
     Args:
-        sumo: the libsumo module, while a simulation runs.
+        sumo: The libsumo module, while a simulation runs.
         movements: Traffic light of each link that one governs, from lane to lane: its id and the
             index of the movement in its state.
     """

@@ -34,7 +34,7 @@ def mergings(
     """Return the places along a route at which it shares a lane with others.
 
     Args:
-        sumo: the libsumo module.
+        sumo: The libsumo module.
         lanes: Lanes on which the route enters and leaves each of its edges.
         begins: Station [m] at which each edge begins.
         shape: Function that returns the centre line of a lane.

@@ -43,10 +43,10 @@ class Handover:
     All methods may raise one of ``refusals``.
 
     Args:
-        sumo: the libsumo module.
+        sumo: The libsumo module.
 
     Attributes:
-        refusals: the exceptions that SUMO's refusals become.
+        refusals: The exceptions that SUMO's refusals become.
     """
 
     refusals: tuple[type[Exception], ...]

@@ -57,7 +57,7 @@ class ScenarioPersons:
     """The scenario's persons: which of them SUMO moves at present, and which giveway moves.
 
     Args:
-        sumo: the libsumo module, with a simulation running.
+        sumo: The libsumo module, with a simulation running.
         ours: Ids of persons that giveway added: never touched.
 
     Attributes:
@@ -219,10 +219,10 @@ class ScenarioPersons:
         """Give a held person back to SUMO, which walks it on to the same destination.
 
         Args:
-            name: the person's id.
+            name: The person's id.
             x: Coordinate x of its place [m].
             y: Coordinate y of its place [m].
-            place: the nearest edge for pedestrians, and the position [m] on it. If an edge of the
+            place: The nearest edge for pedestrians, and the position [m] on it. If an edge of the
                 person's route is hardly farther away, it goes on there; else it gets a new route.
 
         Returns:

@@ -56,8 +56,8 @@ class WalkSpeeds:
         """Return the speed [m/s] that the scenario gives to a walk, or None.
 
         Args:
-            person: the person's id.
-            stage: the walk, as libsumo's ``person.getStage`` tells it.
+            person: The person's id.
+            stage: The walk, as libsumo's ``person.getStage`` tells it.
             remaining: Number of the person's remaining stages, this one included.
         """
         if not self._plans:
