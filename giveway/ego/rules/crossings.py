@@ -1,10 +1,10 @@
-"""Giving way at crossings: a place before each at which the ego waits for those with priority.
+"""Giving way at crossings: the ego waits before a crossing for pedestrians with priority.
 
-Whoever is on a crossing, or stands at its kerb and wants to cross, has priority where it is a zebra
-or their light is green; who is still on it when the light changes may finish. The Vienna Convention
-on Road Traffic (1968, art. 21) asks no more: "give way to pedestrians who are using the crossing or
-about to use it". The ego stops before the crossing, not on it, and does not drive onto one that the
-vehicle ahead keeps it from leaving (art. 18.2).
+Pedestrians on a crossing, or at its kerb and about to cross, have priority if the crossing is a
+zebra or their light is green. Those who are still on it when the light changes may finish. This is
+what the Vienna Convention on Road Traffic (1968, art. 21) demands: "give way to pedestrians who are
+using the crossing or about to use it". The ego stops before the crossing, not on it. It does not
+drive onto a crossing that it could not leave because of the vehicle ahead (art. 18.2).
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ from pedestrian_model import Crowd
 
 _BEFORE = 1.0  # time margin [s] between the ego and a pedestrian who crosses before or after it
 _AFTER = 0.5  # time margin [s] behind a pedestrian for whom the ego has already waited
-_PATIENCE = 4.5  # time [s] to the ego's path, up to which a pedestrian always counts
-_CLEAR = 0.3  # least distance [m] of a stop before the crossing
-_LAST = 2.0  # distance [m]; farther away, a stop at the very edge of the crossing still counts
+_PATIENCE = 4.5  # time [s]: a pedestrian who reaches the ego's path within it always counts
+_CLEAR = 0.3  # least distance [m] between a stop and the crossing
+_LAST = 2.0  # distance [m]; farther away, a stop at the very edge of the crossing is early enough
 _SURE = 1.0  # additional time margin [s] before the ego starts again, so that it does not creep
 _SIGHT = 60.0  # sight distance [m] ahead of a crossing
 
@@ -52,11 +52,11 @@ class Crossings:
         crossings: Crossings in the order of the path.
         length: Length of the ego's body [m].
         gap: Distance [m] that it keeps behind a standing vehicle.
-        kerb_distance: Distance [m] from the kerb, from which on somebody who heads for a crossing
-            is about to enter it.
-        kerb_time: Time [s] before they are there, from which on they are as well, unless their
-            light turns red before.
-        change_of: Next change of a traffic light by its id.
+        kerb_distance: Distance [m] to the kerb, within which a pedestrian who walks towards a
+            crossing is about to enter it.
+        kerb_time: Walking time [s] to the kerb, within which such a pedestrian is about to enter
+            it as well, unless their light turns red before they arrive.
+        change_of: Function that returns the next change of a traffic light by its id.
 
     Attributes:
         needs: The signal systems that govern the crossings, and where the ego must not stand.
@@ -78,8 +78,8 @@ class Crossings:
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
         self._latest = math.inf
-        self._waits_for: int | None = None  # index of the crossing that it waits for
-        self._place = math.inf  # station [m] at which it waits or has waited; inf: it has not
+        self._waits_for: int | None = None  # index of the crossing before which the ego waits
+        self._place = math.inf  # station [m] of the ego's wait, present or past; inf without one
         self._states: Mapping[str, str] = {}
         self.needs = Needs(
             frozenset(place.system for place in self._crossings if place.system),
@@ -88,7 +88,7 @@ class Crossings:
 
     @classmethod
     def on(cls, route: RouteContext) -> Crossings | None:
-        """The rule on one ego's route; None if there are no crossings, or it heeds none."""
+        """The rule on one ego's route; None if it has no crossings or the ego heeds none."""
         if not route.heeds("crossings"):
             return None
         found = crossings_on(route.path, route.shape, route.session.lanes.crossings)
@@ -112,7 +112,7 @@ class Crossings:
         self._states = situation.signals
 
     def demand(self, situation: Situation) -> Demand | None:
-        """A stop before a crossing at which the ego gives way, or which it could not leave.
+        """The stop before a crossing at which the ego gives way, or which it could not leave.
 
         Args:
             situation: What the rules know now.
@@ -140,7 +140,7 @@ class Crossings:
         return math.inf
 
     def _stop_for(self, number: int, front: float, speed: float) -> float:
-        """Station [m] at which to stop for one crossing; inf: it is too late everywhere."""
+        """Station [m] at which to stop for one crossing; inf if it is too late for any stop."""
         waits = self._waits_for is not None
         for before in self._stops_before(number, front):
             entry = self._crossings[before].entry
@@ -161,7 +161,10 @@ class Crossings:
         return math.inf
 
     def _stops_before(self, number: int, front: float) -> list[int]:
-        """Crossings before which to stop for one: earlier ones if it would block them."""
+        """Crossings before which the ego may stop for crossing ``number``, the earliest first.
+
+        An earlier crossing is one of them if the ego would block it by a stop at the next one.
+        """
         stops = [number]
         while stops[-1] > self._next:
             stop = self._crossings[stops[-1]].entry - STOP_BEFORE
@@ -172,7 +175,7 @@ class Crossings:
         return stops[::-1]
 
     def _is_wanted(self, number: int, front: float, speed: float, crowd: Crowd) -> bool:
-        """Return whether the ego would meet somebody with priority on the crossing."""
+        """Return whether the ego would meet a pedestrian with priority on the crossing."""
         place = self._crossings[number]
         if not len(crowd):
             return False

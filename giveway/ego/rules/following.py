@@ -7,7 +7,7 @@ from giveway.ego.perception.leader import Leader
 from giveway.geometry.kernel import Array
 
 _KEPT, _LEAST = 0.5, 0.25  # usual and least share of d_safe that a plan keeps to vehicles
-CLOSEST = 2.0  # gap [m] to a standing vehicle where the ego would else block a crossing
+CLOSEST = 2.0  # gap [m] to a standing vehicle that the ego keeps rather than block a crossing
 _BUILD_UP = 0.2  # time [s] in which the brake builds up
 _APPROACHED = 0.5  # distance [m] before d_safe at which the approach to a vehicle ends
 _RECOVERY = 2.0  # time [s] in which a lost safe distance is regained
@@ -17,13 +17,13 @@ _REACTION = 1.0  # lag [s] of a planning controller behind a leader's speed (Gip
 class Following:
     """Bounds of an ego that follows or approaches a vehicle.
 
-    Giveway's controllers follow with a headway. A planning controller accepts a little less than
-    the usual distance to a vehicle rather than plan a hard stop. The tuned PID brakes for a
-    distance alone, so it is shown the distance to where the vehicle in front could stop.
+    Giveway's controllers follow with a headway. A planning controller accepts less than the usual
+    distance to a vehicle if it would otherwise plan a hard stop. The tuned PID takes only
+    a distance into account. It is therefore given the distance to where the vehicle could stop.
 
     Args:
         safe_distance: Safe distance d_safe [m] to a vehicle.
-        origin: Point from which gaps are measured, ahead of the front bumper [m].
+        origin: Distance [m] of the point from which gaps are measured, ahead of the front bumper.
         comfortable: Deceleration [m/s^2] of an approach.
         plans: Whether a planning controller drives.
         tuned: Whether the tuned PID drives.
@@ -44,7 +44,7 @@ class Following:
         Args:
             ahead: Station of the vehicle in front [m].
             station: Station of the ego's front bumper [m].
-            keep_clear: Keep-clear distance [m], which is left to drive until the zone is free.
+            keep_clear: Keep-clear distance [m]: distance to drive until the zone is free.
         """
         if keep_clear <= 0.0:
             return 0.0
@@ -54,7 +54,7 @@ class Following:
     def gap_relaxation(
         self, leader: Leader, ahead: Array, station: float, speed: float, keep_clear: float
     ) -> float:
-        """The gap relaxation [m] of a plan; arguments as for :func:`gap_relaxation`."""
+        """The gap relaxation [m] of the controller. Arguments are as for :func:`gap_relaxation`."""
         closest = min(leader.station, float(ahead.min(initial=inf)))
         relaxation = self.keep_clear_relaxation(closest, station, keep_clear)
         if not self._plans:
@@ -63,7 +63,10 @@ class Following:
         return max(relaxation, usual)
 
     def leader_station(self, leader: Leader, station: float, keep_clear: float) -> float:
-        """The station [m] of the vehicle in front that a controller is to keep its distance to."""
+        """The station [m] to which a controller is to keep its distance behind a vehicle.
+
+        The tuned PID gets the station at which the vehicle could stop. A gap relaxation shifts it.
+        """
         relaxation = self.keep_clear_relaxation(leader.station, station, keep_clear)
         return leader.station + leader.speed**2 / self._firmly + relaxation
 
@@ -72,7 +75,7 @@ class Following:
 
         Args:
             leader: Closest vehicle in front.
-            stop: Station [m] at which the front bumper has to stop; inf: nowhere.
+            stop: Station [m] at which the front bumper has to stop; inf if it need not stop.
             station: Station of the front bumper [m].
             keep_clear: Keep-clear distance [m].
         """
@@ -99,10 +102,10 @@ def gap_relaxation(
     safe_distance: float,
     origin: float,
 ) -> float:
-    """The part of the safe distance [m] that a plan gives up so as not to brake hard for a vehicle.
+    """The part of the safe distance [m] that a plan gives up to avoid hard braking for a vehicle.
 
-    As a rule a plan keeps half of the safe distance. It keeps down to a quarter where a vehicle
-    that cuts in, stops at once or comes from the side leaves no room for firm braking.
+    As a rule a plan keeps half of the safe distance. It keeps less, down to a quarter, if a vehicle
+    that cuts in, stops at once or comes from the side leaves too little room for firm braking.
 
     Args:
         leader: Closest vehicle in front.
@@ -110,10 +113,10 @@ def gap_relaxation(
         station: Station of the front bumper [m].
         speed: Speed of the ego [m/s].
         safe_distance: Safe distance d_safe [m].
-        origin: Point from which gaps are measured, ahead of the front bumper [m].
+        origin: Distance [m] of the point from which gaps are measured, ahead of the front bumper.
     """
     kept = _KEPT * safe_distance + origin
-    coming = float(ahead.min())  # before the leader: from the side
+    coming = float(ahead.min())  # a vehicle closer than the leader comes from the side
     gap = min(leader.station, coming) - station
     if gap < inf:
         its_speed = leader.speed if leader.station <= coming else 0.0

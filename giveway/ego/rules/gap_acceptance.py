@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from giveway.sumo.network.junction_links import Movement
 
-_LEFT, _RIGHT = "lLt", "rR"  # SUMO's letters; a turn back crosses what a left turn does
+_LEFT, _RIGHT = "lLt", "rR"  # SUMO's letters; a U-turn ("t") counts as a left turn
 
 
 class Gap(NamedTuple):
@@ -25,7 +25,7 @@ MAJOR_LEFT = Gap(4.1, 2.2)
 MINOR_RIGHT = Gap(6.2, 3.3)
 MINOR_STRAIGHT = Gap(6.5, 4.0)
 MINOR_LEFT = Gap(7.1, 3.5)
-PERMITTED = Gap(4.5, 2.5)  # at lights
+PERMITTED = Gap(4.5, 2.5)  # permitted turn at a traffic light
 
 
 def gap_of(movement: Movement, *, at_lights: bool, major: bool) -> Gap:
@@ -33,8 +33,8 @@ def gap_of(movement: Movement, *, at_lights: bool, major: bool) -> Gap:
 
     Args:
         movement: Link through a junction.
-        at_lights: Whether a light shows it green, but it has to give way.
-        major: Whether it comes from a road with priority.
+        at_lights: Whether the movement has green but must give way.
+        major: Whether the movement comes from a road with priority.
     """
     if at_lights:
         return PERMITTED
@@ -46,10 +46,10 @@ def gap_of(movement: Movement, *, at_lights: bool, major: bool) -> Gap:
 
 
 def travel_time(distance: float, speed: float, acceleration: float, fastest: float) -> float:
-    """The travel time [s] of a vehicle that speeds up until it is as fast as it may be.
+    """The travel time [s] of a vehicle that speeds up to its highest speed and then keeps it.
 
     Args:
-        distance: Distance [m]; at most 0 if the vehicle is there already.
+        distance: Distance [m] to drive; at most 0 if the vehicle is there already.
         speed: Initial speed [m/s].
         acceleration: Acceleration [m/s^2], positive.
         fastest: Highest speed [m/s] of the vehicle.

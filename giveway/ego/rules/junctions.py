@@ -16,45 +16,45 @@ from giveway.sumo.network.lanes import Lanes
 
 RED = frozenset("rRu")  # letters of a signal state: red, red with yellow
 YELLOW = frozenset("yY")
-SIGHT = 60.0  # distance [m] before a junction from which on others are looked at
-_ASIDE = 0.3  # [m] between bodies that just do not touch
-_ONWARDS = 10.0  # [m] behind a junction, where ways that join are one
-_JOINED = 2.0  # [m] after which a vehicle that joins a way is its next one's leader
+SIGHT = 60.0  # sight distance [m] ahead of a junction
+_ASIDE = 0.3  # lateral gap [m] between two bodies from which on their paths do not conflict
+_ONWARDS = 10.0  # distance [m] behind a junction after which joining paths count as one
+_JOINED = 2.0  # distance [m] after the merge point at which a joining vehicle becomes a leader
 
 
 class PathJunction(NamedTuple):
-    """A junction that a path leads through; all stations are the path's."""
+    """A junction that a path leads through. All stations are those of the path."""
 
-    entry: float  # [m] of the line before it
-    exit: float  # [m] where the next edge's lane begins
-    waiting: tuple[float, ...]  # [m] inside, where one may wait for others to pass
-    movement: Movement  # the path's own
-    movements: Mapping[int, Movement]  # of everybody, by number
-    conflicts: Mapping[int, Conflict]  # with the path; the others' stations count from their lines
-    beside: frozenset[int]  # movements of other lanes that come nowhere near the path
-    gap: Gap  # that its driver wants where no light shows green
-    gap_at_lights: Gap
+    entry: float  # station [m] of the stop line
+    exit: float  # station [m] at which the lane of the next edge begins
+    waiting: tuple[float, ...]  # stations [m] inside at which a vehicle may wait for others
+    movement: Movement  # movement of the path itself
+    movements: Mapping[int, Movement]  # all movements of the junction, by number
+    conflicts: Mapping[int, Conflict]  # conflicts with the path; other stations from their lines
+    beside: frozenset[int]  # numbers of the movements that stay clear of the path
+    gap: Gap  # headways that the ego accepts without a light
+    gap_at_lights: Gap  # headways that the ego accepts at a green or yellow light
 
 
 class Approach(NamedTuple):
     """A vehicle on its way through a junction."""
 
     name: str
-    number: int  # of its movement
-    distance: float  # [m] of its front from its line; negative: inside the junction
-    speed: float  # [m/s]
-    length: float  # [m]
-    standing: float  # [s] for which it has stood
+    number: int  # number of its movement
+    distance: float  # distance [m] of its front from its line; negative inside the junction
+    speed: float  # speed [m/s]
+    length: float  # length of its body [m]
+    standing: float  # time [s] for which it has stood
 
 
 Traffic = Mapping[str, Sequence[Approach]]
-"""Who approaches each junction, by its id; the nearest first, the egos among them."""
+"""The vehicles, egos included, that approach each junction, by its id; the nearest comes first."""
 
 
 def junctions_on(
     path: EgoPath, passages: Sequence[Passage], width: float, junctions: Junctions, lanes: Lanes
 ) -> tuple[PathJunction, ...]:
-    """The junctions on a path at which vehicles may meet, in its order.
+    """The junctions at which the ego may meet other vehicles, in the path's order.
 
     Args:
         path: Path of the ego.
@@ -75,7 +75,7 @@ def junctions_on(
         beside = set[int]()
         for number, other in sorted(movements.items()):
             if other.source == own.source:
-                continue  # it is behind the same leader
+                continue  # vehicles from the ego's own lane queue with it
             where = conflict(way, _way(other, lanes), apart)
             if where is None:
                 beside.add(number)
@@ -99,7 +99,7 @@ def junctions_on(
 
 
 def _on_path(where: Conflict, entry: float, joins: bool) -> Conflict:
-    """A conflict in the path's stations; where two ways join, it is over once one has joined."""
+    """The conflict in the path's stations. If the paths join, it ends shortly after they do."""
     if joins:
         where = where._replace(
             leave=min(where.leave, where.enter + _ONWARDS),
@@ -118,14 +118,14 @@ def _is_major(own: Movement, movements: Mapping[int, Movement]) -> bool:
 
 
 def _piece(path: EgoPath, start: float, end: float) -> Array:
-    """(k, 2) [m] the path between two stations."""
+    """The points (k, 2) [m] of the path between two stations."""
     inside = (path.stations > start) & (path.stations < end)
     at = np.concatenate([[start], path.stations[inside], [min(end, path.length)]])
     return path.points(at)
 
 
 def _way(movement: Movement, lanes: Lanes) -> Array:
-    """(k, 2) [m] the way of a movement's vehicles from their line on."""
+    """The path (k, 2) [m] of a movement's vehicles from their stop line on."""
     onwards = lanes.shape(movement.target)
     along = stations_of(onwards)
     at = np.concatenate([along[along < _ONWARDS], [min(_ONWARDS, along[-1])]])
@@ -133,6 +133,6 @@ def _way(movement: Movement, lanes: Lanes) -> Array:
 
 
 def letter_of(movement: Movement, states: Mapping[str, str]) -> str:
-    """The running light's letter for a movement, or the network's where no light governs it."""
+    """The letter of the traffic light for a movement, or that of the network without a light."""
     state = states.get(movement.system, "")
     return state[movement.link] if 0 <= movement.link < len(state) else movement.state

@@ -19,28 +19,28 @@ _BESIDE = 0.2  # least lateral gap [m] between two vehicles on different lanes
 class MergingVehicle(NamedTuple):
     """A vehicle that is going to share a lane with the ego."""
 
-    position: float  # station [m] of its front bumper on the shared lane; negative: before it
-    speed: float  # [m/s]
-    length: float  # [m]
+    position: float  # station [m] of its front bumper on the shared lane; negative ahead of it
+    speed: float  # speed [m/s]
+    length: float  # length of its body [m]
 
 
 class MergePoint(NamedTuple):
     """A merge point: a station at which the ego's path and others become one."""
 
     lane: str  # shared lane
-    over: frozenset[str]  # lanes right before it that the others come over; empty: any
-    origin: float  # station [m] at which that lane begins
-    entry: float  # station [m] of the front bumper from which on the ego is in their way
-    end: float  # station [m] of the front bumper from which on it is on their lane
+    over: frozenset[str]  # lanes from which the others enter the shared lane; empty if any lane
+    origin: float  # station [m] at which the shared lane begins
+    entry: float  # station [m] of the front bumper from which on the ego obstructs the others
+    end: float  # station [m] of the front bumper from which on the ego is on the shared lane
 
 
 class FollowingConstraint(NamedTuple):
     """The following constraint of a vehicle that keeps behind the ego."""
 
-    speed: float  # speed [m/s] at which the room moves on
-    room: float  # distance [m] by which it may come closer to the ego; negative: too close
-    to_wait: float  # distance [m] to where it can wait without being in the ego's way
-    braking: float  # largest deceleration [m/s^2]; inf: the ego is in its way already
+    speed: float  # speed [m/s] at which the bound on its position moves
+    room: float  # distance [m] from its position to the bound; negative if it is too close
+    to_wait: float  # distance [m] to where it can wait without obstructing the ego
+    braking: float  # largest deceleration [m/s^2]; inf once the ego obstructs it
 
 
 def merge_points_of(
@@ -52,7 +52,7 @@ def merge_points_of(
         path: Path of the ego.
         half_width: Half of the width of its body [m].
         mergings: Merging lanes along its route.
-        departure: Station [m] at which it enters.
+        departure: Station [m] at which the ego enters.
     """
     apart = half_width + _OTHERS + _BESIDE
     places = []
@@ -65,7 +65,7 @@ def merge_points_of(
         if near.min() >= apart:
             continue
         clear = np.flatnonzero(near >= apart)
-        if merging.over:  # the paths meet at its end
+        if merging.over:  # the paths meet at the end of the stretch
             first = clear[-1] + 1 if len(clear) else 0
             entry = float(stations[min(first, len(stations) - 1)])
             end = last
@@ -77,7 +77,7 @@ def merge_points_of(
 
 
 def _distances(points: Array, lines: Sequence[Array]) -> Array:
-    """(n,) distances [m] of ``points`` (n, 2) [m] to the closest of polylines."""
+    """The distances (n,) [m] of ``points`` (n, 2) [m] to the closest of several polylines."""
     x, y = points.T
     nearest = np.full(len(x), np.inf)
     for line in lines:

@@ -1,10 +1,11 @@
-"""Merging: the ego and vehicles that come onto its lane from another one go in an order.
+"""Merging: the order in which the ego and vehicles from another lane come onto one lane.
 
-Where lanes become one (a zipper) or the ego changes lanes, whoever is ahead at the place goes
-first, and the other keeps behind it as if it drove in front already: "vehicles in the through lane
-enable those on the other one to change right before the narrowing, in turn" (Zippers in the German
-road traffic regulations, StVO 2013, section 7(4)). Who is behind but so fast that it had to brake
-firmly for the ego goes first as well (section 7(5): nobody is endangered by a change of lanes).
+Lanes become one at a zipper, and where the ego changes lanes. The vehicle that is ahead at the
+merge point goes first. The other one follows it as if both were on one lane already: "vehicles in
+the through lane enable those on the other one to change right before the narrowing, in turn"
+(zippers in the German road traffic regulations, StVO 2013, section 7(4)). A vehicle behind the ego
+goes first as well if it is so fast that it would have to brake firmly for the ego (section 7(5):
+nobody is endangered by a change of lanes).
 """
 
 from __future__ import annotations
@@ -23,25 +24,25 @@ from giveway.ego.rules.merge_points import (
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
 
-_BEFORE = 1.0  # distance [m] before the merge point at which a short vehicle waits
-_SHORT, _SWEPT = 4.0, 0.5  # length [m] of a short vehicle; share of the excess that cuts the corner
+_BEFORE = 1.0  # distance [m] before the merge point at which a vehicle waits for a short one
+_SHORT, _SWEPT = 4.0, 0.5  # length [m] of a short vehicle; added distance per metre beyond it
 _GAP = 1.0  # gap [m] between two vehicles behind the merge point
 _OPENING = 0.25  # part of the gap [m] that may be missing per metre before the merge point
 _PATIENCE = 5.0  # time [s] that counts as a long wait
 _REACTION = 0.5  # reaction time [s] of a merging vehicle
 _SLOWEST = 1.0  # speed [m/s] from which on an ego is no longer waiting
-_LATER = 2.0  # time [s] after the ego, from which on a vehicle arrives too late to matter
+_LATER = 2.0  # time [s]: a vehicle that arrives this long after the ego does not matter
 
 
 class Merging:
     """The order in which one ego and others come onto lanes that they are going to share.
 
     Args:
-        places: Places on the ego's path, by their entries.
+        places: Merge points on the ego's path, by their entries.
         length: Length of its body [m].
 
     Attributes:
-        needs: The places where lanes become one.
+        needs: Needs of the rule: its merge points.
         keeps_behind: Following constraint of each vehicle that goes after the ego, by its id.
     """
 
@@ -54,7 +55,7 @@ class Merging:
 
     @classmethod
     def on(cls, route: RouteContext) -> Merging | None:
-        """The rule on one ego's route; None if it shares no lane, or heeds no vehicles."""
+        """The rule on one ego's route; None if it has no merge point or heeds no vehicles."""
         if not (route.heeds("merging") and route.heeds("following")):
             return None
         found = route.session.lanes.mergings(route.lane_path)
@@ -62,7 +63,7 @@ class Merging:
         return cls(places, route.shape.length) if places else None
 
     def update(self, situation: Situation) -> None:
-        """Decide who goes first, as far as a place is in sight.
+        """Decide which vehicles go first at the merge points in sight.
 
         Args:
             situation: What the rules know now.
@@ -76,7 +77,13 @@ class Merging:
         front: float,
         speed: float,
     ) -> None:
-        """Take note of the others at each place in sight, and of those that go after the ego."""
+        """Sort the vehicles at the merge points into those before and those after the ego.
+
+        Args:
+            merging_vehicles: Vehicles at each merge point in sight, by their ids.
+            front: Station of the ego's front bumper [m].
+            speed: Speed of the ego [m/s].
+        """
         self._first.clear()
         asks = FIRM if self._waited > _PATIENCE else COMFORTABLE
         behind: dict[str, FollowingConstraint] = {}
@@ -102,7 +109,15 @@ class Merging:
     def _goes_first(
         self, place: MergePoint, front: float, speed: float, other: MergingVehicle, asked: float
     ) -> bool:
-        """Return whether the ego goes first if the vehicle may have to brake with ``asked``."""
+        """Return whether the ego goes before a vehicle that would brake at most with ``asked``.
+
+        Args:
+            place: Merge point.
+            front: Station of the ego's front bumper [m].
+            speed: Speed of the ego [m/s].
+            other: Vehicle that merges.
+            asked: Deceleration [m/s^2] that the vehicle may be made to brake with.
+        """
         to_go, its_way = place.entry - front, _to_place(place, other)
         ahead = other.position - (front - place.origin)
         if to_go <= 0.0 or its_way <= 0.0:
@@ -122,7 +137,7 @@ class Merging:
         return 2.0 * shortage <= asked * time * time
 
     def demand(self, situation: Situation) -> Demand | None:
-        """The vehicle that the ego follows already, or where it waits for the others.
+        """The merging vehicle that the ego follows, and the stop at which it waits for others.
 
         Args:
             situation: What the rules know now.
@@ -134,10 +149,10 @@ class Merging:
         for place, other in self._first:
             to_go = place.entry - front
             if to_go <= 0.0:
-                continue  # whoever is ahead is in the ego's corridor
+                continue  # a vehicle ahead is in the ego's corridor by now
             rear = place.origin + other.position - other.length + _OPENING * to_go
             if rear >= front + _GAP:
-                # as the place comes closer, less of the gap may be missing
+                # The missing part of the gap shrinks as the ego nears the merge point.
                 leader = min(leader, Leader(rear, max(0.0, other.speed - _OPENING * speed)))
             elif speed * speed <= 2.0 * FIRM * to_go:
                 place_to_wait = place.entry - _before(other.length)
@@ -145,7 +160,7 @@ class Merging:
         return Demand(stop, YIELD, leader=leader)
 
     def advance(self, situation: Situation, time_step: float) -> None:
-        """Let the others drive on while SUMO does not step.
+        """Move the merging vehicles on between SUMO's steps, and measure the ego's wait.
 
         Args:
             situation: What the rules know after the control step.
@@ -163,10 +178,10 @@ class Merging:
 
 
 def _before(length: float) -> float:
-    """The distance [m] before the merge point at which others wait for a vehicle of this length."""
+    """The distance [m] before the merge point at which to wait for a vehicle of this length."""
     return _BEFORE + _SWEPT * max(0.0, length - _SHORT)
 
 
 def _to_place(place: MergePoint, other: MergingVehicle) -> float:
-    """The distance [m] of a vehicle from where it would be in the ego's way."""
+    """The distance [m] that a vehicle can drive until it obstructs the ego."""
     return place.entry - place.origin - other.position

@@ -23,23 +23,23 @@ _BESIDE = 0.8  # distance [m] from the ego's side to the centre of a person who 
 class PathCrossing(NamedTuple):
     """A crossing that a path leads over, in the crossing's own coordinates."""
 
-    entry: float  # [m] station of the front bumper from which on the body is on it
-    exit: float  # [m] station that the rear passes last
-    kerb: Array  # (2,) [m] one end of the crossing's middle line
-    along: Array  # (2,) unit vector to its other end
-    length: float  # [m] between the kerbs
-    half_width: float  # [m]
-    low: float  # [m] from the kerb, where the path's way over it begins, for a body's middle
-    high: float  # [m] and where it ends
-    zebra: bool
-    system: str
-    link: int
+    entry: float  # station [m] of the front bumper from which on the body is on the crossing
+    exit: float  # station [m] of the rear at which the body has left the crossing
+    kerb: Array  # one end (2,) [m] of the crossing's middle line
+    along: Array  # unit vector (2,) from this end to the other one
+    length: float  # distance [m] between the kerbs
+    half_width: float  # half width [m] of the crossing, with the margin at its sides
+    low: float  # distance [m] from `kerb` at which the ego's strip begins, for a person's centre
+    high: float  # distance [m] from `kerb` at which this strip ends
+    zebra: bool  # whether the crossing is a zebra
+    system: str  # SUMO's id of its signal system; empty without one
+    link: int  # index of its light in the system's state
 
 
 def crossings_on(
     path: EgoPath, shape: VehicleShape, crossings: Sequence[Crossing]
 ) -> tuple[PathCrossing, ...]:
-    """The crossings that a path leads over, in its order.
+    """The crossings that a path leads over, in the path's order.
 
     Args:
         path: Path of the ego.
@@ -88,7 +88,10 @@ def crossings_on(
 
 
 def _points(path: EgoPath, stations: Array) -> Array:
-    """(n, 2) [m] the path at ``stations`` (n,) [m], which goes on straight before its beginning."""
+    """The points (n, 2) [m] at ``stations`` (n,) [m] of a path that begins straight.
+
+    Stations below 0 lie on the straight line that leads to its first point.
+    """
     points = path.points(stations)
     heading = path.headings[0]
     points += np.outer(np.minimum(stations, 0.0), (np.cos(heading), np.sin(heading)))
@@ -96,7 +99,7 @@ def _points(path: EgoPath, stations: Array) -> Array:
 
 
 def _outlines(path: EgoPath, shape: VehicleShape, stations: Array) -> Array:
-    """(n, p, 2) [m] points of the sides and the front of the body at each of ``stations`` (n,)."""
+    """The points (n, p, 2) [m] of the body's sides and middle line at ``stations`` (n,) [m]."""
     front, rear = _points(path, stations), _points(path, stations - shape.length)
     forward = front - rear
     forward /= np.maximum(np.hypot(forward[:, 0], forward[:, 1]), 1e-9)[:, None]
@@ -108,7 +111,7 @@ def _outlines(path: EgoPath, shape: VehicleShape, stations: Array) -> Array:
 
 
 def _runs(inside: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """The stretches of two points or more that are inside."""
+    """The indices of each run of at least two successive points that are inside."""
     places = np.flatnonzero(inside)
     if not len(places):
         return []

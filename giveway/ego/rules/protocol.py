@@ -21,7 +21,7 @@ from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
 LIGHT, STOP, YIELD = "light", "stop", "yield"
-"""The causes of a stop: a red light, a scheduled stop, somebody with priority."""
+"""The causes of a stop: a red light, a scheduled stop, a road user with priority."""
 
 
 class Told(NamedTuple):
@@ -31,12 +31,12 @@ class Told(NamedTuple):
     traffic: Traffic = MappingProxyType({})  # vehicles that approach each junction, by its id
     merging: Mapping[MergePoint, Mapping[str, MergingVehicle]] = MappingProxyType(
         {}
-    )  # at each place in sight
+    )  # vehicles at each merge point in sight, by their ids
 
 
 @dataclass(slots=True)
 class Situation:
-    """The state that an ego's rules know at one instant; one object per ego, refilled in place."""
+    """The state that an ego's rules know at one instant: one object per ego, refilled in place."""
 
     time: float = 0.0  # SUMO's clock [s]
     station: float = 0.0  # station [m] of the front bumper along the path
@@ -46,11 +46,11 @@ class Situation:
     stop_at_light: float = inf  # station [m] at which a red light demands a stop; inf: nowhere
     signals: Mapping[str, str] = field(
         default_factory=dict
-    )  # one letter per movement of each system
+    )  # state of each signal system, one letter per movement
     traffic: Traffic = field(default_factory=dict)  # vehicles that approach each junction
     merging: Mapping[MergePoint, Mapping[str, MergingVehicle]] = field(
         default_factory=dict
-    )  # vehicles at each place
+    )  # vehicles at each merge point, by their ids
 
     def leader_at_rest(self) -> Leader:
         """The vehicle ahead, placed where it comes to rest if it has to stop at the red light."""
@@ -58,7 +58,7 @@ class Situation:
 
 
 class Demand(NamedTuple):
-    """The demands of one rule at one instant; a field without a demand is infinite or empty."""
+    """The demands of one rule at one instant. A field without a demand is infinite or empty."""
 
     stop: float = inf  # station [m] at which the front bumper has to stop
     cause: str = ""  # reason of the stop, for the column `waits_for`
@@ -70,11 +70,11 @@ class Demand(NamedTuple):
 
 
 class Needs(NamedTuple):
-    """The events that a rule wants to be told of; they do not change during the drive."""
+    """The events that a rule needs to know about. They do not change during the drive."""
 
     systems: frozenset[str] = frozenset()  # SUMO's ids of signal systems
     junctions: tuple[PathJunction, ...] = ()  # junctions whose traffic matters
-    merges: tuple[MergePoint, ...] = ()  # places where lanes become one, in the path's order
+    merges: tuple[MergePoint, ...] = ()  # merge points, in the path's order
     keep_clear: tuple[tuple[float, float], ...] = ()  # stations [m] at which no ego may stand
 
 
@@ -87,7 +87,7 @@ class Rule(Protocol):
 
     A rule may also have these members; one that is missing costs nothing:
 
-    * ``needs``: `Needs`, what it wants to be told of;
+    * ``needs``: `Needs`, the events that the rule needs to know about;
     * ``update(situation)``: called after each of SUMO's steps, when signals and traffic are new;
     * ``advance(situation, time_step)``: called after each control step of ``time_step`` [s];
     * ``beside``: names of vehicles whose lanes lead them past the ego's path;
@@ -95,4 +95,4 @@ class Rule(Protocol):
     """
 
     def demand(self, situation: Situation, /) -> Demand | None:
-        """The demand of the rule at this control step; None if it demands nothing."""
+        """The demand of the rule at this control step, or None if it demands nothing."""

@@ -1,14 +1,16 @@
-"""Right of way among vehicles: where the ego waits at a junction for those who go first.
+"""Right of way among vehicles: where the ego waits at a junction for vehicles that go first.
 
-Who goes first says the network (its links' states and ``request`` rows) and, where there is one,
-the running traffic light: red and yellow are the business of `TrafficLights`; with ``G`` the ego
-goes first; with ``g``, ``s`` (after a stop), ``o`` and no light at all it lets those go first
-whom ``request`` names, unless their light is red. At an all-way stop who stood first goes first.
+The network (states of its links, rows of ``request``) and the traffic light, if there is one, say
+which vehicles have priority. `TrafficLights` handles red and yellow. With ``G`` the ego has
+priority. With ``g``, ``s`` (after a stop), ``o`` and without a light it yields to the movements
+that ``request`` names, unless their light is red. At an all-way stop the vehicle that has stood
+longest goes first.
 
-Those with priority come first if the ego, going on, would find them in its way: it needs its
-critical gap (`gap_acceptance`) from its line on, and a second after it has cleared their way. It
-waits at the line, or where SUMO's vehicles wait inside the junction if it may go as far. It does
-not enter a junction that a slow vehicle ahead keeps it from leaving.
+The ego waits for a vehicle with priority that it would obstruct by driving on. It goes first if the
+vehicle arrives at least the critical headway (`gap_acceptance`) after the ego leaves its line, and
+at least a second after the ego has cleared the conflict. It waits at the line, or inside the
+junction where SUMO's vehicles wait. It does not enter a junction that it could not leave because of
+a slow vehicle ahead.
 """
 
 from __future__ import annotations
@@ -42,16 +44,16 @@ from giveway.ego.rules.yielding import (
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.network.junction_links import Movement
 
-_COMING = 1.0  # acceleration [m/s^2] of other vehicles
+_COMING = 1.0  # acceleration [m/s^2] with which other vehicles approach
 _GOING = 0.3  # time margin [s] to a vehicle that passes after an ego that has decided to go
-_STAYS = 3.0  # time [s] after which a vehicle that stands without need is taken to stay
-_BOXED_IN = 1.0  # the same [s] for a vehicle that has no room to go on
-_CLOSE = 3.0  # gap [m] to a standing vehicle ahead, below which there is no room
-_BRIEFLY = 1.0  # time [s] within which a crawling vehicle counts as having closed that gap
+_STAYS = 3.0  # time [s] after which a vehicle that stands without need is assumed to stay
+_BOXED_IN = 1.0  # time [s] after which this is assumed of a vehicle without room to go on
+_CLOSE = 3.0  # gap [m] to a standing vehicle ahead, below which a vehicle has no room to go on
+_BRIEFLY = 1.0  # time [s] of driving at the present speed, by which a moving vehicle's gap shrinks
 _AT_LINE = 4.0  # distance [m] before the line, within which a vehicle stands at it
 _DECIDED = 10.0  # distance [m] before the line, within which the ego keeps its decision to go
 _STOPS_AT_YELLOW = 2.5  # deceleration [m/s^2] with which others stop at yellow
-# Letters of movements that yield to nobody: priority, or a zipper, which the rule Merging orders.
+# Letters of movements that yield to no vehicle: priority, and zippers (see the rule Merging)
 _NOBODY = frozenset("GZ")
 
 
@@ -60,15 +62,15 @@ class RightOfWay:
 
     Args:
         junctions: Junctions in the order of the path.
-        name: SUMO's id of the ego, which is among the traffic.
+        name: SUMO's id of the ego, which is part of the traffic.
         length: Length of the ego's body [m].
         gap: Distance [m] that it keeps behind a standing vehicle.
-        fastest: Speed [m/s] that the ego drives at most.
+        fastest: Highest speed [m/s] of the ego.
         critical_gap: Critical headway [s], or None for the Highway Capacity Manual's.
         follow_up_gap: Follow-up headway [s], or None for the Highway Capacity Manual's.
 
     Attributes:
-        needs: The junctions, their signal systems, and where the ego must not stand.
+        needs: Needs of the rule: junctions, their signal systems, and keep-clear zones.
         beside: Names of vehicles whose lanes lead them past the ego's path at the next junctions.
     """
 
@@ -89,14 +91,14 @@ class RightOfWay:
         self._fastest = fastest
         self._gap = critical_gap, follow_up_gap
         self._next = 0
-        self._followed = -math.inf  # [s] when the vehicle before it went over the next line
+        self._followed = -math.inf  # time [s] at which the vehicle before it crossed the next line
         self._stop = math.inf
-        self._going = False  # it has decided to go through the next junction
-        self._halted = False  # it has stood at the next line, where it has to
-        self._stood = 0.0  # [s] at the next line, or behind it
+        self._going = False  # whether the ego has decided to go through the next junction
+        self._halted = False  # whether the ego has halted at the next line
+        self._stood = 0.0  # time [s] for which the ego has stood near the next line
         self._time = -math.inf
-        self._staying: set[str] = set()  # others who will go on standing
-        self._green: dict[tuple[str, int], float] = {}  # since when others' lights have been green
+        self._staying: set[str] = set()  # ids of standing vehicles that are assumed to stay
+        self._green: dict[tuple[str, int], float] = {}  # times [s] at which others' green began
         self.needs = Needs(
             frozenset(place.movement.system for place in junctions) - {""},
             self._junctions,
@@ -106,7 +108,7 @@ class RightOfWay:
 
     @classmethod
     def on(cls, route: RouteContext) -> RightOfWay | None:
-        """The rule on one ego's route; None if vehicles meet nowhere, or it heeds no priority."""
+        """The rule on one ego's route; None without junctions or if the ego heeds no priority."""
         if not (route.heeds("right_of_way") and route.junctions):
             return None
         regulation = route.config.regulation
@@ -124,7 +126,7 @@ class RightOfWay:
         """Forget the junctions that the ego has left."""
         while self._next < len(self._junctions) and self._junctions[self._next].exit < front:
             self._next += 1
-            self._stop = math.inf  # it was for the junction passed
+            self._stop = math.inf  # the stop belonged to the junction that was passed
             self._going = self._halted = False
             self._stood, self._followed = 0.0, -math.inf
 
@@ -141,7 +143,7 @@ class RightOfWay:
         if not ahead or ahead[0].entry - front > SIGHT:
             self.beside = frozenset()
         if not (states or traffic):
-            return  # nothing is known that the decision depends on
+            return  # without signals and traffic the decision stays as it is
         passed, self._time = time - self._time, time
         before, self._stop = self._stop, math.inf
         beside, others = set[str](), set[str]()
@@ -165,7 +167,7 @@ class RightOfWay:
         self.beside = beside - others
 
     def demand(self, situation: Situation) -> Demand | None:
-        """A stop before a junction, or inside it, where the ego waits for others.
+        """The stop before or inside a junction at which the ego waits for others.
 
         Args:
             situation: What the rules know now.
@@ -188,7 +190,7 @@ class RightOfWay:
     def _note(
         self, place: PathJunction, front: float, speed: float, passed: float, traffic: Traffic
     ) -> None:
-        """Take note of the ego's wait at the line, and of a vehicle before it that crosses it."""
+        """Note how long the ego stands at the line, and when a vehicle of its lane crosses it."""
         stands = place.entry - front <= _AT_LINE and speed < STANDING
         self._stood = self._stood + passed if stands and passed < math.inf else 0.0
         self._halted = self._halted or (stands and front <= place.entry)
@@ -209,7 +211,7 @@ class RightOfWay:
         states: Mapping[str, str],
         traffic: Traffic,
     ) -> float:
-        """Station [m] at which the ego waits for others at one junction; inf: it does not."""
+        """Station [m] at which the ego waits for others at one junction; inf if it need not."""
         line = place.entry - STOP_BEFORE
         before = front <= place.entry
         if before and letter in "sw" and not (first and self._halted):
@@ -231,7 +233,7 @@ class RightOfWay:
             if where is None or front > where.enter or source in stay:
                 continue
             if self._stays(place, other, states, traffic):
-                stay.add(source)  # and who is behind it
+                stay.add(source)  # vehicles behind it on its lane stay, too
                 continue
             if not self._goes_first(place, letter, other, where, states, traffic):
                 continue
@@ -247,7 +249,7 @@ class RightOfWay:
     def _stays(
         self, place: PathJunction, other: Approach, states: Mapping[str, str], traffic: Traffic
     ) -> bool:
-        """Return whether a vehicle that could go on keeps standing, or is boxed in."""
+        """Return whether a vehicle is assumed to stay: it stands without need, or is boxed in."""
         if other.standing <= 0.0:
             self._staying.discard(other.name)
             return other.speed < CRAWLING and _is_boxed_in(place, other, traffic)
@@ -261,7 +263,7 @@ class RightOfWay:
             stood = min(stood, self._time - self._green.setdefault(key, self._time))
         patient = stood > _STAYS and self._stood > _STAYS
         if patient or (stood > _BOXED_IN and _is_boxed_in(place, other, traffic)):
-            self._staying.add(other.name)  # for as long as it stands: the ego may go now
+            self._staying.add(other.name)  # until it moves; the ego may go before it
         return other.name in self._staying
 
     def _goes_first(
@@ -273,10 +275,10 @@ class RightOfWay:
         states: Mapping[str, str],
         traffic: Traffic,
     ) -> bool:
-        """Return whether the ego has to let the vehicle go first."""
+        """Return whether the ego has to let the vehicle go first, by priority alone."""
         movement = place.movements[other.number]
         named = other.number in place.movement.yields_to
-        if other.distance <= 0.0:  # it is in the junction already
+        if other.distance <= 0.0:  # the vehicle is in the junction already
             if other.distance + where.other_leave + other.length <= 0.0:
                 return False
             there = other.distance + where.other_enter <= 0.0
@@ -304,7 +306,7 @@ class RightOfWay:
         critical: float,
         margin: float,
     ) -> bool:
-        """Return whether the ego would meet the vehicle if it went on."""
+        """Return whether the ego would obstruct or meet the vehicle if it drove on."""
         fastest = max(self._fastest, speed)
         line, clear = (
             travel_time(station - front, speed, PULL_AWAY, fastest)
@@ -315,7 +317,7 @@ class RightOfWay:
         to_leave = other.distance + where.other_leave + other.length
         comes = travel_time(to_enter, other.speed, _COMING, max(USUAL_SPEED, other.speed))
         goes = math.inf
-        if other.speed >= STANDING:  # in the junction it drives no faster than its lanes allow
+        if other.speed >= STANDING:  # inside the junction it keeps its lanes' speed limit
             inside = min(other.speed, place.movements[other.number].speed)
             outside = min(max(other.distance, 0.0), to_leave)
             goes = outside / other.speed + (to_leave - outside) / inside
@@ -324,12 +326,12 @@ class RightOfWay:
 
 
 def _has_to_wait(movement: Movement, traffic: Traffic) -> bool:
-    """Return whether a vehicle is near to which this movement yields, the ego included."""
+    """Return whether a vehicle to which this movement yields is near; the ego counts, too."""
     return any(one.number in movement.yields_to for one in traffic.get(movement.junction, ()))
 
 
 def _is_boxed_in(place: PathJunction, other: Approach, traffic: Traffic) -> bool:
-    """Return whether a standing vehicle right ahead keeps another one from going on."""
+    """Return whether a standing vehicle right ahead on its lane stops another one."""
     source = place.movements[other.number].source
     return any(
         ahead.standing > _BOXED_IN

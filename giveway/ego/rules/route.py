@@ -23,8 +23,8 @@ from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.signal_plans import ChangeOf, untold
 
-_BEHIND = 0.5  # distance [m] left behind a standing vehicle in addition to the one kept
-_LEAST_GAP = 1.0  # distance [m] left behind a standing vehicle at least
+_BEHIND = 0.5  # additional distance [m] to a standing vehicle, beyond the distance kept to it
+_LEAST_GAP = 1.0  # least distance [m] to a standing vehicle
 
 
 class Stop(NamedTuple):
@@ -48,7 +48,7 @@ class RouteContext:
         departure: Station [m] of the front bumper at which the ego enters.
         shape: Length and width of its body [m].
         time_step: Control step of the co-simulation [s].
-        capable: Speed [m/s] that the vehicle reaches; inf: unknown.
+        capable: Highest speed [m/s] of the vehicle; inf if it is unknown.
         stops: Scheduled stops that the ego serves, in the path's order.
     """
 
@@ -83,18 +83,18 @@ class RouteContext:
 
     @property
     def standing_gap(self) -> float:
-        """The gap [m] that the ego needs behind a standing vehicle so as not to block a place."""
+        """The gap [m] that the ego needs to a standing vehicle ahead so as to keep places clear."""
         kept = min(self.config.regulation.safe_distance, CLOSEST)
         return max(_LEAST_GAP, kept + _BEHIND)
 
     @property
     def change_of(self) -> ChangeOf:
-        """The next change of a traffic light by its id, as far as the ego is told."""
+        """The function that returns the next change of a traffic light, as far as it is known."""
         return self.session.signal_plans.change if self.heeds("signal_advice") else untold
 
     @cached_property
     def profile(self) -> SpeedProfile | None:
-        """The speed of a free ego along its path; None if one number says it.
+        """The speed of a free ego along its path, or None if it is the same everywhere.
 
         Raises:
             ScenarioError: there are no lanes along the path.
@@ -134,7 +134,7 @@ class RouteContext:
         return junctions_on(self.path, passages, self.shape.width, session.junctions, session.lanes)
 
     def stretches(self, edge: str) -> list[tuple[float, float]]:
-        """The stations [m] between which the path leads along an edge, once for each time it does.
+        """The intervals of stations [m] in which the path follows an edge, one for each visit.
 
         Args:
             edge: SUMO's id of the edge.

@@ -24,8 +24,8 @@ from pedestrian_model import Crowd
 
 RULES: tuple[Callable[[RouteContext], Rule | None], ...] = (
     ScheduledStops.on,
-    Merging.on,  # before those that look at the vehicle ahead
-    TrafficLights.on,  # before those that look at where it comes to rest
+    Merging.on,  # before the rules that use the vehicle ahead
+    TrafficLights.on,  # before the rules that use the station where that vehicle comes to rest
     Crossings.on,
     RightOfWay.on,
     SpeedLimits.on,
@@ -47,17 +47,17 @@ class RuleSet:
         time: SUMO's clock [s] at the departure.
 
     Attributes:
-        situation: What the rules know now; it is refilled in place.
-        watches: Whether any rule wants to be told what happens in SUMO.
-        needs: What each rule that wants to be told anything wants to be told of.
+        situation: Situation that the rules know now; it is refilled in place.
+        watches: Whether any rule has to be updated after SUMO's steps.
+        needs: Needs of each rule; `NO_NEEDS` for a rule without any.
         junctions: Junctions whose traffic matters, in the path's order.
         systems: SUMO's ids of the signal systems that matter.
-        stop: Station [m] at which the front bumper has to stop; inf: nowhere.
+        stop: Station [m] at which the front bumper has to stop; inf if it need not stop.
         cause: Reason of the stop; empty without one.
-        latest: Station [m] beyond which no plan leads; inf: anywhere.
-        speed: Speed [m/s] not to be exceeded now; inf: none is demanded.
-        advice: Speed [m/s] advised to a controller that plans ahead; inf: none is.
-        leader: Vehicle to be followed as if it were ahead; `NO_LEADER`: none.
+        latest: Station [m] beyond which no plan may lead; inf without such a bound.
+        speed: Speed [m/s] not to be exceeded now; inf without a limit.
+        advice: Speed [m/s] advised to a controller that plans ahead; inf without advice.
+        leader: Vehicle to be followed as if it were ahead; `NO_LEADER` without one.
         lane_speeds: (N,) speeds [m/s] not to be exceeded in the steps ahead, or None.
     """
 
@@ -106,7 +106,7 @@ class RuleSet:
         """The following constraint of each vehicle that merges behind the ego, by its id."""
         found: dict[str, FollowingConstraint] = {}
         if not self.situation.merging:
-            return found  # no place is in sight
+            return found  # no merge point is in sight
         for rule in self._rules:
             found |= getattr(rule, "keeps_behind", {})
         return found
@@ -129,7 +129,7 @@ class RuleSet:
         }
 
     def near_merges(self, station: float) -> tuple[MergePoint, ...]:
-        """The places in sight where lanes become one.
+        """The merge points in sight.
 
         Args:
             station: Station of the front bumper [m].
@@ -139,7 +139,9 @@ class RuleSet:
         )
 
     def keep_clear_distance(self, station: float) -> float:
-        """The distance [m] to drive on until the ego has left what it has to keep clear.
+        """The distance [m] to drive until the ego has left the keep-clear zone that it stands on.
+
+        The distance is 0 if the ego stands on none.
 
         Args:
             station: Station of the front bumper [m].
@@ -152,13 +154,13 @@ class RuleSet:
         return left
 
     def update(self, time: float, station: float, speed: float, told: Told) -> None:
-        """Let the rules take note of what is new in SUMO.
+        """Show the rules the state of SUMO after its step.
 
         Args:
             time: SUMO's clock [s].
             station: Station of the front bumper [m].
             speed: Speed of the ego [m/s].
-            told: Signals and vehicles that matter.
+            told: Signals and vehicles that the rules need to know about.
         """
         situation = self.situation
         situation.time, situation.station, situation.speed = time, station, speed
@@ -205,11 +207,11 @@ class RuleSet:
                 self.lane_speeds = lane_speeds if known is None else known.clip(max=lane_speeds)
 
     def advance(self, station: float, speed: float, time_step: float) -> None:
-        """Let the rules take note of a control step that has passed.
+        """Advance the rules by one control step.
 
         Args:
-            station: Station of the front bumper [m] after it.
-            speed: Speed of the ego [m/s] after it.
+            station: Station of the front bumper [m] after the step.
+            speed: Speed of the ego [m/s] after the step.
             time_step: Length of the step [s].
         """
         situation = self.situation

@@ -1,4 +1,4 @@
-"""The stops that an ego serves: it halts at each for as long as the scenario has its doors open."""
+"""The scheduled stops of an ego: it halts at each for the time that the scenario gives."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from giveway.ego.rules.protocol import STOP, Demand, Situation
 from giveway.ego.rules.route import RouteContext, Stop
 from giveway.ego.rules.yielding import needed_braking
 
-_PASSED = 1.0  # [m] beyond the stop's end, from which on the ego has driven past it
+_PASSED = 1.0  # distance [m] beyond the end of a stop, from which on the ego has missed it
 
 
 class ScheduledStops:
@@ -35,8 +35,8 @@ class ScheduledStops:
         self._time_step = time_step
         self._hardest = hardest
         self._steps = 0
-        self._approaching = False  # it could halt at the next stop when it first came in sight
-        self._arrived: int | None = None  # the step in which it halted there
+        self._approaching = False  # whether the ego has ever been able to brake for the next stop
+        self._arrived: int | None = None  # the step in which the ego halted there
         self.served = 0
         self.missed = 0
 
@@ -60,7 +60,7 @@ class ScheduledStops:
         return [f"it drove past {self.missed} of its stops, which were too near to halt at"]
 
     def demand(self, situation: Situation) -> Demand | None:
-        """A stop at the next scheduled stop, unless the ego came too close to halt there.
+        """A stop at the next scheduled stop, if the ego is able to brake for it.
 
         Args:
             situation: What the rules know now.

@@ -23,7 +23,7 @@ class SpeedLimits:
 
     @classmethod
     def on(cls, route: RouteContext) -> SpeedLimits | None:
-        """The rule on one ego's route; None if one number says how fast it drives."""
+        """The rule on one ego's route; None if its free speed is the same everywhere."""
         profile = route.profile
         return None if profile is None else cls(profile, route.times_ahead)
 

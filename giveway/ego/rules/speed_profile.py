@@ -1,8 +1,9 @@
-"""The speed of a free ego along its path, where its lanes say how fast: ``reference_speed = lane``.
+"""The free speed of an ego along its path if its lanes set it: ``reference_speed = lane``.
 
-Three things cap it: the lanes' limits, the vehicle (what its controller may drive and its safety
-layer can stop from), and comfort in bends, v <= sqrt(a / curvature). Where the cap falls, a pass
-from the end of the path backwards lets the ego brake before that, no harder than is comfortable.
+Three limits cap the speed: those of the lanes, those of the vehicle (the highest speed of its
+controller, and the speed from which its safety layer can stop), and comfort in bends,
+v <= sqrt(a / curvature). A pass backwards from the end of the path lets the ego brake in time for
+a lower limit, with the comfortable deceleration.
 """
 
 from __future__ import annotations
@@ -22,15 +23,16 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import SpeedLimit
 
 LATERAL_ACCELERATION = 2.0
-"""[m/s^2] in a bend. Roads are laid out for the side friction that drivers still find comfortable:
-0.20 g at 30 mph (AASHTO, A Policy on Geometric Design of Highways and Streets, 2011, section 3.3).
+"""Largest lateral acceleration [m/s^2] in a bend. Roads are designed for the side friction that
+drivers still find comfortable: 0.20 g at 30 mph (AASHTO, A Policy on Geometric Design of Highways
+and Streets, 2011, section 3.3).
 """
 
-_STRAIGHT = 1e-9  # [1/m] of curvature at least, against a division by zero
-_SLOWEST = 0.1  # [m/s] below it, an ego would stand for ever
-_ROUNDING = 1e-9  # [m^2/s^2]
-_SPACING = 0.5  # [m] between the stations at which the profile is known
-_PREVIEW = 0.3  # [s] in which a controller follows a falling reference
+_STRAIGHT = 1e-9  # least curvature [1/m], against a division by zero
+_SLOWEST = 0.1  # least speed [m/s] of the profile, so that the ego never stands still for it
+_ROUNDING = 1e-9  # rounding error [m^2/s^2] of squared speeds
+_SPACING = 0.5  # spacing [m] of the stations at which the profile is known
+_PREVIEW = 0.3  # lag [s] of a controller behind a falling reference speed
 
 
 class SpeedProfile:
@@ -40,9 +42,9 @@ class SpeedProfile:
         path: Path of the ego.
         limits: Speed limits of the lanes along it, in order.
         length: Length of its body [m].
-        capable: speed [m/s] that the vehicle is to be driven at most, on any lane.
-        deceleration: b [m/s^2] of braking before a lower limit and before a bend.
-        departure: station [m] where it begins.
+        capable: Highest speed [m/s] of the vehicle on any lane.
+        deceleration: Deceleration b [m/s^2] before a lower limit and before a bend.
+        departure: Station [m] at which the ego enters.
 
     Attributes:
         speeds: (k,) speeds [m/s] at the stations 0, 0.5 m, 1 m, ...
@@ -64,7 +66,7 @@ class SpeedProfile:
         bends = np.maximum(_curvature(path, length, stations), _STRAIGHT)
         capped = np.minimum(_of_lanes(limits, stations), np.sqrt(LATERAL_ACCELERATION / bends))
         capped = np.maximum(np.minimum(capped, capable), _SLOWEST)
-        # Braking, v^2 falls by 2 b per metre: v^2 + 2 b s must nowhere be more than it is later on.
+        # Braking reduces v^2 by 2 b per metre, so v^2 + 2 b s must not decrease along the path.
         braking = 2.0 * deceleration * stations
         squares = np.minimum.accumulate((capped**2 + braking)[::-1])[::-1] - braking
         squares = np.where(squares < capped**2 - _ROUNDING, squares, capped**2)
@@ -76,7 +78,7 @@ class SpeedProfile:
         self._stations = stations
 
     def at(self, station: float) -> float:
-        """The speed [m/s] at ``station`` [m]; beyond the path's end that at its end."""
+        """The speed [m/s] at ``station`` [m]; the last one beyond the path's end."""
         squares = self._squares
         place = max(0.0, station) / _SPACING
         i = int(place)
@@ -85,12 +87,13 @@ class SpeedProfile:
         return math.sqrt(squares[i] + (place - i) * (squares[i + 1] - squares[i]))
 
     def limit(self, station: float, speed: float) -> float:
-        """The cap [m/s] of the controller's reference; inf where that is not below ``fastest``.
+        """The limit [m/s] of the controller's reference speed; inf if it is not below ``fastest``.
+
+        The controller follows with a lag, so the limit looks ahead by a short time.
 
         Args:
             station: Station of the front bumper [m].
-            speed: Speed of the ego [m/s]; the faster it is, the earlier the controller is told
-                of a lower speed ahead, because it follows with a lag.
+            speed: Speed of the ego [m/s].
         """
         lowest = min(self.at(station), self.at(station + _PREVIEW * speed))
         return lowest if lowest < self.fastest else math.inf
@@ -100,7 +103,7 @@ class SpeedProfile:
 
         Args:
             station: Station of the front bumper now [m].
-            speed: Speed of the ego now [m/s]; an excess is reduced with the deceleration b.
+            speed: Speed of the ego now [m/s]. An excess is reduced with the deceleration b.
             times: (N,) ascending times [s].
         """
         now = np.interp(station, self._stations, self._times)
@@ -117,7 +120,7 @@ def profile_of(
     capable: float,
     time_step: float,
 ) -> SpeedProfile:
-    """The profile of an ego whose lanes say how fast it drives.
+    """The speed profile of an ego that drives as fast as its lanes allow.
 
     Args:
         ego: Ego before its departure.
@@ -125,7 +128,7 @@ def profile_of(
         limits: Speed limits of the lanes along it.
         departure: Station [m] of the front bumper.
         length: Length of the body [m].
-        capable: Speed [m/s] that the vehicle reaches.
+        capable: Highest speed [m/s] of the vehicle.
         time_step: Control step of the co-simulation [s].
 
     Raises:
@@ -154,7 +157,7 @@ def profile_of(
 
 
 def _of_lanes(limits: Sequence[SpeedLimit], stations: Array) -> Array:
-    """(k,) [m/s] the lanes' limits at ``stations`` (k,); where two lanes meet, the lower one."""
+    """The lanes' limits (k,) [m/s] at ``stations`` (k,) [m]; the lower one where two lanes meet."""
     speeds: Array = np.full(len(stations), math.inf)
     begins = [limit.station for limit in limits]
     for limit, end in zip(limits, [*begins[1:], math.inf], strict=True):
@@ -164,10 +167,14 @@ def _of_lanes(limits: Sequence[SpeedLimit], stations: Array) -> Array:
 
 
 def _curvature(path: EgoPath, length: float, stations: Array) -> Array:
-    """(k,) curvature [1/m] of the front bumper's path, or that of the body's turning if larger."""
+    """The curvature (k,) [1/m] of the front bumper's path or of the body's turn, if that is larger.
+
+    The means of a `PathView` begin to rise half a window before a bend, and reach only half of its
+    curvature where it begins. Their maximum over three shifts is therefore taken.
+    """
     headings = np.unwrap([path.pose(station, length).heading for station in stations])
     turning = np.abs(np.gradient(headings, stations))
-    view = PathView(path)  # whose means begin to rise half a window before a bend, and are half ...
+    view = PathView(path)
     means = [np.abs(view.curvature(stations + shift)) for shift in (-HALF, 0.0, HALF)]
-    sharpest: Array = np.maximum.reduce([turning, *means])  # ... of its curvature where it begins
+    sharpest: Array = np.maximum.reduce([turning, *means])
     return sharpest

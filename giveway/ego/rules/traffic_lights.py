@@ -1,8 +1,8 @@
-"""The traffic lights on the ego's path: where it has to stop, if anywhere, and when to arrive.
+"""The traffic lights on the ego's path: the stop that they demand, and the advised speed.
 
 An ego that knows when a light turns green approaches it slowly instead of stopping:
-*green light optimal speed advisory* (GLOSA). The plans come by the messages of SAE J2735 and
-ETSI TS 103 301.
+*green light optimal speed advisory* (GLOSA). The signal plans come with the messages of SAE J2735
+and ETSI TS 103 301.
 """
 
 from __future__ import annotations
@@ -17,28 +17,30 @@ from giveway.ego.rules.yielding import STOP_BEFORE, at_rest, needed_braking
 from giveway.sumo.network.lane_path import Light
 from giveway.sumo.signal_plans import Greens, GreensOf
 
-_ARROW = frozenset("s")  # red with a green arrow: after a stop one may go
-_SLOWED = 0.8  # share of the speed at which it decided to pass at yellow; slower, it stops
+_ARROW = frozenset("s")  # letter of red with a green arrow: a turn is allowed after a stop
+_SLOWED = 0.8  # share of the speed at the decision to pass at yellow, below which the ego stops
 _SLOWEST = 2.0  # lowest advisory speed [m/s]
 _FAR = 150.0  # distance [m] within which the ego receives a signal plan
 _STARTS = 1.0  # start-up time [s] of the first vehicle after the light turns green
-_COASTING = 0.4  # largest step [m/s] of the advisory speed below the present one: 1 m/s^2
-_WAVE = 4.2  # [m/s] at which starting runs back along a queue, 15 km/h (Treiber & Kesting 2013)
+_COASTING = 0.4  # largest drop [m/s] of the advisory speed below the present one, for 1 m/s^2
+_WAVE = 4.2  # speed [m/s] of the start-up wave in a queue, 15 km/h (Treiber & Kesting 2013)
 
 
 class TrafficLights:
     """Watches the traffic lights on one ego's path.
 
-    At yellow the ego stops if it can with the comfortable deceleration, and goes on if not, as
-    long as nobody makes it brake; at red it stops if it can at all.
+    At yellow the ego stops if the comfortable deceleration is enough. If it is not, the ego goes
+    on, unless a road user makes it slow down. At red it stops if it can at all.
 
     Args:
         lights: Traffic lights in the order of the path.
         comfortable: Deceleration [m/s^2] that is demanded at yellow.
         hardest: Deceleration [m/s^2] that the vehicle is capable of.
-        arrows: Whether right of way rules at a green arrow beside red; else that is red.
-        greens_of: Green windows of a movement, or None if the ego is not told any.
-        desired_speed: Speed [m/s] of a free ego by its station [m].
+        arrows: Whether a green arrow beside red is left to the rule of right of way. If not, it
+            counts as red.
+        greens_of: Function that returns the green windows of a movement, or None if the ego
+            receives no signal plans.
+        desired_speed: Function that returns the free speed [m/s] at a station [m].
         gap: Distance [m] kept to a vehicle ahead.
 
     Attributes:
@@ -60,18 +62,18 @@ class TrafficLights:
         self._comfortable = comfortable
         self._hardest = hardest
         self._colours = ["g"] * len(lights)
-        self._passing = [0.0] * len(lights)  # [m/s] when that was decided at yellow; 0: it was not
+        self._passing = [0.0] * len(lights)  # speeds [m/s] at decisions to pass; 0 without one
         self._red = RED if arrows else RED | _ARROW
         self._next = 0
         self._greens_of = greens_of
-        self._greens: Greens = ()  # of the next one
+        self._greens: Greens = ()  # green windows of the next light
         self._desired_speed = desired_speed
         self._gap = gap
         self.needs = Needs(frozenset(light.system for light in self._lights))
 
     @classmethod
     def on(cls, route: RouteContext) -> TrafficLights | None:
-        """The rule on one ego's route; None if there are no traffic lights, or it heeds none."""
+        """The rule on one ego's route; None without traffic lights or if the ego heeds none."""
         lights = route.lane_path.lights
         if not (lights and route.heeds("traffic_lights")):
             return None
@@ -102,7 +104,7 @@ class TrafficLights:
             elif self._colours[i] not in YELLOW:
                 self._passing[i] = speed if needed > self._comfortable else 0.0
             elif speed < _SLOWED * self._passing[i] and needed <= self._hardest:
-                self._passing[i] = 0.0  # who had to brake for somebody comes too late
+                self._passing[i] = 0.0  # an ego that was slowed down would pass too late
             self._colours[i] = colour
         self._greens = ()
         if self._greens_of is not None and self._next < len(self._lights):
@@ -126,7 +128,7 @@ class TrafficLights:
         """Station [m] at which the front bumper has to stop; inf: nowhere."""
         while self._next < len(self._lights) and self._lights[self._next].station <= front:
             self._next += 1
-            self._greens = ()  # they were the passed one's
+            self._greens = ()  # they belonged to the light that was passed
         for i in range(self._next, len(self._lights)):
             colour = self._colours[i]
             stops = colour in self._red or (colour in YELLOW and self._passing[i] == 0.0)
@@ -135,7 +137,7 @@ class TrafficLights:
         return math.inf
 
     def _advised(self, situation: Situation) -> float:
-        """The speed [m/s] at which the ego arrives when it may go on (GLOSA); inf: any speed."""
+        """The speed [m/s] at which the ego arrives at green (GLOSA), or inf without advice."""
         if self._next >= len(self._lights):
             return math.inf
         front, speed = situation.station, situation.speed
@@ -157,5 +159,5 @@ class TrafficLights:
         return math.inf
 
     def _needed(self, i: int, front: float, speed: float) -> float:
-        """Deceleration [m/s^2] that stops at the line itself."""
+        """Deceleration [m/s^2] with which the ego stops at the line of light ``i``."""
         return needed_braking(speed, self._lights[i].station - front)

@@ -6,11 +6,11 @@ from giveway.ego.driving_style import COMFORTABLE
 from giveway.ego.perception.leader import Leader
 
 STOP_BEFORE = 1.0  # distance [m] of a stop before a line or a crossing
-CRAWLING = 2.0  # speed [m/s] below which a vehicle may come to a stand
-USUAL_SPEED = 13.9  # speed [m/s] that other vehicles are expected to speed up to
-AFTER, BEFORE = 1.0, 0.5  # time margin [s] to a road user who passes after or before the ego
-_CAR = 5.0  # length [m] of a vehicle that stands there
-_QUEUE = 100.0  # distance [m] before a red light, within which others may stand already
+CRAWLING = 2.0  # speed [m/s] below which a vehicle is assumed to be about to stop
+USUAL_SPEED = 13.9  # speed [m/s] to which other vehicles are expected to accelerate
+AFTER, BEFORE = 1.0, 0.5  # time margins [s] to a road user who passes after or before the ego
+_CAR = 5.0  # length [m] of the vehicle ahead that stops at a red light
+_QUEUE = 100.0  # distance [m] before a red light, within which a queue may stand
 
 
 def needed_braking(speed: float, room: float) -> float:
@@ -19,11 +19,11 @@ def needed_braking(speed: float, room: float) -> float:
 
 
 def at_rest(leader: Leader, stop: float) -> Leader:
-    """The vehicle ahead where it comes to rest, if it is about to stop at a red light ahead.
+    """The vehicle ahead, at the station where it comes to rest if a red light makes it stop.
 
     Args:
         leader: Vehicle ahead.
-        stop: Station [m] at which the ego has to stop at a light; inf: nowhere.
+        stop: Station [m] at which the ego has to stop at a light; inf without a red light.
     """
     if leader.station >= stop or stop == math.inf:
         return leader
@@ -36,12 +36,12 @@ def at_rest(leader: Leader, stop: float) -> Leader:
 def leaves_no_room(leader: Leader, entry: float, leave: float, room: float) -> bool:
     """Return whether a slow vehicle ahead may keep the ego from leaving a crossing or junction.
 
-    The ego would have to stand on it (Vienna Convention on Road Traffic, 1968, art. 18.2).
+    The ego would have to stop on it (Vienna Convention on Road Traffic, 1968, art. 18.2).
 
     Args:
         leader: Vehicle ahead.
-        entry: Station [m] of the front bumper at which the ego comes onto it.
-        leave: Station [m] that the rear passes last.
+        entry: Station [m] of the front bumper at which the ego enters the area.
+        leave: Station [m] of the rear at which the ego has left the area.
         room: Length [m] that the ego needs behind the leader: its body and the gap it keeps.
     """
     return (

@@ -1,7 +1,7 @@
-"""Does a rule of another package keep to the protocol? A battery of drives that need no SUMO.
+"""Checks that a rule of another package keeps to the protocol, by drives that need no SUMO.
 
 An ego drives 300 m along a straight road of three edges, "first", "second" and "third", each 100 m
-long, among a dozen people and behind a vehicle. Each check says in words what is wrong.
+long, among a dozen people and behind a vehicle. Each check describes in words what is wrong.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from pedestrian_model import Crowd
 _STEPS = 250
 _STRIDE = 1.2  # distance [m] between two instants of the drive
 _PEOPLE = 12
-_SLOW = 5e-4  # time [s] that a call may take: a hundredth of the control step
+_SLOW = 5e-4  # longest permitted time [s] of a call: a hundredth of the control step
 _BEHIND = 1.0  # distance [m] by which a demanded stop may lie behind the front bumper
-_MORNING = 8.0 * 3600.0  # time [s] of SUMO's clock at the departure
+_MORNING = 8.0 * 3600.0  # SUMO's clock [s] at the departure
 
 
 def made_up_route(config: EgoRunConfig | None = None, time_step: float = 0.05) -> RouteContext:
-    """The straight road of the battery, for tests of rules as well.
+    """The straight road of the checks, which tests of rules use as well.
 
     Args:
         config: Configuration of the ego, or None for the defaults.
@@ -67,7 +67,7 @@ def situation(step: int, *, order: int = 1, seed: int = 1) -> Situation:
 
     Args:
         step: Number of the step.
-        order: -1: people stand in the opposite order.
+        order: Step through the people: 1, or -1 for the opposite order.
         seed: Seed of the people.
     """
     random = np.random.default_rng(seed)

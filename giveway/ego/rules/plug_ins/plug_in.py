@@ -1,4 +1,4 @@
-"""Rules of other packages, from the configuration: found, imported, made for one route."""
+"""Makes the rules of other packages that the configuration names, for one ego's route."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from giveway.plug_ins.finding import load_class
 from giveway.plug_ins.sockets import RULE
 
 Maker = Callable[[Any], object]
-"""What makes a rule for a route, its options filled in."""
+"""Function that makes a rule for a route, with its options."""
 
 
 def plugged_in_rules(route: RouteContext) -> list[Rule]:
@@ -63,11 +63,11 @@ def maker_of(kind: Any, options: Any) -> Maker:
 
 
 def made(name: str, make: Maker, route: Any) -> PluggedInRule | None:
-    """One rule for one route, whose answers are checked; None if it has nothing to say there.
+    """Make one rule for one route, with checked answers; None if it does not apply there.
 
     Args:
         name: Name of the rule and its ego, for messages.
-        make: What makes the rule.
+        make: Function that makes the rule.
         route: Route of the ego.
 
     Raises:

@@ -1,4 +1,4 @@
-"""A rule of another package among giveway's own: its answers are checked, its faults named."""
+"""The wrapper of a rule of another package: it checks answers and reports errors by name."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _NUMBERS = ("stop", "latest", "speed", "advice")
 
 
 class PluggedInRule:
-    """A rule of another package as `RuleSet` asks any other.
+    """A rule of another package, which `RuleSet` asks like giveway's own.
 
     Args:
         name: Name of the rule and its ego, for messages.
         rule: Rule of the other package.
 
     Attributes:
-        needs: What the rule wants to be told of.
+        needs: Needs of the rule.
         update: Called after each of SUMO's steps, if the rule has such a method.
         advance: Called after each control step, if the rule has such a method.
 
@@ -63,7 +63,7 @@ class PluggedInRule:
 
     @property
     def beside(self) -> Set[str]:
-        """The names of vehicles that the rule takes to pass beside the ego's path."""
+        """The ids of vehicles whose lanes, by the rule, lead them past the ego's path."""
         return frozenset(getattr(self._rule, "beside", ()))
 
     @property
@@ -85,7 +85,7 @@ class PluggedInRule:
 
 
 def problem_of(answer: object) -> str:
-    """The fault in an answer of a rule; empty if it is a sound `Demand`.
+    """The problem with an answer of a rule, or an empty text if it is a valid `Demand`.
 
     Args:
         answer: Answer of a rule, other than None.
