@@ -1,1 +1,1 @@
-"""The master: the parts of a run put together, and one control step after the other."""
+"""The master of the co-simulation: it puts the parts of a run together and steps them."""

@@ -42,12 +42,12 @@ from sumo_scenarios import available
 
 
 class Driven(NamedTuple):
-    """The drives of the egos of a run."""
+    """The recorded drives of the egos of a run."""
 
-    tracks: Mapping[str, EgoTrack]  # by their ids
-    horizon: int  # steps that anybody looked ahead
-    start: float  # [s] SUMO's clock at the run's first control step
-    absent: bool = False  # the egos are not to be there this time
+    tracks: Mapping[str, EgoTrack]  # Track of each ego, by its id
+    horizon: int  # Prediction horizon of the run [steps]
+    start: float  # Time [s] on SUMO's clock at the run's first control step
+    absent: bool = False  # True: the egos are left out of the repeated run
 
 
 @dataclass(frozen=True)
@@ -56,25 +56,25 @@ class Parts:
 
     config: RunConfig
     sumo: SumoSession
-    time_step: float  # [s]
+    time_step: float  # Control step [s]
     substeps: int  # control steps per SUMO step
-    horizon: int  # steps that anybody looks ahead
-    egos: tuple[WaitingEgo, ...]  # as they were before their departure
+    horizon: int  # Longest prediction horizon of any ego [steps]
+    egos: tuple[WaitingEgo, ...]  # Egos before their departure
     departures: Departures
     roster: Roster
-    arrivals: Arrivals | None  # None: nobody comes in during the run
+    arrivals: Arrivals | None  # None if nobody comes in during the run
     crowd_model: PedestrianModel
-    exchange: Exchange | None  # None: the scenario's own pedestrians stay SUMO's
+    exchange: Exchange | None  # None if the scenario's own pedestrians stay SUMO's
     surroundings: Surroundings
-    yielding: Yielding | None  # None: background vehicles do not yield to pedestrians
-    priority: PriorityOnFoot | None  # None: nobody on foot relies on it
-    net_file: Path  # the scenario's network
-    secluded: bool  # nobody but the egos and the people that we add is ever there
-    remarks: tuple[str, ...]  # what the user should know
+    yielding: Yielding | None  # None if background vehicles do not yield to pedestrians
+    priority: PriorityOnFoot | None  # None if no pedestrian relies on priority
+    net_file: Path  # Network file of the scenario
+    secluded: bool  # True: only the egos and the added people are ever there
+    remarks: tuple[str, ...]  # Remarks for the user
 
     @property
     def all_remarks(self) -> tuple[str, ...]:
-        """The remarks, with those that came up during the run."""
+        """The remarks for the user, with those that came up during the run."""
         remarks = list(self.departures.remarks)
         identified = [model_remark(ego.config, self.time_step) for ego in self.egos]
         remarks += [text for text in identified if text]
@@ -100,16 +100,18 @@ def assemble(
 ) -> Parts:
     """Set up every part and let SUMO run up to the first departure; ``stack`` closes everything.
 
-    SUMO comes before the vehicles: what is wrong with a scenario is said before any FMU runs.
+    SUMO comes before the vehicles, so that an error of the scenario is reported before any FMU
+    runs.
 
     Args:
-        checked: what is to be run.
-        stack: closes SUMO and the FMUs.
-        outputs: Folder for SUMO's own outputs; None drops them.
-        native_log: File for what SUMO prints; None: a temporary one.
-        goes_on: asked, with SUMO's clock, at each step until the first departure.
-        driven: how the egos drove in a run that is to be gone through again without FMUs and
-            controllers; None: these decide.
+        checked: Checked configuration of the run.
+        stack: Stack that closes SUMO and the FMUs.
+        outputs: Folder for SUMO's own outputs, or None to drop them.
+        native_log: File for what SUMO prints, or None for a temporary one.
+        goes_on: Function that is called with SUMO's clock [s] at each step until the first
+            departure. The run ends when it returns False.
+        driven: Drives of the egos in a run that is to be repeated without FMUs and controllers, or
+            None if FMUs and controllers drive.
 
     Raises:
         GivewayError: a part cannot be set up as asked.
@@ -196,14 +198,14 @@ def assemble(
 
 
 def _imagined_way(config: RunConfig, sumo: SumoSession) -> EgoPath:
-    """The path that an inserted ego would have, where nobody drives."""
+    """The path that an inserted ego would have, in a run without egos."""
     ego = config.ego
     lane_path = sumo.lanes.along(ego.route, ego.lane, start=ego.depart_position)
     return EgoPath.through(lane_path.points)
 
 
 def _driven_part(way: EgoPath, config: RunConfig) -> Array:
-    """(k, 2) [m] the part of a path between departure and goal."""
+    """The part (k, 2) [m] of a path between departure and goal."""
     ego, line = config.ego, shapely.LineString(way.vertices)
     end = line.length
     if ego.travel_distance is not None:
@@ -214,7 +216,7 @@ def _driven_part(way: EgoPath, config: RunConfig) -> Array:
 def _priority(
     config: RunConfig, egos: Sequence[EgoRunConfig], sumo: SumoSession
 ) -> PriorityOnFoot | None:
-    """Make the part that tells people of their priority; None if no ego gives way."""
+    """Make the part that tells people of their priority, or None if no ego gives way."""
     heeding = [driver for driver in egos or (config,) if driver.heeds("crossings")]
     if not heeding:
         return None

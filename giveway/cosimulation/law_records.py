@@ -1,7 +1,8 @@
-"""The records, besides tracks, by which a run is judged by the law of the road.
+"""The records, besides tracks, from which the law of the road is judged after a run.
 
-The network's crossings, stop lines and junctions on each ego's way, the states of the traffic
-lights there, and where people mean to walk. Nothing of it depends on what the ego heeds.
+They are the network's crossings, stop lines and junctions on each ego's path, the states of the
+traffic lights there, and the people's destinations. They do not depend on the rules that the ego
+obeys.
 """
 
 from collections.abc import Sequence
@@ -17,10 +18,11 @@ from giveway.sumo.network.lane_path import Light
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.session import SumoSession
 
-_SAMPLE = 0.5  # [m] between the points of the path that are looked at
-_BESIDE = 4.0  # [m] from the path's line to the kerb of a crossing that a body on it may touch
-_BEFORE = 1.5  # [m] from there to the crossing's marking
-_DECIMALS = 6  # micrometres, as in all tables
+_SAMPLE = 0.5  # Distance [m] between the points of the path that are examined
+# Lateral reach [m] from the path to the kerb of a crossing that the ego's body may touch
+_BESIDE = 4.0
+_BEFORE = 1.5  # Longitudinal reach [m] from the path to a crossing's marking
+_DECIMALS = 6  # Decimals of lengths [m]: micrometres, as in all tables
 
 
 def way_of(
@@ -37,14 +39,14 @@ def way_of(
     """The crossings, lights, junctions and stops on an ego's path.
 
     Args:
-        ego_id: SUMO's.
-        path: The ego's.
+        ego_id: Id of the ego in SUMO.
+        path: Path of the ego.
         departure: Station [m] of the front bumper where the ego's position is 0.
         length: Length of the ego's body [m].
         crossings: Crossings of the network.
         lights: Traffic lights on the path.
         junctions: Junctions on the path.
-        stops: Scheduled stops that it serves.
+        stops: Scheduled stops that the ego serves.
     """
     return EgoWay(
         ego=ego_id,
@@ -67,7 +69,7 @@ def way_of(
 
 
 def _near(path: EgoPath, begin: float, crossings: Sequence[Crossing]) -> tuple[CrossingOnWay, ...]:
-    """The crossings that the path leads over or close by from station ``begin`` [m] on."""
+    """The crossings on the path or close to it, from station ``begin`` [m] on."""
     if not crossings:
         return ()
     begin = max(0.0, begin)
@@ -104,14 +106,14 @@ def _rounded(value: float) -> float:
 
 
 class LawRecords:
-    """Records what the judgement needs, from the first ego on on whose way the law has a say.
+    """Records what the judgement needs, from the first ego on whose path the law rules anything.
 
     Args:
         session: The running simulation.
-        recorder: gathers the rows.
+        recorder: Recorder that gathers the rows.
 
     Attributes:
-        ruled: there is anything on any ego's way that the law speaks of.
+        ruled: True if a rule of the law applies on any ego's path.
     """
 
     def __init__(self, session: SumoSession, recorder: Recorder) -> None:
@@ -121,7 +123,7 @@ class LawRecords:
         self._states: dict[str, str] = {}
 
     def depart(self, way: EgoWay) -> None:
-        """Note an ego's way, if the law of the road has a say on it."""
+        """Note an ego's path and what the law rules on it, if anything."""
         if not way.is_ruled:
             return
         self.ruled = True
@@ -137,7 +139,7 @@ class LawRecords:
                 self._recorder.signal(time, system, state)
 
     def walks(self, roster: Roster) -> None:
-        """Record, at each control instant, the people who joined the crowd and their goals."""
+        """Record the people who joined the crowd since the last call, and their goals."""
         if not self.ruled or not roster.newcomers:
             return
         crowd, recorder = roster.crowd, self._recorder

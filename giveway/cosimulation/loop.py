@@ -9,9 +9,9 @@ The order of one step, from t_k to t_k+1 (Yang & Özgüner 2019, algorithm 1):
 4. step the vehicles and the crowd, both from the state at t_k, so that their order is irrelevant;
 5. where SUMO's step ends at t_k+1: move everybody there, step SUMO, compare.
 
-All that may raise comes before the moves of 5. The controller sits inside the master, without a
-lag of one sample: position and speed do not depend on the force instantaneously, so there is no
-algebraic loop.
+All that may raise an error comes before the moves of step 5. The controller is called between
+reading and stepping the FMU, without a lag of one sample: position and speed do not depend on
+the force instantaneously, so there is no algebraic loop.
 """
 
 from time import perf_counter
@@ -40,23 +40,23 @@ from giveway.processes.interrupts import DeferredInterrupt
 from giveway.run_data.progress import Ending, Progress, Watcher
 from pedestrian_model import PedestrianModelError, PlugInError
 
-# An enumeration's class takes four times as long as a module to tell its members.
+# Bound once: looking a member up on the Enum class costs time in every step.
 _CONTROLLING, _VEHICLE = Phase.CONTROLLING, Phase.VEHICLE
 _CROWD, _SUMO = Phase.CROWD, Phase.SUMO
 
 
 class Loop:
-    """One run's state and its steps.
+    """The state of one run, and its steps.
 
     Args:
-        parts: what the run is made of, set up and at its initial state.
-        recorder: gathers the rows.
-        follow: Note how people and traffic get on, for :meth:`follow_up`.
+        parts: Parts of the run, at their initial state.
+        recorder: Recorder that gathers the rows.
+        follow: True to note how people and traffic get on, for :meth:`follow_up`.
 
     Attributes:
         endings: Ending of each ego that has left the road or was on it when the run ended.
         remarks: Remarks on how the run went, one sentence each.
-        followed: what is noted for :meth:`follow_up`; None: nothing.
+        followed: Notes for :meth:`follow_up`, or None without ``follow``.
     """
 
     endings: dict[str, Ending]
@@ -74,7 +74,7 @@ class Loop:
         self._k = 0
         self._roster = parts.roster
         self._egos: list[Ego] = []
-        self._ways: list[Array] = []  # (k, 2) [m] of each ego that has departed
+        self._ways: list[Array] = []  # (k, 2) [m] driven path of each ego that has departed
         self.endings = {}
         self.remarks = []
         self._standstill = Standstill()
@@ -90,7 +90,7 @@ class Loop:
         self._walking = Walking(parts.config, parts.crowd_model, parts.roster, walks)
 
     def run(self, watcher: Watcher | None, interrupt: DeferredInterrupt) -> Ending:
-        """Step until every ego is done, a limit or an interrupt.
+        """Step until every ego has arrived, a limit is reached or the user interrupts.
 
         Raises:
             GivewayError: a part failed; everything recorded so far stays recorded.
@@ -116,14 +116,14 @@ class Loop:
         return ending
 
     def follow_up(self, ending: Ending, interrupt: DeferredInterrupt) -> bool:
-        """Go on without egos until those who came close have arrived; no row is recorded.
+        """Go on without egos until the people who came close have arrived; no row is recorded.
 
         Args:
             ending: Ending of the run.
             interrupt: Flag that is read between two steps.
 
         Returns:
-            Whether it came to its end without an interrupt.
+            True if it came to its end without an interrupt.
 
         Raises:
             GivewayError: a part failed.
@@ -141,7 +141,7 @@ class Loop:
         )
 
     def _blame(self, error: PedestrianModelError) -> str:
-        """Name the pedestrian whose state is not finite by its id."""
+        """Name the pedestrian whose state is not finite by their id."""
         crowd, roster = self._roster.crowd, self._roster
         if isinstance(error, PlugInError):
             whom = "" if error.person is None else f"pedestrian '{roster.names[error.person]}': "
@@ -237,7 +237,7 @@ class Loop:
         self._recorder.ledger(self._roster.ledger)
 
     def _remark_on_far_people(self) -> None:
-        """Say so if the added pedestrians walk where no ego comes by."""
+        """Add a remark if the added pedestrians walk where no ego comes by."""
         crowd = self._parts.config.crowd
         remarks = [flow_remark(crowd.flow, self._ways)]
         if crowd.pedestrians:
@@ -248,7 +248,7 @@ class Loop:
         self.remarks += [f"ego '{ego.id}': {said}" for said in ego.rules.remarks]
 
     def _places(self) -> Array:
-        """(e, 2) [m] the egos' front bumpers."""
+        """The egos' front bumpers (e, 2) [m]."""
         if len(self._fronts) != len(self._egos):
             self._fronts = np.empty((len(self._egos), 2))
         for row, ego in enumerate(self._egos):
@@ -302,7 +302,7 @@ class Loop:
     # --- steps 4 and 5 ------------------------------------------------------------------------
 
     def _see_arrivals(self) -> None:
-        """Egos that have driven their distance leave the road."""
+        """Let the egos that have driven their distance leave the road."""
         gone = [ego for ego in self._egos if ego.arrived]
         for ego in gone:
             self.endings[ego.id] = Ending.COMPLETED
@@ -343,7 +343,7 @@ class Loop:
         )
 
     def _step_crowd(self) -> None:
-        """Move the crowd under the vehicles at t_k; pedestrians that have arrived leave."""
+        """Move the crowd under the vehicles at t_k, and remove the pedestrians who have arrived."""
         parts = self._parts
         names = self._walking.advance(self._k, self._mirror.vehicles, parts.surroundings)
         if names:  # they leave SUMO with its next step

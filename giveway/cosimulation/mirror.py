@@ -16,31 +16,32 @@ from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
 from giveway.sumo.session import SumoSession
 from pedestrian_model import Vehicles
 
-_INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
-_NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
-_SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
-_MEET = 1.5  # [s] in which a vehicle beside an ego's way is expected to come into it at most
-_BODIES = 15.0  # [m] of two vehicles
+# Distance [m] from a vehicle's contour at which its influence is exp(-26) of the strongest
+_INFLUENCE_RANGE = 10.0
+_NOSE = 1.5  # Longest time [s] for the contour's nose, as nose length divided by speed
+_SHORT = 0.15  # Step [s] of SUMO in which no car turns noticeably: 0.1 m sideways at 9 m/s^2
+_MEET = 1.5  # Time [s] within which a vehicle beside an ego's path may come into it
+_BODIES = 15.0  # Allowance [m] for the lengths of the two vehicles
 _NONE = np.empty(0, dtype=np.int64)
-_STANDING = 1e-6  # [m/s] below this speed a pedestrian keeps its last angle
+_STANDING = 1e-6  # Speed [m/s] below which a pedestrian keeps the last angle
 
 
 class Mirror:
-    """Keeps SUMO's persons and egos where ours are, and our background vehicles where SUMO's are.
+    """Keeps SUMO's persons and egos at giveway's positions, and reads SUMO's background vehicles.
 
-    SUMO steps once every ``substeps`` control steps; in between, background vehicles follow their
-    lanes at the speed they had.
+    SUMO steps once every ``substeps`` control steps. In between, background vehicles follow their
+    lanes at the speed that they had.
 
     Args:
         session: The running simulation.
         time_step: Control step [s].
         substeps: Control steps per SUMO step.
-        horizon: N, the most steps that any ego looks ahead.
+        horizon: Longest prediction horizon N of any ego [steps].
 
     Attributes:
-        background: SUMO's own vehicles at its latest instant.
-        poses: (N, e + b, 7) vehicles over the prediction horizon; the first e rows of each step
-            are the egos, which their corridors fill in; ``poses[0]`` is now.
+        background: Background vehicles at SUMO's latest instant.
+        poses: Poses (N, e + b, 7) of the vehicles over the prediction horizon. The first e rows of
+            each step are the egos, which their corridors fill in; ``poses[0]`` is the present.
         vehicles: A view of ``poses[0]`` for the crowd's step.
         others: The same without the egos.
     """
@@ -55,13 +56,13 @@ class Mirror:
         self._time_step = time_step
         self._substeps = substeps
         self._horizon = horizon
-        self._span = (substeps + horizon) * time_step  # [s]
+        self._span = (substeps + horizon) * time_step  # time [s]
         self._bends = Bends(session.vehicles, time_step, substeps, horizon)
         self._long = substeps * time_step > _SHORT
-        self._since = 0  # control steps since SUMO's
+        self._since = 0  # control steps since SUMO's last step
         self._egos = 0
         self._driven: list[Ego] = []
-        self._near = _NONE  # the background vehicles that have rows
+        self._near = _NONE  # indices of the background vehicles that have rows
         self._angles = np.zeros(0)
         self._row = np.zeros(0)
         self.background = NO_VEHICLES
@@ -87,7 +88,7 @@ class Mirror:
 
         Args:
             egos: Egos on the road, in the order of their rows.
-            pedestrians: (n, 2) [m] positions now.
+            pedestrians: Positions (n, 2) [m] now.
 
         Raises:
             VehicleError: a position in SUMO is not finite.
@@ -118,7 +119,7 @@ class Mirror:
         self._bends.fill(self.poses, self._egos, 0)
 
     def mark_beside(self, egos: Sequence[Ego]) -> None:
-        """Tell egos which rows are of vehicles whose lanes lead them past their paths."""
+        """Tell egos which rows are vehicles whose lanes lead them past the egos' paths."""
         ids, near = self.background.ids, self._near
         for ego in egos:
             names = ego.rules.beside
@@ -135,9 +136,10 @@ class Mirror:
             raise VehicleError(msg)
 
     def place(self, egos: Sequence[Ego]) -> None:
-        """Fill the egos' rows from where they are now, ahead only if anybody looks at them there.
+        """Fill the egos' rows: present poses, and future ones if a prediction uses them.
 
-        An ego that foresees the crowd does so under motions of its own.
+        A single ego that foresees the crowd predicts it under motions of its own, so that its
+        future poses are not filled.
         """
         unseen = len(egos) == 1 and egos[0].foresees
         poses = self.poses[:1] if unseen else self.poses
@@ -163,8 +165,8 @@ class Mirror:
         """Move everybody in SUMO to where they are at the control step ``step``, and step SUMO.
 
         Raises:
-            CrowdError, VehicleError: a position is not finite, on which SUMO would hang.
-            SumoError: SUMO failed or disagrees.
+            CrowdError, VehicleError: a position is not finite; SUMO would hang on it.
+            SumoError: SUMO failed, or its positions differ from giveway's.
         """
         places = [(ego.id, ego.check_pose(step)) for ego in egos]
         present, crowd = roster.person_ids, roster.crowd
@@ -189,7 +191,7 @@ class Mirror:
 def _close(
     vehicles: BackgroundVehicles, near: NDArray[np.int64], egos: Sequence[Ego]
 ) -> NDArray[np.bool_]:
-    """(rows,) flags of the vehicles ``near`` that may soon meet an ego that keeps to the law."""
+    """Flags (rows,) of the vehicles ``near`` that may soon meet an ego that obeys right of way."""
     close = np.zeros(len(near), dtype=np.bool_)
     for ego in egos:
         if not ego.config.heeds("right_of_way"):
@@ -205,13 +207,13 @@ def _relevant(
     egos: Sequence[tuple[float, float, float]],
     ahead: float,
 ) -> NDArray[np.int64]:
-    """Indices of the vehicles that matter to a pedestrian or an ego within ``ahead`` [s].
+    """The indices of the vehicles that matter to a pedestrian or an ego within ``ahead`` [s].
 
     Args:
         vehicles: The background vehicles.
-        pedestrians: (n, 2) [m].
-        egos: x, y [m] and speed [m/s] of each.
-        ahead: [s].
+        pedestrians: Positions (n, 2) [m].
+        egos: Position x, y [m] and speed [m/s] of each ego.
+        ahead: Time [s].
     """
     speed = np.abs(vehicles.speed)
     reach = _INFLUENCE_RANGE + vehicles.length + vehicles.width + (_NOSE + ahead) * speed
@@ -259,7 +261,7 @@ def walking_angles(
     """Fill each pedestrian's angle [deg, 0 = north, clockwise].
 
     ``memory`` holds the last angle of all pedestrians, which is kept while one stands. Returns the
-    index of the first state that is not finite, or -1.
+    row of the first state that is not finite, or -1.
     """
     for j in range(len(present)):
         v_x, v_y = velocity[j, 0], velocity[j, 1]

@@ -1,4 +1,4 @@
-"""The one check before a run: what is wrong with a request is said before anything is loaded."""
+"""The checks before a run, which find errors of a request before anything is loaded."""
 
 import math
 from collections.abc import Sequence
@@ -15,20 +15,20 @@ from giveway.metrics.plugged_in import metric_columns
 from giveway.scenario_files import ScenarioFiles, read_scenario
 from sumo_scenarios import Scenario
 
-LONGEST_STEP = 0.05  # [s] of the co-simulation: the paper's, and what the crowd is stable at
+LONGEST_STEP = 0.05  # Longest control step [s]: the paper's; the crowd is stable with it
 
 
 @dataclass(frozen=True)
 class CheckedRun:
-    """A run whose scenario, options and vehicles have been found to fit each other.
+    """A run whose scenario, options and vehicles fit each other.
 
     Attributes:
-        config: The effective configuration.
-        scenario: where its files are.
-        files: what the scenario's own configuration says.
-        egos: The configuration of each ego.
-        zone: where the scenario's own pedestrians are ours.
-        time_step: The control step [s].
+        config: Effective configuration of the run.
+        scenario: Places of the scenario's files.
+        files: Content of the scenario's own configuration.
+        egos: Configuration of each ego.
+        zone: Zone in which giveway moves the scenario's own pedestrians.
+        time_step: Control step [s].
     """
 
     config: RunConfig
@@ -44,7 +44,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
 
     Raises:
         ScenarioError: a file of the scenario is missing or cannot be read.
-        ConfigError: the zone is none, two egos have the same id, or people would tremble.
+        ConfigError: the zone is malformed, two egos have the same id, or people would tremble.
         ControlError: a controller, model or metric is not installed.
         MetricError: the columns of a metric cannot be used.
         VehicleError: a vehicle FMU cannot be read, or its profile does not fit.
@@ -59,7 +59,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     time_step = control_step(config, files)
     require_vehicles(egos, time_step)
     require_code(config, time_step)
-    metric_columns(config)  # which have to be sound
+    metric_columns(config)  # raises an error if the columns are not sound
     require_steady_preset(config.crowd.preset, time_step, "[crowd] preset")
     for ego in egos:
         if ego.perception.preset:
@@ -68,7 +68,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
 
 
 def control_step(config: RunConfig, files: ScenarioFiles) -> float:
-    """The control step [s]: as wanted, or 0.05 s, or the longest below that divides SUMO's."""
+    """The control step [s]: as configured, or the longest up to 0.05 s that divides SUMO's."""
     if config.time_step is not None:
         return config.time_step
     step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
@@ -79,7 +79,7 @@ def substeps_of(time_step: float, step_length: float) -> int:
     """The number of control steps in one SUMO step.
 
     Raises:
-        ConfigError: they do not fit a whole number of times.
+        ConfigError: SUMO's step is not a whole multiple of the control step.
     """
     substeps = round(step_length / time_step)
     if substeps < 1 or abs(substeps * time_step - step_length) > 1e-9:
@@ -91,7 +91,7 @@ def substeps_of(time_step: float, step_length: float) -> int:
 
 
 def _whole_milliseconds(step_length: float) -> float:
-    """SUMO's step [s] as it keeps it: half a millisecond is rounded up."""
+    """SUMO's step [s], rounded as SUMO rounds it: half a millisecond is rounded up."""
     return math.floor(1000.0 * step_length + 0.5) / 1000.0
 
 

@@ -1,4 +1,4 @@
-"""Selects the people and background vehicles to record: all near an ego, some far."""
+"""The selection of road users to record: those near an ego always, others sometimes."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,25 +11,25 @@ from giveway.sumo.background import BackgroundVehicles
 
 
 def looks_ahead(period: float | None, time_step: float) -> int:
-    """The steps of look-ahead between two predictions that are kept; 0: none is kept.
+    """The number of control steps between two recorded predictions, or 0 if none is recorded.
 
     Args:
-        period: Time between recorded instants [s], or None if none is kept.
+        period: Time between recorded predictions [s], or None if none is recorded.
         time_step: Control step [s].
     """
     return 0 if period is None else max(1, round(period / time_step))
 
 
 class Instants:
-    """Keeps whom a run comes by: near the egos at every instant, all from time to time.
+    """Records the road users near the egos at every instant, and all others from time to time.
 
     Args:
-        recorder: gathers the rows.
-        record: what is kept.
-        time_step: [s] of the co-simulation.
+        recorder: Recorder that gathers the rows.
+        record: Configuration of what is recorded.
+        time_step: Control step [s].
 
     Attributes:
-        looks: steps of look-ahead between two predictions that are kept; 0: none is.
+        looks: Number of control steps between two recorded predictions, or 0 if none is recorded.
     """
 
     looks: int
@@ -46,10 +46,10 @@ class Instants:
         """Record the pedestrians near an ego, and from time to time all of them.
 
         Args:
-            k: The instant.
-            roster: who is there.
-            places: (e, 2) [m] the egos' front bumpers.
-            everybody: Record all now.
+            k: Number of the control step.
+            roster: The crowd and its members.
+            places: Front bumpers (e, 2) [m] of the egos.
+            everybody: True to record everybody now.
         """
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :], roster.traits)
@@ -64,10 +64,10 @@ class Instants:
         """Record the background vehicles near an ego, and from time to time all of them.
 
         Args:
-            k: The instant.
+            k: Number of the control step.
             time: Time [s] of the instant on SUMO's clock.
             background: Background vehicles.
-            places: Stations of the egos, as for :meth:`crowd`.
+            places: Front bumpers (e, 2) [m] of the egos.
         """
         within = self._near
         if k - self._far_background >= self._far_steps:
@@ -75,14 +75,14 @@ class Instants:
         self._recorder.background(time, background, places, within)
 
     def predictions(self, ego_id: str, predicted: Array, present: NDArray[np.intp]) -> None:
-        """Record where an ego expects people to be.
+        """Record the positions at which an ego expects people.
 
         Args:
-            ego_id: SUMO's.
-            predicted: (h, n, 2) [m] at the next h instants.
-            present: (n,) whom, by their numbers in the roster.
+            ego_id: Id of the ego in SUMO.
+            predicted: Positions (h, n, 2) [m] at the next h instants.
+            present: Number (n,) of each person in the roster.
         """
-        # for a period beyond the horizon, the horizon's end is kept
+        # if the period is longer than the horizon, the last predicted instant is kept
         every = min(self.looks, len(predicted))
         kept = predicted[every - 1 :: every]
         looks = np.arange(every, len(predicted) + 1, every, dtype=np.float64)

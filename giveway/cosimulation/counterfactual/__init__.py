@@ -1,1 +1,1 @@
-"""The same people without the ego: the counterfactual run that delays are measured against."""
+"""The counterfactual run: the same people without the ego, against which delays are measured."""

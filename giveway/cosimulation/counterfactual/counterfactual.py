@@ -1,10 +1,11 @@
-"""The twin of a run: the same again, but people do not feel the egos.
+"""The counterfactual run: the same run again, but people do not feel the egos.
 
-The egos are there for SUMO, as they drove in the run: the zone, the lights, the background vehicles
-and all that is drawn are the same. What differs is what the egos cost the people.
+The egos are there for SUMO, and drive as they did in the run. The zone, the traffic lights, the
+background vehicles and all random draws are the same. The difference is what the egos cost the
+people.
 
-On open ground, where nobody else ever is, that is the crowd among itself. It depends on no ego, so
-that the runs that one process makes with the same people share it.
+On open ground there is nobody else, and the counterfactual run is the added crowd alone. It depends
+on no ego, so runs of one process with the same people share it.
 """
 
 import hashlib
@@ -34,21 +35,21 @@ from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.run_data.walks import WalkTrack
 
-_KEPT = 8  # crowds among themselves that a process remembers
+_KEPT = 8  # Number of crowds without egos that a process remembers
 _alone: OrderedDict[bytes, CrowdAlone] = OrderedDict()
 
 
 @dataclass(frozen=True)
 class Twin:
-    """The fate of the people in the counterfactual run.
+    """The people's walks in the counterfactual run.
 
     Attributes:
-        walks: how they got on, up to the control step at which following ends.
-        traffic_differs: whether lights or background vehicles did anything else than in the run.
-        traffic_delay: [s] that the background vehicles lost until the last ego's arrival, less what
-            they lose until then where the egos are not there at all; nan: there are none, or an ego
-            is one of the scenario's.
-        among_themselves: it is the crowd on open ground, without SUMO.
+        walks: Tracks of the people, up to the control step at which the follow-up ends.
+        traffic_differs: True if lights or background vehicles behaved differently from the run.
+        traffic_delay: Time [s] that the background vehicles lost until the last ego's arrival, less
+            the time that they lose in a run without the egos. nan if there are no background
+            vehicles, or if an ego is a vehicle of the scenario.
+        among_themselves: True if the run is the crowd on open ground, without SUMO.
     """
 
     walks: WalkTrack
@@ -65,18 +66,18 @@ def twin_of(
     interrupt: DeferredInterrupt,
     native_log: Path | None = None,
 ) -> Twin | None:
-    """Go through a run again; SUMO must be free.
+    """Repeat a run without the egos' influence on people; no other simulation may be open in SUMO.
 
     Args:
-        checked: The run.
-        followed: how its people got on.
-        driven: how its egos drove.
+        checked: Checked configuration of the run.
+        followed: Notes of the run about its people and traffic.
+        driven: Recorded drives of its egos.
         heartbeat: Function that tells another process that this one is alive.
         interrupt: Flag that is read between two steps.
-        native_log: File for what SUMO prints; None: a temporary one.
+        native_log: File for what SUMO prints, or None for a temporary one.
 
     Returns:
-        The twin; None: it was interrupted.
+        The counterfactual run, or None if it was interrupted.
 
     Raises:
         GivewayError: a part failed.
@@ -112,10 +113,10 @@ def _again(
     heartbeat: Heartbeat,
     native_log: Path | None,
 ) -> TrafficNotes | None:
-    """Repeat a run up to the control step ``last``; None if it was interrupted."""
+    """Repeat a run up to the control step ``last``; return None if it was interrupted."""
     with ExitStack() as stack:
         parts = assemble(checked, stack, native_log=native_log, driven=driven)
-        log = None if driven.absent else walks  # nobody asks how people got on without egos
+        log = None if driven.absent else walks  # without egos, nobody's walk is needed
         walking = Walking(checked.config, parts.crowd_model, parts.roster, log)
         traffic = TrafficNotes(parts.sumo)
         absent = driven if driven.absent else None
@@ -125,7 +126,7 @@ def _again(
 
 
 def _crowd_alone(config: RunConfig, beginning: Beginning, time_step: float) -> CrowdAlone:
-    """The crowd of a run among itself, as far as it has been asked for already."""
+    """The crowd of a run without egos, stepped as far as any earlier call needed it."""
     key = _key(config, beginning, time_step)
     if key in _alone:
         _alone.move_to_end(key)
@@ -142,7 +143,7 @@ def _crowd_alone(config: RunConfig, beginning: Beginning, time_step: float) -> C
 
 
 def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
-    """A hash of all that the crowd among itself depends on."""
+    """A hash of all that a crowd without egos depends on."""
     digest = hashlib.sha256()
     settings, crowd = config.crowd, beginning.crowd
     noise = settings.acceleration_noise

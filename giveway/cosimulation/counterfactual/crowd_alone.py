@@ -1,4 +1,4 @@
-"""A crowd on open ground among itself: what it does where nobody else is, with or without SUMO."""
+"""A crowd on open ground without vehicles, with or without SUMO."""
 
 from giveway.crowd.generation.flows import Flows
 from giveway.crowd.roster import Roster, Walking
@@ -10,15 +10,15 @@ _NOBODY = Vehicles.empty()
 
 
 class CrowdAlone:
-    """Steps a crowd without vehicles, as far as it is asked to.
+    """A crowd without vehicles, which is stepped only as far as a call needs it.
 
     Args:
-        roster: The crowd, and who is in it.
-        walking: Its step.
-        walks: notes how people get on.
-        step: The control step that has been reached.
+        roster: The crowd and its members.
+        walking: Step of the crowd.
+        walks: Log of the people's walks.
+        step: Control step that has been reached.
         flows: Flows of people who come in, or None if nobody does.
-        every: Control steps between two arrivals: those of one SUMO step.
+        every: Control steps per SUMO step; people come in once per SUMO step.
     """
 
     def __init__(
@@ -44,10 +44,10 @@ class CrowdAlone:
         self._walking.note(self._k)
 
     def go_on(self, last: int, names: frozenset[str], heartbeat: Heartbeat) -> None:
-        """Step until none of those named is on the way any more, or up to a control step.
+        """Step until all named people have arrived, or up to a control step.
 
         Args:
-            last: The control step.
+            last: Last control step.
             names: Ids of the people who count.
             heartbeat: Function that tells another process that this one is alive.
         """
@@ -58,7 +58,7 @@ class CrowdAlone:
             self._note()
 
     def _awaited(self, names: frozenset[str]) -> bool:
-        """Return whether any of those named is on the way, or yet to come in."""
+        """Return whether a named person is on the way or has yet to come in."""
         roster = self._roster
         if not names.isdisjoint(roster.names):
             return True

@@ -1,4 +1,4 @@
-"""A run followed: how people and traffic get on, also when the last ego has arrived."""
+"""The follow-up of a run: people and traffic, also after the last ego has arrived."""
 
 import math
 from collections.abc import Mapping
@@ -21,33 +21,33 @@ from giveway.processes.interrupts import DeferredInterrupt
 from pedestrian_model import Crowd
 
 LONGEST = 60.0
-"""[s] after the last ego's arrival, for which people are followed at most."""
+"""Longest time [s] for which people are followed after the last ego's arrival."""
 
 
 class Beginning(NamedTuple):
-    """The people that giveway adds, as a run began."""
+    """The people that giveway adds, at the beginning of a run."""
 
     crowd: Crowd
-    names: tuple[str, ...]  # their ids
-    traits: Mapping[str, Trait]  # what sets them apart
-    flows: Flows | None = None  # of those who come in during the run; None: nobody does
+    names: tuple[str, ...]  # Ids of the people
+    traits: Mapping[str, Trait]  # Traits that differ from person to person
+    flows: Flows | None = None  # Flows of people who come in later, or None
     substeps: int = 1  # control steps per SUMO step
 
 
 class Followed:
-    """The notes of a run for its counterfactual run.
+    """The notes that a run makes for its counterfactual run.
 
     Args:
         parts: Parts of the run, at its initial state.
 
     Attributes:
-        beginning: The people that giveway adds, at first and later.
-        secluded: nobody but they and the egos is ever there.
-        walks: how they get on.
-        traffic: what the background vehicles do.
-        arrival: The control step at which the run itself ended.
-        time_loss: [s] of the background vehicles up to then.
-        last: The control step at which following ends at the latest.
+        beginning: People that giveway adds, at first and later.
+        secluded: True if only they and the egos are ever there.
+        walks: Log of the people's walks.
+        traffic: Log of the background vehicles.
+        arrival: Control step at which the run itself ended.
+        time_loss: Time [s] that the background vehicles had lost by then.
+        last: Control step at which the follow-up ends at the latest.
     """
 
     def __init__(self, parts: Parts) -> None:
@@ -69,7 +69,7 @@ class Followed:
         self._parked: list[str] = []
 
     def leave(self, egos: list[Ego], dismissed: bool) -> None:
-        """Note that egos have arrived; those that are not dismissed are still in SUMO."""
+        """Note the egos that have arrived; an ego that is not dismissed is still in SUMO."""
         self._fronts = np.array([ego.pose[:2] for ego in egos])
         self._parked = [] if dismissed else [egos[-1].id]
 
@@ -83,21 +83,22 @@ class Followed:
         heartbeat: Heartbeat,
         interrupt: DeferredInterrupt,
     ) -> bool:
-        """Go on from the control step ``step`` until those who came close have arrived.
+        """Go on from the control step ``step`` until the people who came close have arrived.
 
-        A run whose egos have not all arrived is not gone on with; its twin ends with it.
+        A run whose egos have not all arrived is not continued, and its counterfactual run ends with
+        it.
 
         Args:
-            completed: whether every ego has arrived.
-            walking: The crowd's step.
-            mirror: The run's.
-            step: The last one of the run.
-            start: SUMO's clock [s] at step 0.
+            completed: True if every ego has arrived.
+            walking: Step of the crowd.
+            mirror: Exchange of the run with SUMO.
+            step: Last control step of the run.
+            start: Time [s] on SUMO's clock at step 0.
             heartbeat: Function that tells another process that this one is alive.
             interrupt: Flag that is read between two steps.
 
         Returns:
-            Whether it came to its end without an interrupt.
+            True if it came to its end without an interrupt.
 
         Raises:
             GivewayError: a part failed.

@@ -1,7 +1,7 @@
-"""People and SUMO under egos whose motion is known: a run's own, or none any more.
+"""The loop over people and SUMO under egos whose motion is known.
 
-Two uses: the time after the last ego's arrival, and the twin of a run, in which egos drive as they
-did while people do not feel them. No controller and no vehicle FMU takes part.
+It has two uses: the time after the last ego's arrival, and the counterfactual run, in which egos
+drive as they did while people do not feel them. No controller and no vehicle FMU takes part.
 """
 
 from typing import NamedTuple
@@ -20,29 +20,29 @@ from giveway.journal.walk_log import WalkLog
 from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.processes.interrupts import DeferredInterrupt
 
-_SAME_INSTANT = 1e-6  # [s]
+_SAME_INSTANT = 1e-6  # Difference [s] up to which two instants are one
 
 
 class Standing(NamedTuple):
-    """The state of a run."""
+    """The state at which a run is continued."""
 
     mirror: Mirror
     step: int  # control step
-    start: float  # [s] SUMO's clock at step 0
-    fronts: Array  # (e, 2) [m] round which the zone lies while no ego is on the road
+    start: float  # Time [s] on SUMO's clock at step 0
+    fronts: Array  # (e, 2) [m] centres of the zone while no ego is on the road
 
 
 class ReplayedLoop:
     """Steps people and SUMO until everybody who counts has arrived.
 
     Args:
-        parts: what is stepped.
-        walking: The crowd's step.
-        walks: notes how people get on, and knows who counts.
-        traffic: notes what the background vehicles do.
+        parts: Parts of the run.
+        walking: Step of the crowd.
+        walks: Log of the people's walks; it knows who counts.
+        traffic: Log of the background vehicles.
         heartbeat: Function that tells another process that this one is alive.
-        since: where a run that is to be gone on with stands; None: at its beginning.
-        driven: Recorded egos round which the zone lies, or None if the egos drive.
+        since: State of the run that is to be continued, or None to start at its beginning.
+        driven: Recorded egos that are the centres of the zone, or None if the egos of the loop are.
     """
 
     def __init__(
@@ -65,7 +65,8 @@ class ReplayedLoop:
             mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
             since = Standing(mirror, 0, parts.sumo.time, np.empty((0, 2)))
         self._mirror, self._k, self._start, self._fronts = since
-        self._read = self._k - 1 if self._k == 0 else self._k  # the step at which SUMO was read
+        # the last step at which SUMO was read
+        self._read = self._k - 1 if self._k == 0 else self._k
         self._driven = driven
         self._egos: list[Ego] = []
         self._meetings = Meetings(parts.sumo, parts.yielding)
@@ -74,12 +75,12 @@ class ReplayedLoop:
         """Step up to the control step ``last``, or until nobody who counts is on the way.
 
         Args:
-            last: The control step.
+            last: Last control step.
             interrupt: Flag that is read between two steps.
-            to_the_end: whoever is on the way, up to ``last``.
+            to_the_end: True to step up to ``last`` although nobody is on the way.
 
         Returns:
-            Whether it came to its end without an interrupt.
+            True if it came to its end without an interrupt.
 
         Raises:
             GivewayError: a part failed.
@@ -119,7 +120,7 @@ class ReplayedLoop:
         self._notes.note(background)
 
     def _places(self) -> Array:
-        """(e, 2) [m] round which the zone lies."""
+        """The centres (e, 2) [m] of the zone."""
         if self._driven is not None:
             return _on_the_road(self._driven, self._start + self._k * self._parts.time_step)
         if self._egos:
@@ -157,13 +158,13 @@ class ReplayedLoop:
 
 
 def _recall(ego: Ego) -> None:
-    """Note where the ego had to stop, which nobody asks about again."""
+    """Restore the ego's stop of the recorded run, which no rule computes again."""
     if isinstance(ego.vehicle, RecordedVehicle):
         ego.rules.stop = ego.front + ego.vehicle.stop_gap
 
 
 def _on_the_road(driven: Driven, time: float) -> Array:
-    """(e, 2) [m] the front bumpers of those egos that were on the road at ``time`` [s]."""
+    """The front bumpers (e, 2) [m] of the egos that were on the road at ``time`` [s]."""
     places = []
     for track in driven.tracks.values():
         row = int(np.searchsorted(track.time, time - _SAME_INSTANT))

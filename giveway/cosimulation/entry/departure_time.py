@@ -4,15 +4,15 @@ import numpy as np
 
 from giveway.config import EgoRunConfig
 
-_STREAM = 0xDE9  # tells this draw from others of the same seed
+_STREAM = 0xDE9  # Random stream of this draw, different from others of the same seed
 
 
 def departure_time(config: EgoRunConfig) -> float:
     """The time at which an ego is to be inserted [s].
 
-    A drawn one is uniform between the earliest and the latest, in whole milliseconds as SUMO counts
-    them. It depends on the run's seed and the ego's id alone: whichever controller drives, the ego
-    departs at the same instant.
+    A drawn time is uniform between the earliest and the latest, in whole milliseconds as in SUMO.
+    It depends on the run's seed and the ego's id only, so that the ego departs at the same instant
+    with every controller.
 
     Args:
         config: Configuration of the ego.

@@ -1,7 +1,7 @@
-"""The departures of egos: inserted by us or by SUMO, or taken over as they depart.
+"""The departures of egos: inserted by giveway or SUMO, or taken over as they depart.
 
-An ego that is to be inserted enters at its time if there is room for it. Otherwise SUMO inserts it,
-by its own check, as soon as there is, and it is taken over there.
+An ego that is to be inserted enters at its time if there is room for it. Otherwise SUMO inserts it
+as soon as SUMO's own check finds room, and giveway takes it over there.
 """
 
 import difflib
@@ -25,9 +25,9 @@ from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.walkways import WalkNetwork
 
-LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
-LONGEST_WAIT_FOR_ROOM = 300.0  # [s] after which an ego that finds none ends the run
-_NAMES_KEPT = 100_000  # of vehicles that departed, to guess what was meant
+LONGEST_WAIT = 86_400.0  # Longest wait [s] for a departure in a scenario that never ends
+LONGEST_WAIT_FOR_ROOM = 300.0  # Longest wait [s] of an ego for room, after which the run ends
+_NAMES_KEPT = 100_000  # Number of vehicle ids remembered for hints on misspelt ids
 
 
 class Departures:
@@ -37,15 +37,15 @@ class Departures:
         egos: Waiting egos with their FMUs loaded.
         session: The running simulation.
         config_file: The scenario, for messages.
-        time_step: [s] of the co-simulation.
-        network: where people can walk; None: nobody asks.
+        time_step: Control step [s].
+        network: Network in which people can walk, or None if no rule needs it.
 
     Attributes:
         times: Departure times [s] of the egos that are to be inserted, by their ids.
 
     Raises:
-        ScenarioError, ConfigError: an ego to be inserted has no route, or no file declares one that
-            is to be taken over.
+        ScenarioError, ConfigError: an ego to be inserted has no route, or no file declares a
+            vehicle that is to be taken over.
     """
 
     def __init__(
@@ -68,12 +68,13 @@ class Departures:
         self.times = {ego.id: departure_time(ego.config) for ego in egos if not ego.taken_over}
         self._paths = {ego.id: self._path_of_inserted(ego) for ego in egos if not ego.taken_over}
         self._begin = session.time
-        self._blocked: dict[str, float] = {}  # [s] since when an ego lacks room
+        self._blocked: dict[str, float] = {}  # time [s] since which an ego lacks room
         self._queued: set[str] = set()  # egos that SUMO is to insert
-        self._cautious: set[str] = set()  # of these, who have room where SUMO may insert others
+        # queued egos that have room, but SUMO may insert others there
+        self._cautious: set[str] = set()
         self._entrance = Entrance(session, time_step, network)
-        self.remarks = self._entrance.remarks  # what the user should know
-        self.ways = self._entrance.ways  # of those that have departed
+        self.remarks = self._entrance.remarks  # remarks for the user
+        self.ways = self._entrance.ways  # records of the egos that have departed
 
     def _require_declared(self, name: str) -> None:
         """Refuse to wait for a vehicle that no file declares."""
@@ -105,10 +106,11 @@ class Departures:
         """Let the scenario run by itself until an ego is due.
 
         Args:
-            goes_on: asked at each SUMO step, with SUMO's clock [s].
+            goes_on: Function that is called with SUMO's clock [s] at each step; waiting ends when
+                it returns False.
 
         Raises:
-            ScenarioError: none ever is.
+            ScenarioError: no ego ever is due.
         """
         session = self._session
         began = session.time
@@ -154,13 +156,13 @@ class Departures:
         """Make sure that every ego has departed.
 
         Raises:
-            ScenarioError: one has not.
+            ScenarioError: an ego has not departed.
         """
         if self.waiting:
             raise ScenarioError(self._never(self.waiting[0]))
 
     def _is_due(self, ego: WaitingEgo, entered: Sequence[Ego] = ()) -> bool:
-        """Return whether an ego enters the road now; ``entered`` are those that just did."""
+        """Return whether an ego enters the road now; ``entered`` are the egos that just entered."""
         if ego.taken_over or ego.id in self._queued:
             return self._is_free_to_take(ego)
         if self._session.time < self.times[ego.id] - 1e-9:
@@ -175,10 +177,10 @@ class Departures:
         return False
 
     def _is_free_to_take(self, ego: WaitingEgo) -> bool:
-        """Return whether SUMO has the vehicle on a road, and nobody overlaps it.
+        """Return whether SUMO has the vehicle on a road, and no other vehicle overlaps it.
 
         Raises:
-            ScenarioError: it has had no room for too long.
+            ScenarioError: the vehicle has had no room for too long.
         """
         vehicles, now = self._session.vehicles, self._session.time
         there = ego.id in self._departed and ego.id in vehicles.present()
@@ -202,7 +204,7 @@ class Departures:
         return any(not vehicles.parked(others.ids[i]) for i in touched)
 
     def _may_meet(self, ego: WaitingEgo, entered: Sequence[Ego]) -> bool:
-        """Return whether SUMO may insert a vehicle now where an ego is to be inserted."""
+        """Return whether SUMO may insert a vehicle now near the place of an ego to be inserted."""
         session = self._session
         edge = ego.config.ego.route[0]
         near = {edge, *ego.config.ego.route[:2], *session.lanes.edges_before(edge)}
@@ -278,7 +280,7 @@ class Departures:
             f"{self._session.time:.12g} s ({len(names)} others did); {hint}"
         )
 
-    # --- inserted -----------------------------------------------------------------------------
+    # --- inserted egos ------------------------------------------------------------------------
 
     def _path_of_inserted(self, ego: WaitingEgo) -> tuple[EgoPath, LanePath]:
         settings = ego.config.ego
@@ -309,7 +311,7 @@ class Departures:
         return self._entrance.take_over(ego)
 
     def _remark_on_wait(self, ego: WaitingEgo) -> None:
-        """Say how long the ego has waited for room, if it has."""
+        """Add a remark on how long the ego has waited for room, if it has."""
         if ego.id not in self._blocked:
             return
         since, now = self._blocked[ego.id], self._session.time

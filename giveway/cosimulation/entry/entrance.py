@@ -1,4 +1,4 @@
-"""The entrance of a waiting ego: inserted where its route says, or taken over where it is."""
+"""The entrance of a waiting ego: inserted where its route begins, or taken over where it is."""
 
 import math
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
 from giveway.walkways import WalkNetwork
 
-_STEEP = 0.01  # [rad] less is not worth a word
+_STEEP = 0.01  # Slope [rad] below which no remark is made
 
 
 class Entrance:
@@ -32,11 +32,11 @@ class Entrance:
 
     Args:
         session: The running simulation.
-        time_step: [s] of the co-simulation.
-        network: where people can walk; None: nobody asks.
+        time_step: Control step [s].
+        network: Network in which people can walk, or None if no rule needs it.
 
     Attributes:
-        remarks: what the user should know.
+        remarks: Remarks for the user.
         ways: Paths of the egos that have entered, by their ids.
     """
 
@@ -54,7 +54,7 @@ class Entrance:
         Args:
             ego: Ego before its departure.
             path: Path of the ego.
-            lane_path: that the path was made of.
+            lane_path: Lanes that the path was made of.
         """
         settings = ego.config.ego
         speed = initial_speed(ego, lane_path)
@@ -71,7 +71,7 @@ class Entrance:
         )
 
     def take_over(self, ego: WaitingEgo) -> Ego:
-        """Take a vehicle that SUMO drives over as an ego: the scenario's, or one SUMO inserted."""
+        """Take over a vehicle from SUMO: one of the scenario, or an ego that SUMO inserted."""
         vehicles = self._session.vehicles
         state = vehicles.state(ego.id)
         shape = shape_of(ego, state)
@@ -107,7 +107,7 @@ class Entrance:
         )
 
     def _remark_on_stops(self, ego: WaitingEgo, served: int, stops: int) -> None:
-        """Say what becomes of the stops of a vehicle that is taken over."""
+        """Add a remark on what becomes of the stops of a vehicle that is taken over."""
         if served:
             self.remarks.append(
                 f"ego '{ego.id}': it halts at {served} stop(s) for the scenario's times; nobody "
@@ -166,7 +166,7 @@ class Entrance:
         )
 
     def _remark_on_slope(self, ego: WaitingEgo, slope: Slope) -> None:
-        """Say so where the road is steep and the vehicle does not feel it."""
+        """Add a remark if the road is steep and the vehicle model ignores slopes."""
         if slope.steepest >= _STEEP and not ego.vehicle.knows_grades:
             percent = 100.0 * math.tan(slope.steepest)
             self.remarks.append(
@@ -175,7 +175,7 @@ class Entrance:
             )
 
     def _kerbs(self, route: RouteContext) -> Kerbs | None:
-        """The kerbs beside the path; None if there are none, or nobody asks for them."""
+        """The kerbs beside the path, or None if there are none or no rule needs them."""
         network, safety = self._network, route.ego.safety
         if network is None or safety is None or safety.setting_out == math.inf:
             return None
@@ -185,7 +185,7 @@ class Entrance:
 
 
 def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
-    """Make sure that an ego's way is as long as it is to drive.
+    """Make sure that an ego's path is as long as the distance that it is to drive.
 
     Args:
         ego: Ego before its departure.
@@ -193,7 +193,7 @@ def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
         departure: Station [m] at which it enters.
 
     Raises:
-        ScenarioError: it is not.
+        ScenarioError: the path is too short.
     """
     distance = ego.config.ego.travel_distance
     if departure >= path.length - 1e-3:
@@ -210,7 +210,7 @@ def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
 
 
 def shape_of(ego: WaitingEgo, own: VehicleShape | VehicleState) -> VehicleShape:
-    """The ego's body: as wanted, or its ``own``."""
+    """The ego's body: as configured, or its ``own``."""
     vehicle = ego.config.vehicle
     return VehicleShape(vehicle.length or own.length, vehicle.width or own.width)
 

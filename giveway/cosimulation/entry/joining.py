@@ -1,4 +1,4 @@
-"""Joins a vehicle that is taken over beside its lane's centre line to that line."""
+"""The path by which a vehicle that is taken over joins its lane's centre line."""
 
 from dataclasses import replace
 
@@ -6,15 +6,15 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.vehicles import VehicleState
 
-_ON_THE_LINE = 0.01  # lateral offset [m] up to which a vehicle is on the line
-_MERGE = 20.0  # distance [m] along which it joins the line
+_ON_THE_LINE = 0.01  # Largest lateral offset [m] of a vehicle on the line
+_MERGE = 20.0  # Distance [m] along which a vehicle joins the line
 
 
 def join(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
-    """The path of a vehicle that is taken over, its front bumper's station, and its lights.
+    """The path of a vehicle that is taken over, the station of its front bumper, and its lane path.
 
-    As a rule the front bumper is on the lane's centre line. A vehicle beside it (one that changes
-    lanes, or is moved by SUMO's sublane model) joins the line within 20 m.
+    As a rule the front bumper is on the lane's centre line. A vehicle beside the line (one that
+    changes lanes, or that SUMO's sublane model moves) joins it within 20 m.
 
     Args:
         lane_path: Lanes of its route.

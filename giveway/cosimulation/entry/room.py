@@ -1,4 +1,4 @@
-"""Checks that an ego has room on the road: its place is free, and all could brake in time."""
+"""The check that an ego has room: its place is free, and all vehicles could brake in time."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -16,24 +16,24 @@ from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
 
 STANDSTILL_GAP = 2.5
-"""[m] between two standing vehicles: minGap of SUMO's default car-following model."""
+"""Gap [m] between two standing vehicles: minGap of SUMO's default car-following model."""
 
-_REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
+_REACTION = 1.0  # Reaction time [s] of SUMO's default car-following model
 
 
 class Entry(NamedTuple):
     """The planned entry of an ego: its path, place, body, speed and braking."""
 
     path: EgoPath
-    lane: str  # that it enters on
-    station: float  # [m] of its front bumper
+    lane: str  # Lane on which the ego enters
+    station: float  # Station [m] of its front bumper
     shape: VehicleShape
-    speed: float  # [m/s]
-    deceleration: float  # [m/s^2] of its hardest braking
+    speed: float  # Speed [m/s] at entry
+    deceleration: float  # Deceleration [m/s^2] of its hardest braking
 
     @property
     def body(self) -> Array:
-        """(5,) its rectangle with the gap to a standing vehicle before and behind it."""
+        """The ego's rectangle (5,), extended by the standstill gap before and behind."""
         x, y, heading = self.path.pose(self.station + STANDSTILL_GAP, self.shape.length)
         return np.array([x, y, heading, self.shape.length + 2 * STANDSTILL_GAP, self.shape.width])
 
@@ -102,6 +102,6 @@ def _can_be_followed(entry: Entry, others: BackgroundVehicles, vehicles: SumoVeh
 
 
 def _gap_to_follow(speed: float, deceleration: float, leader: float) -> float:
-    """The gap [m] that a vehicle needs behind one that brakes as hard; Krauss 1998, section 2.2."""
+    """The gap [m] behind a leader that brakes as hard (Krauss 1998, section 2.2)."""
     braking = max(0.0, speed * speed - leader * leader) / (2.0 * deceleration)
     return STANDSTILL_GAP + speed * _REACTION + braking

@@ -1,4 +1,4 @@
-"""The stops of a vehicle that is taken over, from the scenario's lanes onto the ego's path."""
+"""The stops of a vehicle that is taken over, as stations of the ego's path."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,13 +10,13 @@ from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.vehicles import PlannedStop, VehicleState
 
 SERVING: tuple[str, ...] = ("bus", "coach", "tram")
-"""SUMO's vehicle classes whose egos serve their stops unless they are told otherwise."""
+"""SUMO's vehicle classes whose egos serve their stops by default."""
 
-_PASSED = 1.0  # [m] behind the vehicle a stop is over
+_PASSED = 1.0  # Distance [m] behind the vehicle at which a stop is over
 
 
 def placed(stops: Sequence[PlannedStop], state: VehicleState) -> dict[int, int]:
-    """The stops that lie on the rest of a vehicle's route: which stop on which edge, by number.
+    """The edge index of each stop on the rest of a vehicle's route, by the stop's number.
 
     Args:
         stops: Planned stops in the order in which the vehicle comes to them.
@@ -37,7 +37,7 @@ def placed(stops: Sequence[PlannedStop], state: VehicleState) -> dict[int, int]:
 
 
 def lanes_of(places: Mapping[int, int], stops: Sequence[PlannedStop]) -> dict[int, int]:
-    """The lane on which each edge with a stop is left, by the edge's number."""
+    """The lane on which each edge with a stop is left, by the edge's index."""
     return {at: int(stops[number].lane.rpartition("_")[2]) for number, at in places.items()}
 
 

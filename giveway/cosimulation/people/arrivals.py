@@ -10,12 +10,12 @@ from giveway.sumo.session import SumoSession
 
 
 class Arrivals:
-    """Lets the people of all flows in.
+    """Lets people of all flows come in, and adds them to SUMO.
 
     Args:
-        flows: into our crowd.
+        flows: Flows of people into giveway's crowd.
         session: The running simulation.
-        hosts: The edge that hosts each flow's people inside SUMO.
+        hosts: Edge that hosts each flow's people inside SUMO.
     """
 
     def __init__(self, flows: Flows, session: SumoSession, hosts: Sequence[str]) -> None:
@@ -24,7 +24,7 @@ class Arrivals:
         self._hosts = tuple(hosts)
 
     def update(self, step: int) -> None:
-        """Return the people who come in after a SUMO step, at the control step ``step``."""
+        """Let in the people who are due after a SUMO step, at the control step ``step``."""
         for names, host in zip(self.flows.enter(step), self._hosts, strict=True):
             if names:
                 self._session.add_persons(names, host)
@@ -34,11 +34,11 @@ def require_end(config: RunConfig, end: float) -> None:
     """Make sure that a run without an ego ends though people keep coming.
 
     Args:
-        config: The run's.
-        end: The scenario's [s]; infinite where it names none.
+        config: Configuration of the run.
+        end: End of the scenario [s], or infinity if it names none.
 
     Raises:
-        ConfigError: it does not.
+        ConfigError: the run would not end.
     """
     endless = [flow.name for flow in config.crowd.flow if flow.end is None]
     if config.ego.none and endless and end == math.inf and config.time_limit is None:

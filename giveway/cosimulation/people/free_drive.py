@@ -1,4 +1,4 @@
-"""The drive that the first ego would make with nobody about: whom the sampler's people meet."""
+"""The drive that the first ego would make on a free road, which the encounter sampler uses."""
 
 from giveway.config import RunConfig
 from giveway.config.option import LANE
@@ -10,7 +10,7 @@ from giveway.geometry.path import EgoPath
 def free_drive(config: RunConfig, path: EgoPath | None) -> FreeDrive | None:
     """The free drive along ``path``; None if there is no path.
 
-    Where the lanes say how fast, the speed at departure stands for the reference speed.
+    If the reference speed follows the lanes' limits, the speed at departure is used instead.
 
     Args:
         config: Configuration of the run, with or without egos.

@@ -33,15 +33,15 @@ def people_at_first(
     """The pedestrians that giveway adds at the start.
 
     Args:
-        config: The run's.
+        config: Configuration of the run.
         departures: Departures of its egos.
-        way: Path that an ego would have, where none drives.
-        sumo: The running simulation, to which they are added.
-        net_file: The network's.
-        network: where people can walk, if it is known already.
+        way: Path that an ego would have, in a run without egos.
+        sumo: The running simulation, to which the people are added.
+        net_file: File of the network.
+        network: Network in which people can walk, or None if it has not been read yet.
 
     Raises:
-        GivewayError: they cannot be placed, or have no edge to live on.
+        GivewayError: the people cannot be placed, or have no edge to live on.
     """
     if not config.crowd.pedestrians:
         return Roster()
@@ -67,18 +67,19 @@ def people_to_come(
     net_file: Path,
     network: WalkNetwork | None,
 ) -> Arrivals | None:
-    """The people who are going to come in; None if nobody is.
+    """The people who are going to come in, or None if nobody is.
 
     Args:
-        config: The run's.
+        config: Configuration of the run.
         roster: The crowd that they join.
         time_step: Control step of the co-simulation [s].
-        sumo: Running simulation, to which they are going to be added.
-        net_file: The network's.
-        network: where people can walk, if it is known already; with lights it has to be.
+        sumo: The running simulation, to which they are going to be added.
+        net_file: File of the network.
+        network: Network in which people can walk, or None if it has not been read yet. Crossings
+            with lights need it.
 
     Raises:
-        GivewayError: the run would never end, or they have no edge to live on.
+        GivewayError: the run would never end, or the people have no edge to live on.
     """
     crowd = config.crowd
     if not (crowd.flow and crowd.flow_scale):

@@ -1,7 +1,7 @@
-"""Background vehicles in bends: where their lanes lead them while SUMO does not step.
+"""The motion of background vehicles in bends, along their lanes while SUMO does not step.
 
-Straight on for a second, a car in a bend of 80 m radius comes more than a metre off its lane: into
-the way of an ego on the next one, until SUMO's next step puts it back.
+A car in a bend of 80 m radius that goes straight on for a second leaves its lane by more than a
+metre. It would come into the way of an ego on the next lane until SUMO's next step puts it back.
 """
 
 import numpy as np
@@ -14,8 +14,8 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
 
-_STRAIGHT = 0.1  # [m] beside the straight line
-_SOON = 1.0  # [s] after SUMO's next step: until then others are taken to go straight on
+_STRAIGHT = 0.1  # Largest lateral offset [m] of a vehicle that goes straight on
+_SOON = 1.0  # Time [s] after SUMO's next step up to which bends are looked for
 
 
 class Bends:
@@ -25,7 +25,7 @@ class Bends:
         vehicles: Vehicles of the running simulation.
         time_step: Control step [s].
         substeps: Control steps per SUMO step.
-        horizon: N, the most steps that any ego looks ahead.
+        horizon: Longest prediction horizon N of any ego [steps].
     """
 
     def __init__(
@@ -34,8 +34,8 @@ class Bends:
         self._lane_paths = LanePaths(vehicles)
         self._soon = substeps * time_step + _SOON
         self._times: Array = time_step * np.arange(substeps + horizon, dtype=np.float64)
-        self._rows: list[int] = []  # of those that turn
-        self._poses = np.empty((len(self._times), 0, 4))  # theirs: x, y [m], heading, speed
+        self._rows: list[int] = []  # rows of the turning vehicles
+        self._poses = np.empty((len(self._times), 0, 4))  # their x, y [m], heading, speed
 
     def read(
         self,
@@ -43,12 +43,12 @@ class Bends:
         near: NDArray[np.int64],
         looked_at: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Find the vehicles that turn, after each SUMO step.
+        """Find the vehicles that turn; called after each SUMO step.
 
         Args:
             background: The background vehicles now.
-            near: which of them have a row, in its order.
-            looked_at: (rows,) which of these; None: all.
+            near: Index of each vehicle that has a row, in the order of the rows.
+            looked_at: Flags (rows,) of the vehicles to be examined, or None for all.
         """
         self._rows.clear()
         reach = background.speed * self._soon
@@ -80,19 +80,19 @@ class Bends:
 
     @staticmethod
     def _path(background: BackgroundVehicles, i: int, onwards: Array) -> EgoPath:
-        """The path from the vehicle's rear over its front, and on at its present lateral offset."""
+        """The path from the vehicle's rear over its front and along its lanes."""
         front = np.array([background.x[i], background.y[i]])
         heading, length = background.heading[i], background.length[i]
         rear = front - length * np.array([np.cos(heading), np.sin(heading)])
         return EgoPath.through([rear, front, *(onwards[1:] + (front - onwards[0]))])
 
     def fill(self, poses: Array, first: int, step: int) -> None:
-        """Put those that turn where their lanes lead them.
+        """Move the turning vehicles to where their lanes lead them.
 
         Args:
-            poses: (N, m, 7) of all vehicles at the steps from now on.
-            first: The row of the first background vehicle.
-            step: Control steps since SUMO's.
+            poses: Poses (N, m, 7) of all vehicles at the steps from now on.
+            first: Row of the first background vehicle.
+            step: Number of control steps since SUMO's last step.
         """
         if self._rows:
             rows = first + np.array(self._rows)
@@ -103,14 +103,14 @@ class Bends:
 def sideways(
     heading: Array, position: Array, number: Indices, pool: LanePathPool, reach: Array
 ) -> Array:
-    """(m,) lateral offsets [m] by which lanes lead vehicles off a straight line; 0 off any lane.
+    """The lateral offsets (m,) [m] from a straight line along the lanes; 0 without a lane path.
 
     Args:
-        heading: (m,) of each [rad].
-        position: (m,) [m] on its first lane, in SUMO's metres.
-        number: (m,) of its lane path; -1: none.
+        heading: Heading (m,) [rad] of each vehicle.
+        position: Position (m,) [m] on its first lane, in SUMO's metres.
+        number: Number (m,) of its lane path, or -1 if it has none.
         pool: Pool of the lane paths.
-        reach: (m,) distances [m] that the vehicles drive.
+        reach: Distance (m,) [m] that it drives.
     """
     points, along, start, first, nominal = pool
     off = np.zeros(len(number))
@@ -137,6 +137,6 @@ def sideways(
                 d_x, d_y = (points[k, 0] - x) / step, (points[k, 1] - y) / step
             go = min(step, left)
             x, y, left = x + go * d_x, y + go * d_y, left - go
-        x, y = x + left * d_x, y + left * d_y  # beyond its end, straight on
+        x, y = x + left * d_x, y + left * d_y  # straight on beyond the path's end
         off[i] = np.sin(heading[i]) * (x - x_0) - np.cos(heading[i]) * (y - y_0)
     return off

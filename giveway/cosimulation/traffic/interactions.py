@@ -1,7 +1,7 @@
-"""The places where egos and other vehicles meet: junctions, merge points and the road.
+"""The interactions of egos and background vehicles: at junctions, at merge points and on the road.
 
-Egos take note of lights and traffic; background vehicles let those egos go first that may, keep
-behind those that merge, and brake for pedestrians.
+Egos are told about lights and traffic. Background vehicles let egos with priority go first, keep
+behind egos that merge, and brake for pedestrians.
 """
 
 from collections.abc import Sequence
@@ -19,14 +19,14 @@ from pedestrian_model import Crowd
 
 
 class Meetings:
-    """Lets egos and background vehicles know of each other, once after each of SUMO's steps.
+    """Tells egos and background vehicles about each other, once after each SUMO step.
 
     Args:
         session: The running simulation.
-        yielding: slows background vehicles down; None: they do not heed what giveway moves.
+        yielding: Part that slows background vehicles down, or None if they do not yield.
 
     Attributes:
-        pending: Background vehicles that were slowed down may have to be released.
+        pending: True if background vehicles that were slowed down may have to be released.
     """
 
     pending: bool
@@ -39,9 +39,10 @@ class Meetings:
         self.pending = False
 
     def update(self, background: BackgroundVehicles, crowd: Crowd, egos: Sequence[Ego]) -> None:
-        """Look at everybody who is on the road now.
+        """Update the egos' rules and the background vehicles' speed limits.
 
-        Without background vehicles, egos that watch and :attr:`pending` it does nothing.
+        Nothing happens if there are no background vehicles, no egos that watch others and nothing
+        :attr:`pending`.
 
         Args:
             background: The background vehicles.
@@ -56,7 +57,7 @@ class Meetings:
             self.pending = bool(yielding.limited)
 
     def _look_ahead(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> dict[str, float]:
-        """Let egos take note of lights and traffic; who has to wait for one, and the room [m]."""
+        """Tell egos about lights and traffic; return the room [m] of each vehicle that waits."""
         session, rooms = self._session, dict[str, float]()
         traffic: Traffic = {}
         if any(ego.rules.junctions for ego in egos):

@@ -10,21 +10,21 @@ from giveway.ego.rules.junctions import Approach, Traffic
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.session import SumoSession
 
-_RANGE = 150.0  # [m] from an ego, within which others are looked at
-_STANDING = 0.1  # [m/s]
-_FORGET = 4  # more than this times as many remembered ways as vehicles are too many
+_RANGE = 150.0  # Distance [m] from an ego up to which other vehicles are considered
+_STANDING = 0.1  # Speed [m/s] below which a vehicle stands
+_FORGET = 4  # Remembered routes per vehicle, above which all are forgotten
 
 
 class _Visit(NamedTuple):
-    """A junction on somebody's way."""
+    """A junction ahead of a vehicle."""
 
     junction: str
-    number: int  # of the movement through it
-    station: float  # [m] of its line, from the beginning of the present lane
+    number: int  # number of the movement through the junction
+    station: float  # station [m] of its stop line, from the beginning of the present lane
 
 
 class TrafficWatch:
-    """Finds who approaches a junction, once after each of SUMO's steps.
+    """Finds the vehicles that approach a junction, once after each SUMO step.
 
     Args:
         session: The running simulation.
@@ -33,12 +33,12 @@ class TrafficWatch:
     def __init__(self, session: SumoSession) -> None:
         self._session = session
         self._visits: dict[tuple[str, str, str], tuple[_Visit, ...]] = {}
-        self._inside: dict[str, _Visit] = {}  # of each lane inside a junction that is known
+        self._inside: dict[str, _Visit] = {}  # position of each known lane inside a junction
         self._known: set[str] = set()
-        self._stands: dict[str, float] = {}  # since when [s]
+        self._stands: dict[str, float] = {}  # time [s] since which each vehicle stands
 
     def of(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> Traffic:
-        """The vehicles that approach the junctions ahead of egos, egos included; nearest first.
+        """The approaching vehicles of each junction ahead of an ego, egos included, nearest first.
 
         Args:
             background: The background vehicles now.
@@ -56,7 +56,7 @@ class TrafficWatch:
         return found
 
     def _learn(self, junctions: Set[str]) -> None:
-        """Find out which lanes are inside junctions that are new."""
+        """Find the lanes inside junctions that are not known yet."""
         lanes = self._session.lanes
         for junction in junctions - self._known:
             for movement in self._session.junctions.of(junction).values():
@@ -97,7 +97,7 @@ class TrafficWatch:
                     found[junction].append(approach)
 
     def _find(self, name: str, lane: str) -> tuple[_Visit, ...]:
-        """The junctions on a vehicle's way; stations are SUMO's positions on its lane."""
+        """The junctions ahead of a vehicle; stations are SUMO's positions on its lane."""
         lanes, vehicles = self._session.lanes, self._session.vehicles
         visits, begin = [], 0.0
         for each in vehicles.lanes_ahead(name, lane, _RANGE):
@@ -121,7 +121,7 @@ class TrafficWatch:
                     found[own.junction].append(approach)
 
     def _standing(self, name: str, speed: float) -> float:
-        """The time [s] for which a vehicle has stood."""
+        """The time [s] for which a vehicle has stood, or 0 if it moves."""
         if speed >= _STANDING:
             self._stands.pop(name, None)
             return 0.0

@@ -1,8 +1,8 @@
-"""The lane paths of background vehicles: where each is going to drive, kept from step to step.
+"""The lane paths of background vehicles: the lanes ahead of each one, kept from step to step.
 
 The lanes ahead of a vehicle change only when it comes to another lane or gets another route, while
-its position along them changes in every step. So the lanes' polylines are kept in one pool, shared
-by all vehicles with the same lanes ahead, and the kernels cut them where each vehicle is.
+its position along them changes in every step. Therefore vehicles with the same lanes ahead share
+one polyline in a pool, and the kernels cut it at each vehicle's position.
 """
 
 import math
@@ -18,30 +18,32 @@ from giveway.sumo.vehicles import SumoVehicles
 
 Indices = NDArray[np.int64]
 
-_REACH = 2.0  # times the present sight: a vehicle that accelerates still finds its lanes known
-_LEAST_REACH = 100.0  # [m] of lane path are known at least
-_SAME_PLACE = 1e-9  # [m] points of a polyline this close to each other are one
-_FORGET = 2  # times the present number of vehicles: beyond it, those that left are forgotten
-_CELL = 20.0  # [m] of the grid in which pedestrians are looked up
+# Length of a new lane path as a multiple of the sight needed now, for vehicles that accelerate
+_REACH = 2.0
+_LEAST_REACH = 100.0  # Smallest length [m] of a new lane path
+_SAME_PLACE = 1e-9  # Distance [m] up to which two points of a polyline are one
+_FORGET = 2  # Remembered vehicles per present vehicle, above which those that left are forgotten
+_CELL = 20.0  # Cell size [m] of the grid in which pedestrians are looked up
 
 
 class _Known(NamedTuple):
-    """The remembered lanes of one vehicle."""
+    """The remembered lane path of one vehicle."""
 
     lane: str
     route: str
-    reach: float  # [m] length of the lane path that is known
+    reach: float  # length [m] of the lane path
     lane_path: int
 
 
 class LanePathPool(NamedTuple):
-    """Lane paths in one growing pool; path w is ``points[start[w]:start[w + 1]]``."""
+    """The lane paths in one growing pool; path w is ``points[start[w]:start[w + 1]]``."""
 
-    points: Array  # (total, 2) [m]
-    along: Array  # (total,) [m] from the beginning of the first lane; inf beyond that lane
-    start: Indices  # (w + 1,)
-    first: Indices  # (w,) points of the first lane
-    nominal: Array  # (w,) [m] SUMO's length of the first lane
+    points: Array  # (total, 2) [m] vertices
+    # (total,) [m] arc length from the beginning of the first lane; inf beyond that lane
+    along: Array
+    start: Indices  # (w + 1,) first row of each path
+    first: Indices  # (w,) number of points of the first lane
+    nominal: Array  # (w,) [m] length of the first lane in SUMO
 
 
 _EMPTY: tuple[tuple[tuple[int, ...], type], ...] = (
@@ -61,7 +63,7 @@ class LanePaths:
 
     Attributes:
         pool: All lane paths so far, with room for more.
-        lanes: Those of each lane path, in its order.
+        lanes: Lanes of each lane path, in the order of the pool.
     """
 
     pool: LanePathPool
@@ -80,7 +82,7 @@ class LanePaths:
 
         Args:
             names: Ids of the vehicles.
-            sights: how far each lane path has to be known [m].
+            sights: Length [m] up to which each lane path has to be known.
         """
         numbers = np.empty(len(names), dtype=np.int64)
         positions = np.empty(len(names))
@@ -93,7 +95,7 @@ class LanePaths:
         return numbers, positions
 
     def onwards(self, number: int, position: float) -> Array:
-        """(k, 2) [m] a lane path from SUMO's ``position`` [m] on its first lane on."""
+        """The rest (k, 2) [m] of a lane path, from SUMO's ``position`` [m] on its first lane."""
         pool = self.pool
         begin, end = pool.start[number], pool.start[number + 1]
         first = begin + pool.first[number]
@@ -103,7 +105,7 @@ class LanePaths:
         return np.concatenate([[here], lane[along > driven], pool.points[first:end]])
 
     def forget(self, present: Sequence[str]) -> None:
-        """Forget the vehicles that have left, once they are many."""
+        """Forget the vehicles that have left, when they are many."""
         if len(self._known) > _FORGET * len(present):
             kept = self._known.keys() & set(present)
             self._known = {name: self._known[name] for name in kept}
@@ -120,7 +122,7 @@ class LanePaths:
         return _Known(lane, route, reach, self._numbers[lanes])
 
     def _append(self, shapes: list[Array], lane: str) -> None:
-        """Add the lane path of lanes with these ``shapes``; ``lane`` is the first one."""
+        """Add the lane path of lanes with these ``shapes``; ``lane`` is the id of the first one."""
         w, begin = len(self._numbers), self._points
         end = self._points = begin + sum(map(len, shapes))
         for name in ("points", "along"):
@@ -154,7 +156,7 @@ def path_from(
     path: Array,
     stations: Array,
 ) -> int:
-    """Fill ``path`` and ``stations`` from a front bumper on until ``sight``; how many points."""
+    """Fill ``path`` and ``stations`` from a front bumper to ``sight``; return the point count."""
     points, along, start, first, nominal = pool
     begin = start[lane_path]
     share = position / nominal[lane_path]
@@ -189,7 +191,7 @@ def gaps_ahead(
     grid: Indices,
     gaps: Array,
 ) -> None:
-    """Fill each vehicle's distance [m] to the first pedestrian within its sight; inf: nobody.
+    """Fill each vehicle's distance [m] to the first pedestrian in sight; inf if there is none.
 
     Only pedestrians within the straight distance ``sight`` are examined; a grid finds them.
     """

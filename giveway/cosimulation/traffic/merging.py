@@ -11,11 +11,11 @@ from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
 
-_NEAR = 150.0  # [m] from an ego, where others are looked at
+_NEAR = 150.0  # Distance [m] from an ego up to which other vehicles are considered
 
 
 class Merging:
-    """Finds those who merge with egos, once after each SUMO step.
+    """Finds the vehicles that merge with egos, once after each SUMO step.
 
     Args:
         vehicles: Vehicles of the running simulation.
@@ -30,11 +30,11 @@ class Merging:
     def of(
         self, background: BackgroundVehicles, ego: Ego, egos: Sequence[Ego]
     ) -> dict[MergePoint, dict[str, MergingVehicle]]:
-        """The vehicles that an ego merges with, at each place in sight.
+        """The vehicles that an ego merges with, at each merge point in sight.
 
         Args:
             background: Background vehicles now.
-            ego: Ego that asks.
+            ego: The ego whose merge points are meant.
             egos: Egos on the road now.
         """
         places = ego.rules.near_merges(ego.front)
@@ -47,7 +47,7 @@ class Merging:
     def _near(
         background: BackgroundVehicles, ego: Ego, others: Sequence[Ego]
     ) -> list[tuple[str, float, float]]:
-        """Id, speed [m/s] and length [m] of each vehicle near an ego."""
+        """The id, speed [m/s] and length [m] of each vehicle near an ego."""
         x, y, _ = ego.pose
         rows = np.flatnonzero(np.hypot(background.x - x, background.y - y) <= _NEAR)
         near = [
@@ -59,7 +59,7 @@ class Merging:
     def _rivals(
         self, places: Sequence[MergePoint], near: Sequence[tuple[str, float, float]]
     ) -> dict[MergePoint, dict[str, MergingVehicle]]:
-        """Those whose lanes lead onto the lane that begins at each place."""
+        """The vehicles whose lanes lead onto the lane that begins at each merge point."""
         merging_vehicles: dict[MergePoint, dict[str, MergingVehicle]] = {
             place: {} for place in places
         }

@@ -1,10 +1,10 @@
 """Background vehicles let egos with priority go first at junctions.
 
-SUMO's drivers look for vehicles that approach a junction on a lane. An ego that is moved from
-outside is not reliably one of them (SUMO issues 6140, 6152, 10952), so that a car from a side road
-would drive into its way. Therefore those that have to give way to it, by the network's ``request``
-rows and the running light, stop at their line until it has gone; or where they are in the junction
-already, before their ways cross.
+SUMO's drivers look for vehicles that approach a junction on a lane. They do not reliably find an
+ego that is moved from outside (SUMO issues 6140, 6152, 10952), so that a car from a side road would
+drive into its path. Therefore the vehicles that have to yield to an ego, by the network's
+``request`` rows and the current signal state, stop at their line until it has gone. A vehicle that
+is in the junction already stops before the two paths cross.
 """
 
 from collections.abc import Mapping
@@ -16,16 +16,18 @@ from giveway.ego.rules.junctions import RED, SIGHT, Approach, PathJunction, Traf
 from giveway.ego.rules.yielding import AFTER, BEFORE, USUAL_SPEED, needed_braking
 from giveway.geometry.conflict import Conflict
 
-_BEFORE_CONFLICT = 1.0  # [m] before the ego's way who is in the junction is to stand
-_COMING, _LEAVING = 1.5, 1.0  # [m/s^2] of the ego
+# Distance [m] before the ego's path at which a vehicle in the junction stops
+_BEFORE_CONFLICT = 1.0
+# Accelerations [m/s^2] of the ego for its earliest entry and latest exit
+_COMING, _LEAVING = 1.5, 1.0
 
 
 def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[str, float]:
-    """The room [m] that those have who have to wait for an ego, by their names.
+    """The room [m] to stop for each vehicle that has to wait for an ego, by the vehicle's id.
 
     Args:
         ego: Ego on the road.
-        states: State of each light system, one of SUMO's letters per movement.
+        states: State of each traffic light system, one of SUMO's letters per movement.
         traffic: Vehicles that approach each junction.
     """
     found: dict[str, float] = {}
@@ -36,13 +38,13 @@ def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[
         letter = letter_of(place.movement, states)
         inside = ahead <= 0.0
         if not inside and (ego.rules.stop <= place.entry or letter in RED):
-            continue  # it waits itself
+            continue  # the ego itself waits
         for other in traffic.get(place.movement.junction, ()):
             where = place.conflicts.get(other.number)
             if other.name == ego.id or where is None or (inside and ego.rules.stop <= where.enter):
                 continue
             room = other.distance
-            if room <= 0.0:  # it is in the junction
+            if room <= 0.0:  # the other vehicle is in the junction
                 room += where.other_enter - _BEFORE_CONFLICT
             if room <= 0.0 or needed_braking(other.speed, room) > FIRM:
                 continue
@@ -59,7 +61,7 @@ def _gives_way(
     states: Mapping[str, str],
     ego: Ego,
 ) -> bool:
-    """Return whether a vehicle has to let the ego go first, and the two would meet."""
+    """Return whether a vehicle has to let the ego go first, and the two would meet otherwise."""
     movement = place.movements[other.number]
     if ego.front - ego.shape.length > where.leave:
         return False

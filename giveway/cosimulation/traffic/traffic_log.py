@@ -7,12 +7,12 @@ import numpy as np
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.session import SumoSession
 
-_PERIOD = 1.0  # [s] between two looks
-_SAME_PLACE = 0.5  # [m]
+_PERIOD = 1.0  # Time [s] between two records
+_SAME_PLACE = 0.5  # Distance [m] up to which two positions are the same
 
 
 class TrafficNotes:
-    """Notes lights, places and lost time, at SUMO's instants.
+    """Log of traffic lights, positions and lost time of the background traffic.
 
     Args:
         session: The running simulation.

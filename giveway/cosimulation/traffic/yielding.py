@@ -1,15 +1,16 @@
 """Background vehicles brake for the pedestrians and egos that giveway moves.
 
 SUMO's vehicles look for persons on lanes and crossings. A person that is moved from outside is on
-none of them, so SUMO's vehicles would drive through it. Therefore each vehicle's speed is limited
-to one from which it stops before the next pedestrian in its corridor, with the deceleration of its
-own type: Krauss's safe speed (Krauss 1998, eq. 2.24, with a standing leader). Who has priority on a
-crossing is expected to walk on over it.
+none of them, so SUMO's vehicles would drive through that person. Therefore each vehicle's speed is
+limited to one from which it stops before the next pedestrian in its corridor, with the deceleration
+of its own type: Krauss's safe speed (Krauss 1998, eq. 2.24, with a standing leader). A pedestrian
+with priority on a crossing is expected to walk on over it.
 
-An ego is on the lane that SUMO finds at its front's middle. Where it changes lanes or cuts a
-corner, part of its body is on another one, whose vehicles do not see it; they keep behind it
-likewise. Who follows it by SUMO's own model is left alone, and so is who stands beside a standing
-ego or in contact with one: the two would wait for each other for ever.
+An ego is on the lane that SUMO finds at the middle of its front. Where it changes lanes or cuts a
+corner, part of its body is on another lane, whose vehicles do not see it. They are kept behind it
+in the same way. A vehicle that follows the ego by SUMO's own model is not limited. Neither is one
+that stands beside a standing ego or touches one, because the two would wait for each other for
+ever.
 """
 
 import math
@@ -29,27 +30,28 @@ from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
 from pedestrian_model import Crowd, targets
 
-_LOOK_AHEAD = 1.0  # [s] for which pedestrians are expected to keep their velocity
-_WALKING_ON = (1.0, 2.0)  # [s] ahead, those with priority are on the way to where they want to be
+_LOOK_AHEAD = 1.0  # Time [s] for which pedestrians are expected to keep their velocity
+# Times [s] ahead at which people with priority are expected on their route
+_WALKING_ON = (1.0, 2.0)
 _DISTANCE = 2.0  # Distance [m] before a pedestrian at which vehicles want to stop
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
-_BESIDE_EGO = 0.1  # [m] that vehicles keep beside an ego at least
-_BEHIND_EGO = 0.5  # [m] at which they stand behind one
-_BEFORE_LINE = 1.0  # [m] at which vehicles wait before theirs
-_PULLING_AWAY = 2.0  # [m/s]
-_APART = 0.5  # [m] at most between the points of an ego's outline that are looked at
+_BESIDE_EGO = 0.1  # Smallest lateral distance [m] that vehicles keep from an ego
+_BEHIND_EGO = 0.5  # Distance [m] behind an ego at which vehicles stand
+_BEFORE_LINE = 1.0  # Distance [m] before their line at which vehicles wait
+_PULLING_AWAY = 2.0  # Speed [m/s] at which a stuck vehicle pulls away
+_APART = 0.5  # Largest distance [m] between the points that stand for an ego's outline
 NOBODY: Mapping[str, float] = MappingProxyType({})
 
 
 class Yielding:
-    """Slows background vehicles down for pedestrians.
+    """Slows background vehicles down for pedestrians and egos.
 
     Args:
         vehicles: Vehicles of the running simulation.
-        step_length: SUMO's step [s], in which a limit holds.
+        step_length: SUMO's step [s], for which a limit holds.
 
     Attributes:
-        limited: The speed [m/s] of those that yield at present, by their ids.
+        limited: Speed limit [m/s] of each vehicle that yields now, by its id.
     """
 
     limited: dict[str, float]
@@ -78,14 +80,15 @@ class Yielding:
         rooms: Mapping[str, float] = NOBODY,
         merging: Sequence[Mapping[str, FollowingConstraint]] = (),
     ) -> None:
-        """Limit vehicles with somebody ahead after each SUMO step, and release the others.
+        """Limit the vehicles that have to yield, and release the others, after each SUMO step.
 
         Args:
             background: The background vehicles now.
             crowd: The pedestrians now.
             egos: Egos on the road now.
-            rooms: [m] up to the lines of those that wait there for an ego, by their names.
-            merging: who keeps behind each ego that they come onto one lane with.
+            rooms: Distance [m] to the line of each vehicle that waits there for an ego, by its id.
+            merging: Following constraints of the vehicles that let each ego merge before them, by
+                their ids.
         """
         limits = self._limits(background, crowd) if background.ids and len(crowd) else {}
         if background.ids and egos:
@@ -112,7 +115,7 @@ class Yielding:
 
     def _limits(self, background: BackgroundVehicles, crowd: Crowd) -> dict[str, float]:
         """The speed limit [m/s] of each vehicle with a pedestrian ahead."""
-        # decelerations are at least 2 m/s^2, so this is how far a vehicle has to look
+        # a vehicle decelerates with at least 2 m/s^2, from which this sight follows
         sight = (
             background.speed * self._reaction + background.speed**2 / 4.0 + self._distance + 10.0
         )
@@ -143,10 +146,10 @@ class Yielding:
     def _separate(
         self, background: BackgroundVehicles, egos: Sequence[Ego], held: Collection[str]
     ) -> None:
-        """Let those that stand in contact with an ego, ahead of its front, pull away from it.
+        """Let the vehicles that touch an ego, ahead of its front, pull away from it.
 
-        SUMO takes the ego for their leader, and they would stand there for ever. Those that are
-        ``held`` have somebody in front of them.
+        SUMO takes the ego for their leader, and they would stand there for ever. Vehicles that are
+        ``held`` have somebody in front of them and stay.
         """
         stuck = set()
         slow = np.flatnonzero(background.speed <= 1.1 * _PULLING_AWAY)
@@ -169,7 +172,7 @@ class Yielding:
         self._pulling = stuck
 
     def _behind_egos(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> dict[str, float]:
-        """The speed limit [m/s] of each vehicle with an ego ahead that SUMO does not let it see."""
+        """The speed limit [m/s] of each vehicle behind an ego that it does not see in SUMO."""
         fronts = np.column_stack([background.x, background.y])
         sight = background.speed * self._reaction + background.speed**2 / 4.0 + 10.0
         limits: dict[str, float] = {}
@@ -221,7 +224,7 @@ class Yielding:
         for others in merging:
             for name, behind in others.items():
                 if name not in rows:
-                    continue  # another ego
+                    continue  # the vehicle is another ego
                 speed = float(background.speed[rows[name]])
                 b = self._vehicles.deceleration(name)
                 firm = min(b, behind.braking)
@@ -236,7 +239,7 @@ class Yielding:
 
 
 def _expected(crowd: Crowd) -> Array:
-    """(k, 2) present and expected positions [m] of people."""
+    """The present and expected positions (k, 2) [m] of people."""
     places = [crowd.position, crowd.position + _LOOK_AHEAD * crowd.velocity]
     relying = np.flatnonzero(crowd.priority)
     if len(relying):
@@ -254,7 +257,7 @@ def _safe_speed(room: float, leader: float, deceleration: float, reaction: float
 
 
 def _are_stuck(ego: Ego, background: BackgroundVehicles, i: int) -> bool:
-    """Return whether the vehicle ``i`` has to go on for the ego to get away from it."""
+    """Return whether the ego can only get away if the vehicle ``i`` goes on."""
     x, y, heading = ego.pose
     own = np.array([x, y, heading, ego.shape.length, ego.shape.width])
     if rectangles_overlap(own, background.bodies[i]):
@@ -264,7 +267,7 @@ def _are_stuck(ego: Ego, background: BackgroundVehicles, i: int) -> bool:
 
 
 def _outline(ego: Ego) -> Array:
-    """(n, 2) [m] points on the outline of an ego."""
+    """Points (n, 2) [m] on the outline of an ego."""
     x, y, heading = ego.pose
     length, width = ego.shape.length, ego.shape.width
     along = np.linspace(0.0, -length, max(2, math.ceil(length / _APART) + 1))
