@@ -1,4 +1,4 @@
-"""The assessment of a manoeuvre in a predicted crowd: gaps, conflicts, calm speeds."""
+"""The assessment of a manoeuvre in a predicted crowd: gaps, conflicts, threat-free speeds."""
 
 from typing import Any, NamedTuple
 
@@ -10,18 +10,18 @@ from giveway.geometry.kernel import Array, inlined, kernel
 from giveway.geometry.passage import window
 from giveway.geometry.path import body_pose, segment_at
 
-PASSED = 0.3  # [m] behind the front bumper pedestrians still count as in front, being squeezed by
+PASSED = 0.3  # distance [m] behind the front bumper, up to which pedestrians count as in front
 
 
 class View(NamedTuple):
-    """The ego's body and how it looks ahead, as the kernel takes it."""
+    """The ego's body and the constants of its foresight, as the kernel takes them."""
 
-    length: float  # of the body [m]
-    width: float  # [m]
-    half_width: float  # of the corridor [m]
-    conflict_time: float  # time to collision of a conflict [s]
-    time_step: float  # of a manoeuvre [s]
-    every: float  # steps of a manoeuvre, a whole number, in which the crowd is predicted at once
+    length: float  # length of the body [m]
+    width: float  # width of the body [m]
+    half_width: float  # half width of the corridor [m]
+    conflict_time: float  # time to collision [s] below which two bodies are in conflict
+    time_step: float  # time step of a manoeuvre [s]
+    every: float  # number of a manoeuvre's steps in one prediction step of the crowd
 
 
 @kernel
@@ -33,18 +33,18 @@ def assess(
     sight: tuple[tuple[float, ...], tuple[Any, ...]],
     prospect: tuple[Array, Array, Array],
 ) -> None:
-    """Fill gaps in front, persons on a collision course, and calm speeds at steps 1 ... N.
+    """Fill gaps in front, persons on a collision course, and threat-free speeds at steps 1 ... N.
 
-    Conflicts and calm speeds are found at the first step after each prediction and held until the
-    next; people walk straight on in between.
+    Conflicts and threat-free speeds are computed at the first step of each prediction interval and
+    held to its end. Between predictions people move along straight lines.
 
     Args:
         path: Vertices, stations and headings of the ego's path.
         crowd: Positions now, (n, 2) [m], and at each ``every``-th step, (M, n, 2).
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
-        sight: Numbers of a :class:`View` and of an :class:`Alarm`.
-        prospect: Gaps [m], persons and calm speeds [m/s], (N,) each, filled.
+        sight: Fields of a :class:`View` and of an :class:`Alarm`.
+        prospect: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
     """
     now, predicted = crowd
     between = np.empty((now.shape[0], 2))
@@ -55,13 +55,15 @@ def assess(
 
 @inlined
 def interval_of(j: int, every: int, predicted: int, horizon: int) -> tuple[int, int]:
-    """The steps (less one) of a manoeuvre in the j-th of the predicted ones; the last has the rest.
+    """The half-open range of a manoeuvre's step indices, from 0, in the j-th prediction step.
+
+    The last prediction step has all the remaining ones.
 
     Args:
-        j: Number of the predicted step, from 0.
-        every: see :class:`View`.
-        predicted: M, how many.
-        horizon: N [steps] of the manoeuvre.
+        j: Index of the prediction step, from 0.
+        every: Number of a manoeuvre's steps in one prediction step, as in :class:`View`.
+        predicted: Number M of prediction steps.
+        horizon: Number N of the manoeuvre's steps.
     """
     return j * every, horizon if j + 1 == predicted else (j + 1) * every
 
@@ -76,16 +78,16 @@ def assess_step(
     sight: tuple[tuple[float, ...], tuple[Any, ...]],
     prospect: tuple[Array, Array, Array],
 ) -> None:
-    """Do as :func:`assess` does, for one of the predicted steps alone.
+    """Fill as :func:`assess` does, for one prediction step only.
 
     Args:
         path: Vertices, stations and headings of the ego's path.
-        people: Positions before and after the predicted step, and scratch, (n, 2) [m] each.
-        which: Number of the predicted step, and how many there are.
+        people: Positions before and after the prediction step, and scratch, (n, 2) [m] each.
+        which: Index of the prediction step, and the number of prediction steps.
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
-        sight: Numbers of a :class:`View` and of an :class:`Alarm`.
-        prospect: Gaps [m], persons and calm speeds [m/s], (N,) each, filled.
+        sight: Fields of a :class:`View` and of an :class:`Alarm`.
+        prospect: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
     """
     (vertices, stations, headings), (before, after, between) = path, people
     (j, predicted), (distance, speeds) = which, manoeuvre

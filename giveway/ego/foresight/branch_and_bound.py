@@ -1,9 +1,10 @@
-"""Branch and bound over manoeuvres in one compiled call: the cheapest so far is advanced a step.
+"""Best-first branch and bound over candidate manoeuvres, in one compiled call.
 
-A manoeuvre's cost never falls along its way, nor by what comes beyond it, so that one whose cost so
-far exceeds another's whole cost need not be looked at any farther: branch and bound, best first.
-Manoeuvres that begin alike share the crowd's answer until they part. Neither changes a number
-of the winner.
+The candidate with the lowest cost so far is advanced by one prediction step, again and again. A
+candidate's cost never falls as it is advanced. Its cost so far is therefore a lower bound, and the
+first candidate that reaches the horizon as the cheapest one is the best. Candidates whose first
+steps are equal share the predicted crowd of these steps. The result is the same as if every
+candidate were evaluated in full.
 """
 
 from typing import Any
@@ -20,7 +21,7 @@ from giveway.ego.perception.corridor import set_pose
 from giveway.geometry.kernel import Array, inlined, inner, kernel
 from pedestrian_model.kernels import borrowed, desired_velocity, rollout_step, start
 
-_FINE = -1  # no pedestrian whose state is not finite
+_FINE = -1  # result that says that all predicted states are finite
 
 
 @kernel
@@ -35,23 +36,26 @@ def branch_and_bound(
     candidates: tuple[NDArray[np.int64], bool],
     judged: tuple[Array, float, tuple[Any, ...]],
 ) -> tuple[int, bool, int]:
-    """Return the row of the cheapest candidate, found by branch and bound, or -1.
-
-    Also whether nobody is in the way of the first, and how many have been compared.
+    """Find the cheapest candidate by branch and bound.
 
     Args:
-        path: vertices, stations and headings of the ego's.
-        people: what :func:`pedestrian_model.kernels.start` takes.
-        law: the numbers of the model, and :attr:`Beliefs.halting`.
-        ego: Poses of all vehicles, (M, m, 7), in which the ego's row is changed; that row; the
-            station of its front bumper [m].
-        sight: Numbers of a ``View`` and of an ``Alarm``.
-        trials: Trials of ``Trials``.
-        memory: Memory of :class:`giveway.ego.foresight.workspace.Workspace`.
+        path: Vertices, stations and headings of the ego's path.
+        people: Arrays of the crowd, as :func:`pedestrian_model.kernels.start` takes them.
+        law: Constants of the pedestrian model, and :attr:`Beliefs.halting`.
+        ego: Poses of all vehicles, (M, m, 7), in which the ego's row is changed; index of that
+            row; station of the ego's front bumper [m].
+        sight: Fields of a ``View`` and of an ``Alarm``.
+        trials: Arrays of ``Trials``.
+        memory: Arrays of :class:`giveway.ego.foresight.workspace.Workspace`.
         candidates: Rows to evaluate, see :meth:`giveway.ego.foresight.workspace.Workspace.rows_of`;
-            and whether the first runs alone until somebody is in its way, and wins if nobody is.
-        judged: Distances [m] that may be driven, (N,); speed [m/s] that time is lost against;
+            and whether to probe, that is, to evaluate the first candidate alone until a person or
+            vehicle is in its way, and to accept it at once if none is.
+        judged: Distances [m] that may be driven, (N,); speed [m/s] that lost time refers to;
             weights of the cost.
+
+    Returns:
+        Row of the cheapest candidate, or -1 if no cost is finite; whether the first candidate was
+        accepted at once; number of candidates that were compared.
     """
     (poses, row, front), (view, alarm) = ego, sight
     (rows, probe), (allowed, wanted, weights) = candidates, judged
@@ -77,7 +81,7 @@ def branch_and_bound(
             enter(k, distance, speed, steps, alike)
             sums[3, k] = own_cost(speed[k], acceleration[k], wanted, time_step, weights)
             ending = distance[k, -1], speed[k, -1], wanted, allowed, time_step, weights
-            sums[0, k] = sums[3, k] + later_cost(crossers[:0], *ending)  # nobody comes later
+            sums[0, k] = sums[3, k] + later_cost(crossers[:0], *ending)  # without later crossings
             sums[1, k], sums[2, k] = 0.0, 0.0
             running[count] = k
             count += 1
@@ -127,7 +131,10 @@ def branch_and_bound(
 
 @inlined
 def fill_ends(state: Array, index: NDArray[np.int64], row: int, scene: Any, ends: Array) -> None:
-    """Fill ``ends`` (n, 5): where people are in a ``row`` of the memory, and what they wish."""
+    """Fill ``ends`` (n, 5): positions in a ``row`` of the memory, and desired velocities.
+
+    The columns are x, y [m], the desired velocity [m/s], and the time [s] for which it is kept.
+    """
     n = ends.shape[0]
     for p in range(n):
         at = row * n + p
@@ -140,7 +147,15 @@ def fill_ends(state: Array, index: NDArray[np.int64], row: int, scene: Any, ends
 def enter(
     k: int, distance: Array, speed: Array, steps: NDArray[np.int64], alike: NDArray[np.int64]
 ) -> None:
-    """Set a manoeuvre to its start, and find how long it is like those that have started."""
+    """Set manoeuvre k to its start, and count its leading steps in common with the others.
+
+    Args:
+        k: Row of the manoeuvre.
+        distance: Distances (k, N + 1) [m] of the manoeuvres.
+        speed: Speeds (k, N + 1) [m/s] of the manoeuvres.
+        steps: Steps (2, k) that were predicted and assessed; -1 of a manoeuvre not started.
+        alike: Number (k, k) of leading steps that two manoeuvres have in common, filled.
+    """
     steps[0, k] = steps[1, k] = 0
     for other in range(steps.shape[1]):
         if other == k or steps[0, other] < 0:
@@ -167,7 +182,11 @@ def advance(
     memory: Arrays,
     bounds: tuple[Array, tuple[Any, ...]],
 ) -> int:
-    """Roll manoeuvre k out by one step; return -1, or a pedestrian whose state is not finite."""
+    """Advance manoeuvre k by one prediction step.
+
+    Returns:
+        -1, or the index of a pedestrian whose predicted state is not finite.
+    """
     vertices, stations, headings = path
     people, ahead, scene, scratch = crowd
     (poses, row, front), (distance, speed), (allowed, weights) = ego, manoeuvres, bounds
@@ -204,7 +223,7 @@ def advance(
         bad = rollout_step(ahead, scene, poses[j], scratch, *law[:-1])
         if bad != _FINE:
             return bad
-        if j > 0:  # the first step tells who yields: it is the model's
+        if j > 0:  # step 0 is the walking model's: intent estimation compares people with it
             walk_up(law[-1], 4 * (here - n), state, scene, x, v)
         for p in range(n):
             base = 4 * (here + p)

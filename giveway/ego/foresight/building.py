@@ -1,4 +1,4 @@
-"""The foresight of an ego, made from its options before it departs."""
+"""Makes the foresight of an ego from its options, before it departs."""
 
 from giveway.ego.foresight.contingency import load
 from giveway.ego.foresight.crowd_foresight import CrowdForesight
@@ -15,11 +15,11 @@ def foresight_of(
     """Return the foresight for a planning controller, or None if no controller asks for it.
 
     Args:
-        waiting: the ego before its departure.
-        path: Path of it.
+        waiting: Ego before its departure.
+        path: Path of the ego.
         shape: Shape of its body.
         half_width: Half width of its corridor [m].
-        time_step: [s] of the control.
+        time_step: Control step [s].
     """
     config, predictor = waiting.config, waiting.predictor
     if not waiting.controller.foresees or predictor is None:

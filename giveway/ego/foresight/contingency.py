@@ -1,9 +1,9 @@
-"""Manoeuvres where somebody's intent is open: one common beginning, and a branch for either.
+"""Contingency plans for people of uncertain intent: a common first part, and two branches.
 
-What somebody is about to do shows while they near the way. A manoeuvre that is right if they yield
-need not wait for certainty: if they walk on after all the ego can still brake a little later. So
-its cost is that under the likelier hypothesis, and that of the better branch under the other,
-each weighted by its likelihood (contingency MPC, Alsterda et al. 2019).
+A person's intent becomes clear while they approach the ego's path. A manoeuvre that suits people
+who yield need not wait for certainty: if they walk on, the ego can still brake a little later. Its
+cost is therefore the cost under the likelier hypothesis, plus the cost of the best branch under
+the other hypothesis, each weighted by its probability (contingency MPC, Alsterda et al. 2019).
 """
 
 import functools
@@ -13,8 +13,10 @@ import numpy as np
 
 from controller.kernels import Trials, branch_off
 
-_COMMON = 0.5  # [s] of a manoeuvre, after which one knows: a walker slows by 1 m/s in it
-_BRAKING = (-2.5, -5.0)  # [m/s^2] of the branches, beside going on
+# Duration [s] of the common first part. A person who yields slows by about 1 m/s in this time,
+# which reveals the intent.
+_COMMON = 0.5
+_BRAKING = (-2.5, -5.0)  # accelerations [m/s^2] of the branches; another branch goes on
 BRANCHES = 1 + len(_BRAKING)
 
 Cost = Callable[[Trials, list[int], bool], float]
@@ -22,7 +24,7 @@ Cost = Callable[[Trials, list[int], bool], float]
 
 @functools.cache
 def load() -> None:
-    """Load the kernel that branches need: it would hold up the step that first needs them."""
+    """Load the kernel of the branches before the drive, so that no control step waits for it."""
     distance, speed, acceleration = np.zeros((3, 4))
     branch_off(distance, speed, acceleration, 1, -1.0, 4.0, 0.05)
 
@@ -30,14 +32,15 @@ def load() -> None:
 def hedged(
     cost: Cost, trials: Trials, rows: Sequence[int], likely: float, wanted: float, time_step: float
 ) -> int:
-    """Return the manoeuvre of least weighted cost, or -1 if that cost is no number.
+    """Return the row of the manoeuvre with the least weighted cost, or -1 if none is finite.
 
     Args:
-        cost: Cost [s] of the best of some rows, under the likelier hypothesis or the other.
-        trials: the manoeuvres.
-        rows: which of them are compared.
-        likely: how likely the likelier hypothesis is.
-        wanted: the speed [m/s] where nobody is in the way.
+        cost: Function that returns the cost [s] of the best of some rows. Its last argument is
+            False for the likelier hypothesis and True for the other one.
+        trials: Manoeuvres.
+        rows: Rows of the manoeuvres that are compared.
+        likely: Probability of the likelier hypothesis.
+        wanted: Speed [m/s] of the ego with nobody in its way.
         time_step: Time step of a manoeuvre [s].
     """
     first = min(max(round(_COMMON / time_step), 1), trials.speed.shape[1] - 1)

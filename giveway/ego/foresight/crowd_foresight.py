@@ -1,4 +1,4 @@
-"""The outcome of a manoeuvre: the crowd predicted under it, as seen from the ego."""
+"""Predicts the outcome of a manoeuvre: the crowd's motion under it, as seen from the ego."""
 
 from math import inf
 from typing import Any
@@ -32,29 +32,29 @@ from pedestrian_model import (
     require_steady,
 )
 
-_STEP = 0.1  # [s] of the crowd under a manoeuvre, at most: twice the one in which it is simulated
+_STEP = 0.1  # longest prediction step [s] of the crowd: twice the usual step of its simulation
 
-_Judged = tuple[Array, float, tuple[Any, ...]]  # what is allowed, the speed wanted, the weights
+_Judged = tuple[Array, float, tuple[Any, ...]]  # allowed distances, wanted speed, weights
 
 
 def steps_at_once(time_step: float, horizon: int) -> int:
-    """Return the number of a manoeuvre's steps in one step of the predicted crowd."""
+    """Return the number of a manoeuvre's steps in one prediction step of the crowd."""
     return min(max(1, int(_STEP / time_step + 1e-9)), horizon)
 
 
 def plan_predictor(
     parameters: VciParameters, time_step: float, horizon: int, **readings: bool
 ) -> Predictor:
-    """Predicts the crowd for plans of ``horizon`` steps of ``time_step`` [s], some at once.
+    """Return a predictor of the crowd for plans of ``horizon`` steps of ``time_step`` [s].
 
-    A step is as long as it can be up to 0.1 s. It is integrated at once, or where people's speeds
-    would swing in steps of the crowd's length.
+    A prediction step covers as many steps of a plan as fit into 0.1 s. It is integrated in one
+    step, or in shorter ones if speeds would oscillate otherwise.
 
     Args:
-        parameters: the model by which people are believed to walk.
+        parameters: Parameters of the pedestrian model.
         time_step: Time step of the manoeuvres [s].
-        horizon: N of them.
-        readings: options of :class:`pedestrian_model.Predictor`.
+        horizon: Number N of a manoeuvre's steps.
+        readings: Options of :class:`pedestrian_model.Predictor`.
     """
     every = steps_at_once(time_step, horizon)
     step, longest = every * time_step, _STEP
@@ -68,20 +68,21 @@ def plan_predictor(
 class CrowdForesight:
     """Predicts the crowd under one manoeuvre after the other.
 
-    The manoeuvres are tried in poses of its own: what other egos see does not change by them.
+    It keeps a copy of the vehicles' poses, so that other egos do not see the manoeuvres.
 
     Args:
-        predictor: Predictor of M steps, each of them some of a manoeuvre's.
-        path: the ego's.
+        predictor: Predictor of M steps. Each covers a whole number of a manoeuvre's steps.
+        path: Path of the ego.
         shape: Shape of its body.
-        horizon: N [steps] of a manoeuvre.
-        time_step: Time step of a manoeuvre [s]; the predictor's is some of them.
+        horizon: Number N of a manoeuvre's steps.
+        time_step: Time step of a manoeuvre [s].
         half_width: Half width of the corridor [m].
-        clearance: [m] that the safety layer keeps to pedestrians' bodies.
-        braking: [m/s^2] of the ego at most.
-        worst: what the safety layer takes people to do; None: there is none.
-        conflict_time: time to collision of a conflict [s] (FHWA-HRT-08-051).
-        beliefs: who yields; None: everybody walks on.
+        clearance: Distance [m] that the safety layer keeps to pedestrians' bodies.
+        braking: Largest deceleration [m/s^2] of the ego.
+        worst: Worst motion of people that the safety layer assumes, or None without such a layer.
+        conflict_time: Time to collision [s] below which a person is in conflict with the ego
+            (FHWA-HRT-08-051).
+        beliefs: Intent estimator, or None to assume that all people walk on.
     """
 
     def __init__(
@@ -103,7 +104,7 @@ class CrowdForesight:
         every = round(predictor.time_step / time_step)
         self._predictor, self._every = predictor, every
         self._way = path.vertices, path.stations, path.headings
-        # Plain tuples: each call would look the class of a named one up anew (2 us).
+
         self._view = tuple(
             View(shape.length, shape.width, half_width, conflict_time, time_step, every)
         )
@@ -131,7 +132,7 @@ class CrowdForesight:
         self._otherwise: Otherwise | None = None
         self._winner = -1  # row of the best manoeuvre of the latest search, in the workspace
         self._workspace = self._aside = Workspace(0, N, M, 0)
-        # Only VCI is part of the compiled search: else manoeuvres are judged one by one.
+        # Only VCI is part of the compiled search. With other models manoeuvres are judged singly.
         self._vci = predictor if isinstance(predictor, Predictor) else None
         self.cheapest = self._cheapest if self._vci is not None else None
 
@@ -146,17 +147,19 @@ class CrowdForesight:
         kerbs: Array = NO_KERBS,
         numbers: NDArray[np.int64] | None = None,
     ) -> None:
-        """Begin an instant.
+        """Begin a control instant.
 
         Args:
-            pedestrians: Pedestrians to be predicted; the ways of those who yield are changed.
-            surroundings: the walls and lights that they heed.
-            poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
-            row: the ego's.
-            front: the front bumper's station [m].
-            off: [m] how far people's positions are off at most, beside what the clearance has.
-            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.perception.kerbs.Kerbs.of`.
-            numbers: (n,) one for each person, which the person keeps; None: nobody is known again.
+            pedestrians: Pedestrians to be predicted. The routes of those who yield are changed.
+            surroundings: Walls and lights that the pedestrians heed.
+            poses: Poses (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
+            row: Row of the ego in ``poses``.
+            front: Station of the front bumper [m].
+            off: Largest error [m] of people's positions that the clearance does not cover.
+            kerbs: Kerbs (n, 3) of people on sidewalks, as
+                :meth:`giveway.ego.perception.kerbs.Kerbs.of` returns them.
+            numbers: Numbers (n,) that identify persons from step to step, or None if they cannot
+                be identified.
         """
         if off != self._off:
             self._off = off
@@ -175,9 +178,9 @@ class CrowdForesight:
 
     @property
     def best(self) -> Array | None:
-        """(N, n, 2) [m] positions at steps 1 ... N under the preferred manoeuvre, if any was.
+        """The positions (N, n, 2) [m] at steps 1 ... N under the preferred manoeuvre, or None.
 
-        Those between the steps of the prediction lie on straight lines between these.
+        Positions between two prediction steps are interpolated on straight lines.
         """
         if self._winner < 0 and not self._preferred:
             return None
@@ -190,7 +193,7 @@ class CrowdForesight:
         return np.asarray((1.0 - share) * known[before] + share * known[before + 1])
 
     def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
-        """Return the predicted outcome of a manoeuvre; it is valid until the next call."""
+        """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
         self._predict(manoeuvre.distance, manoeuvre.speed)
         gap, conflicts, calm, _ = self._prospect
         assess(
@@ -221,7 +224,7 @@ class CrowdForesight:
         wanted: float,
         weights: tuple[Any, ...],
     ) -> SearchResult:
-        """Return the cheapest manoeuvre, see :class:`controller.foresight.SearchingForesight`.
+        """Return the cheapest manoeuvre; see :class:`controller.foresight.SearchingForesight`.
 
         Raises:
             DivergenceError: a predicted state is not finite.
@@ -254,9 +257,9 @@ class CrowdForesight:
         people: Crowd,
         halting: Halting,
     ) -> tuple[int, bool, int]:
-        """Run :func:`branch_and_bound` with people who do as one of the hypotheses says."""
+        """Run :func:`branch_and_bound` with people who behave as one of the hypotheses says."""
         vci = self._vci
-        assert vci is not None  # else there is no compiled search
+        assert vci is not None  # other models have no compiled search
         ended: tuple[int, bool, int] = branch_and_bound(
             self._way,
             vci.arrays(people, self._surroundings),
@@ -280,9 +283,9 @@ class CrowdForesight:
         judged: _Judged,
         other: Otherwise,
     ) -> tuple[int, bool, int]:
-        """Run as :meth:`_run` does, for the best trial where either hypothesis may be true."""
+        """Run the search over both hypotheses, for people whose intent is uncertain."""
         time_step, n = View(*self._view).time_step, len(other.people)
-        if self._aside.people < n:  # what the trials lead to stays in a second workspace
+        if self._aside.people < n:  # outcomes under the other hypothesis have their own workspace
             self._aside = Workspace(BRANCHES, len(judged[0]), len(self._poses), n)
         likelier, less = (workspace, self._pedestrians, self._halting), (self._aside, *other[:2])
 
@@ -320,12 +323,12 @@ class CrowdForesight:
         )
 
     def _middle(self, values: Array) -> Array:
-        """(M,) the mean over each step of the prediction of what acts on people in it."""
+        """The mean (M,) of the first and last value in each prediction step."""
         every, end = self._every, len(self._poses) * self._every
         return np.asarray(0.5 * (values[:end:every] + values[every - 1 : end : every]))
 
     def _copy(self) -> None:
-        """Take over the poses of this instant."""
+        """Copy the poses of this instant."""
         M, vehicles = len(self._poses), self._given.shape[1]
         if self._poses.shape[1] != vehicles:
             self._poses = np.empty((M, vehicles, 7))

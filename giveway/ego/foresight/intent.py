@@ -1,15 +1,15 @@
-"""The intent of people, to walk on or to let the ego pass, estimated from what they do.
+"""Estimates the intent of people, to walk on or to yield to the ego, from their motion.
 
-A planner that believes in one model of people is wrong about those who walk by another. Of each
-person beside the way who wants to cross it two hypotheses are kept:
+A planner that assumes one model of people is wrong about people who walk by another one. Two
+hypotheses are kept for each person beside the ego's corridor who wants to cross it:
 
-* *walks on*, as the model says;
-* *yields*: walks up to the edge of the way, or where their pace says that they stop, and stands
-  there, whatever the ego does.
+* *walks on*: the person walks as the model says;
+* *yields*: the person walks up to the edge of the corridor, or to an earlier point at which they
+  are about to stop by their present speed, and stands there, whatever the ego does.
 
-Both say how fast the person is one step of the prediction later. Seen speeds shift the log odds
-between the two (sequential probability ratio, Wald 1945). Whoever more likely yields is predicted,
-and thereby planned for, with that place as destination.
+Both predict the person's speed one prediction step later. Observed speeds change the log odds
+between the two (sequential probability ratio test, Wald 1945). A person who more likely yields is
+predicted, and thereby planned for, with the stopping point as destination.
 """
 
 from math import exp
@@ -23,36 +23,36 @@ from giveway.geometry.kernel import Array, inlined, inner, kernel
 from giveway.geometry.path import EgoPath, segment_at
 from pedestrian_model import Crowd, Predictor
 
-_ERROR = 0.1  # [m/s] of a speed predicted a step ahead: one standard deviation
-_PRIOR = -3.0  # log odds of somebody who has not been seen yet: 1 in 21 yields
-_SUREST = 4.0  # log odds go no farther than this, so that people may change their minds
-_REACH = 25.0  # [m] ahead of the front
-_ASIDE = 6.0  # [m] from the edge of the way; from there on nobody slows down for it yet
-_TOWARDS = 0.3  # [m/s] of the wish towards the way, at least: others do not want to cross it
-_EDGE = 0.05  # [m] before the edge of the way is where people stop: rounding leaves nobody on it
-_SWAY = 0.1  # [m] farther than their pace says people may yet come: who stands is not pinned
-_OPEN = 2.0  # log odds nearer to 0 than this leave somebody's intent open
-_NEVER = -1  # a look that none is
+_ERROR = 0.1  # standard deviation [m/s] of a speed that is predicted one step ahead
+_PRIOR = -3.0  # log odds that a new person yields: 1 in 21
+_SUREST = 4.0  # bound of the log odds, so that people may change their minds
+_REACH = 25.0  # distance [m] ahead of the front, within which intent is estimated
+_ASIDE = 6.0  # distance [m] to the corridor's edge, beyond which people do not slow down for it
+_TOWARDS = 0.3  # desired speed [m/s] towards the corridor, above which a person wants to cross
+_EDGE = 0.05  # distance [m] to the corridor's edge at which people who yield stop
+_SWAY = 0.1  # distance [m] that people may walk beyond the stopping point of their speed
+_OPEN = 2.0  # absolute log odds below which a person's intent is uncertain
+_NEVER = -1  # number of a look that never took place
 
 Halting = tuple[NDArray[np.bool_], float, float, float]
 
 
 class Otherwise(NamedTuple):
-    """People of whom some do the less likely of two things."""
+    """The alternative hypothesis: people of uncertain intent do what is less likely."""
 
-    people: Crowd  # the ways of those who then yield are changed
-    halting: Halting  # as of :class:`Beliefs`
-    likely: float  # how likely the other hypothesis is, the more likely one
+    people: Crowd  # crowd in which the routes of those who yield are changed
+    halting: Halting  # yielding state, as in :class:`Beliefs`
+    likely: float  # probability of the other, likelier hypothesis
 
 
 class Beliefs:
-    """Remembers of each person, by number, how likely they let the ego pass.
+    """Estimates for each person, by number, the log odds that they yield to the ego.
 
     Args:
-        path: the ego's.
-        half_width: Half width of its corridor [m], the way.
-        predictor: Predictor of the model by which people walk on.
-        time_step: [s] between two looks; the predictor's is some of them.
+        path: Path of the ego.
+        half_width: Half width of its corridor [m].
+        predictor: Predictor of people who walk on.
+        time_step: Time [s] between two looks. The predictor's step is a multiple of it.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Beliefs:
         time_step: float,
     ) -> None:
         walking = predictor.parameters
-        # People take up a wish v_d as by f_d = k_des (v_d - v).
+        # The share of a desired change of velocity in one step, by f_d = k_des (v_d - v)
         taken_up = 1.0 - exp(-predictor.time_step * walking.destination_gain / walking.mass)
         self._law = half_width, taken_up, walking.destination_smoothing
         self._step = predictor.time_step
@@ -76,20 +76,28 @@ class Beliefs:
         self._numbers, self._yield = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
 
     def odds(self, number: int) -> float:
-        """The log odds that a person yields."""
+        """Return the log odds that the person of this number yields."""
         return float(self._odds[number]) if number < len(self._odds) else _PRIOR
 
     @property
     def halting(self) -> Halting:
-        """The people who yield, as of the latest look, and what :func:`walk_up` needs."""
+        """The yielding state of the latest look.
+
+        It consists of marks (n,) of people who yield, the share of a desired change of velocity in
+        one step, s_des [m], and the prediction step [s].
+        """
         return self._yield, *self._law[1:], self._step
 
     def weigh(
         self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array
     ) -> Otherwise | None:
-        """Update, and return the alternative in which people of open intent do the less likely.
+        """Update, and return the alternative hypothesis for people of uncertain intent.
 
-        None: nobody's is, or that is no other expectation.
+        Arguments are as for :meth:`update`.
+
+        Returns:
+            The alternative hypothesis, or None if no intent is uncertain or nobody would yield or
+            walk on differently.
         """
         if not _is_open(self._odds, numbers):
             self.update(people, numbers, front, expected)
@@ -113,14 +121,14 @@ class Beliefs:
     def update(
         self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array
     ) -> None:
-        """See how people walk now, and send those who are believed to yield to the edge only.
+        """Update the log odds, and let the routes of people who yield end at the corridor's edge.
 
         Args:
-            people: People as they are seen; the ways of those who yield are changed.
-            numbers: (n,) who they are.
-            front: the front bumper's station [m].
-            expected: (4 m,) x, y [m], v_x, v_y [m/s] of the m people of the latest look, where its
-                prediction had them after a step; (0,): it made none.
+            people: People as the ego perceives them. The routes of those who yield are changed.
+            numbers: Numbers (n,) that identify the people.
+            front: Station of the front bumper [m].
+            expected: States (4 m,), x, y [m], v_x, v_y [m/s], of the m people of the latest look
+                one prediction step later, as predicted then; (0,) without a prediction.
         """
         yields = np.zeros(len(numbers), dtype=np.bool_)
         seen = (*people.state, people.desired_speed, *people.routes)
@@ -137,7 +145,7 @@ class Beliefs:
         self._look += 1
 
     def _grow(self, more: int) -> None:
-        """Make room for the numbers of more people."""
+        """Extend the arrays by ``more`` numbers of people."""
         self._odds = np.concatenate([self._odds, np.full(more, _PRIOR)])
         never = np.full((more, self._every), _NEVER)
         self._told = np.concatenate([self._told, never])
@@ -157,20 +165,22 @@ def _update(
     yields: NDArray[np.bool_],
     law: tuple[float, float, float],
 ) -> int:
-    """Update as :meth:`Beliefs.update` does; return -1, or a number that needs more memory.
+    """Update as :meth:`Beliefs.update` does; return -1, or a number that needs longer arrays.
 
     Args:
         vertices: Vertices of the path.
-        stations: [m] of these.
-        front: station [m].
-        people: state, desired speeds and routes.
-        numbers: (n,).
-        look: counts the looks.
-        latest: Latest of the latest look: numbers, who was believed to yield, what was expected.
-        memory: Log odds by number; and by number and look: the look at which speeds [m/s] were
-            expected, these speeds, and (1) whether those of a yielding person.
-        yields: (n,) filled: who is believed to yield.
-        law: half-width [m], share of a wish that is taken up in a step, s_des [m].
+        stations: Stations [m] of the vertices.
+        front: Station of the front bumper [m].
+        people: State, desired speeds and routes of the n people.
+        numbers: Numbers (n,) that identify the people.
+        look: Number of this look.
+        latest: Data of the latest look: numbers of the people, marks of those who yielded by the
+            estimate, and predicted states.
+        memory: Log odds by number. By number and look: the look in which velocities were
+            predicted, these velocities [m/s], and 1 if the person was predicted to yield.
+        yields: Marks (n,) of people who yield by the estimate, filled.
+        law: Half width of the corridor [m], share of a desired change of velocity in one step,
+            s_des [m].
     """
     position, velocity, index, desired_speed, waypoints, passage, signal, start = people
     odds, told, expected = memory
@@ -198,7 +208,7 @@ def _update(
         if not (0.0 < ahead <= _REACH and 0.0 < aside <= _ASIDE and far > 0.0):
             continue
         side = -1.0 if lateral > 0.0 else 1.0
-        n_x, n_y = -side * e_y, side * e_x  # towards the way
+        n_x, n_y = -side * e_y, side * e_x  # unit vector towards the path
         share = (to_x * n_x + to_y * n_y) / far
         wish = desired_speed[i] * share
         if wish <= _TOWARDS:
@@ -213,7 +223,7 @@ def _update(
             yields[i] = True
             pace = max((velocity[i, 0] * to_x + velocity[i, 1] * to_y) / far, 0.0)
             missing = desired_speed[i] * desired_speed[i] - pace * pace
-            if missing > 0.0:  # slowing down as VCI does towards a destination; where is that?
+            if missing > 0.0:  # the stopping point that VCI's slowing down implies
                 room = min(room, _SWAY + smoothing * pace / np.sqrt(missing))
             for k in range(at, start[i + 1]):
                 waypoints[k, 0] = x + room * to_x / far
@@ -225,7 +235,7 @@ def _update(
 
 @kernel
 def _is_open(odds: Array, numbers: NDArray[np.int64]) -> bool:
-    """Return whether anybody's intent is open, and all are known."""
+    """Return whether all people are known and the intent of at least one is uncertain."""
     some = False
     for n in numbers:
         if n >= odds.size:
@@ -238,17 +248,18 @@ def _is_open(odds: Array, numbers: NDArray[np.int64]) -> bool:
 def walk_up(
     halting: tuple[Any, ...], at: int, state: Array, scene: Any, position: Array, velocity: Array
 ) -> None:
-    """Let those who yield go on for a step as by their wish alone; in place.
+    """Move people who yield by one prediction step, under their destination force alone; in place.
 
-    Nobody's push, the ego's least of all, makes room that who stands at the edge does not give.
+    Forces of the ego and of other people are left out: they would push a person who stands at the
+    corridor's edge aside, which would free room that does not exist.
 
     Args:
-        halting: see :attr:`Beliefs.halting`.
-        at: where in ``state`` the step before begins.
-        state: State by person: x, y [m], v_x, v_y [m/s].
+        halting: Yielding state, see :attr:`Beliefs.halting`.
+        at: Index in ``state`` at which the step before begins.
+        state: State of each person: x, y [m], v_x, v_y [m/s].
         scene: Scene of the prediction.
-        position: (n, 2) [m] of everybody after the step.
-        velocity: (n, 2) [m/s].
+        position: Positions (n, 2) [m] of all people after the step; changed.
+        velocity: Velocities (n, 2) [m/s] of all people after the step; changed.
     """
     yields, taken_up, smoothing, dt = halting
     waypoints, _, _, begin = scene.routes
@@ -266,17 +277,17 @@ def walk_up(
 
 @inner
 def shifted(odds: float, off: float, slower: float, yields: bool) -> float:
-    """The log odds that somebody yields, after a look.
+    """The log odds that a person yields, after a look.
 
     Args:
-        odds: Odds before it.
-        off: [m/s] by which the person is faster towards the way than was predicted.
-        slower: [m/s] by which one who yields is slower than one who walks on.
-        yields: whether that was predicted.
+        odds: Log odds before the look.
+        off: Observed minus predicted speed [m/s] towards the path.
+        slower: Difference [m/s] by which a person who yields is slower than one who walks on.
+        yields: Whether the prediction was that of a yielding person.
     """
     if yields:
         off -= slower
-    # Neither hypothesis gains by what is beyond the other. Both have normal errors.
+    # Speeds beyond those of the two hypotheses are clipped. Both have normal errors.
     off = min(max(off, -slower), 0.0)
     odds -= slower * (2.0 * off + slower) / (2.0 * _ERROR * _ERROR)
     return min(max(odds, -_SUREST), _SUREST)

@@ -1,12 +1,12 @@
-"""The people who come onto the ego's way beyond the horizon, with time and place."""
+"""The later crossings: people who cross the ego's path beyond the prediction horizon."""
 
 import numpy as np
 
 from giveway.geometry.kernel import Array, inlined, kernel
 from giveway.geometry.path import segment_at
 
-_REACH = 60.0  # [m] of the way beyond the horizon on which people matter
-_ABREAST = 1e-3  # [m/s] across the way below which somebody goes along it
+_REACH = 60.0  # length [m] of the path beyond the horizon on which people matter
+_ABREAST = 1e-3  # speed [m/s] across the path, below which a person walks along it
 
 
 @kernel
@@ -18,18 +18,18 @@ def fill_crossers(
     people: Array,
     crossers: Array,
 ) -> None:
-    """Fill ``crossers`` as in :class:`controller.Prospect`: straight on at the velocity wished for.
+    """Fill ``crossers`` as in :class:`controller.Prospect`: people walk straight on as they wish.
 
-    Where the way bends, each walks past the part that is nearest, as if it went on straight.
+    The segment of the path that is nearest to a person counts, as a straight line.
 
     Args:
         vertices: Vertices of the path.
-        stations: [m] of these.
-        front: the front bumper's station [m] at the horizon's end.
+        stations: Stations [m] of the vertices.
+        front: Station of the front bumper [m] at the end of the horizon.
         half_width: Half width of the corridor [m].
-        people: (n, 5) position [m], velocity [m/s], and for how long it is kept [s]; at the
-            horizon's end.
-        crossers: (n, 4).
+        people: Position [m], desired velocity [m/s] and the time [s] for which it is kept, (n, 5),
+            at the end of the horizon.
+        crossers: Later crossings (n, 4), filled.
     """
     first, last = segment_at(stations, front), segment_at(stations, front + _REACH)
     for p in range(people.shape[0]):
@@ -50,9 +50,10 @@ def fill_crossers(
 def abreast(
     vertices: Array, stations: Array, first: int, last: int, x: float, y: float
 ) -> tuple[float, float, float, float]:
-    """Somebody beside the nearest of the segments ``first`` ... ``last``, or ahead of them.
+    """Find the segment nearest to (x, y) [m] among the segments ``first`` ... ``last``.
 
-    The station [m], how far to the left of the way [m], and the direction of the segment.
+    Returns:
+        The station [m] and the lateral offset [m] of the point, and the segment's unit vector.
     """
     closest, station, lateral, along_x, along_y = np.inf, 0.0, 0.0, 0.0, 0.0
     for i in range(first, last + 1):

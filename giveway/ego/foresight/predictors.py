@@ -1,4 +1,4 @@
-"""The predictor of the crowd for an ego: the model that its controller believes in."""
+"""Makes the predictor of the crowd for an ego: the pedestrian model that its controller uses."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from pedestrian_model import (
 def predictor_of(
     config: EgoRunConfig, controller: Controller, time_step: float, parameters: VciParameters
 ) -> CrowdPredictor | None:
-    """Return the predictor for a controller, or None if it looks at the present only.
+    """Return the predictor for a controller, or None if the controller does not look ahead.
 
-    VCI is compiled into the planner's search over manoeuvres, and so is constant velocity, as VCI
-    of people whom nothing moves; any other model is asked step by step.
+    VCI is compiled into the planner's search over manoeuvres. So is constant velocity, as VCI
+    without forces. Any other model is asked step by step.
 
     Args:
         config: Configuration of the ego.
-        controller: that looks ahead.
+        controller: Controller of the ego.
         time_step: Time step of the co-simulation [s].
-        parameters: bodies and limits that people are believed to have.
+        parameters: Bodies and limits that the prediction assumes of people.
 
     Raises:
-        ConfigError: an option of somebody else's model cannot be used.
-        ControlError: somebody else's model is not installed.
-        CrowdError: it cannot be made.
+        ConfigError: an option of another package's model cannot be used.
+        ControlError: another package's model is not installed.
+        CrowdError: the model cannot be made.
     """
     horizon, believed = controller.horizon, config.perception.model
     if not horizon:
@@ -44,7 +44,7 @@ def predictor_of(
             parameters, readings["detour"] = unmoved(parameters), False
         make = plan_predictor if controller.foresees else Predictor
         return make(parameters, time_step, horizon, **readings)
-    # Ours divide a longer step themselves; somebody else's is asked at the step that it is for.
+    # Giveway's models divide a longer step themselves. Others are asked at their own step.
     hosted = config.perception.plugged_in or believed in JUPEDSIM_MODELS
     own = hosted or not controller.foresees
     every = 1 if own else steps_at_once(time_step, horizon)

@@ -9,22 +9,23 @@ from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
 
-PREDICT_ALL = 150  # pedestrians; of a larger crowd only those that matter to the ego are predicted
-MARGIN = 3.0  # [m] from what the ego can reach; who stays farther off is left out of a plan,
-# unless the safety layer would act for somebody who is as far off
+PREDICT_ALL = 150  # number of pedestrians up to which the whole crowd is predicted
+# Distance [m] to the area that the ego can reach. People who stay farther away are left out of a
+# plan, unless the safety layer would act for a person at that distance.
+MARGIN = 3.0
 
 Mask = NDArray[np.bool_]
 
 
 class Relevance:
-    """Tells who is near enough for an ego that looks at one prediction.
+    """Selects the people who matter to an ego that uses one prediction per control step.
 
-    Those who are left out act on the plan only through others, and move the pedestrians that the
-    ego may meet by less than a micrometre within the horizon.
+    The others act on the plan only through those people, whom they move by less than a micrometre
+    within the horizon.
 
     Args:
-        waiting: the ego before its departure.
-        span: that it looks ahead [s].
+        waiting: Ego before its departure.
+        span: Prediction horizon [s].
         size: Size of its body and its corridor [m].
     """
 
@@ -38,7 +39,14 @@ class Relevance:
             self._beyond += predictor.parameters.interaction_radius
 
     def of(self, crowd: Crowd, x: float, y: float, speed: float) -> Mask | None:
-        """Return who matters to a plan from (x, y) [m] at ``speed`` [m/s], (n,); None if all do."""
+        """Return whether each person (n,) matters to a plan from (x, y) [m]; None if all do.
+
+        Args:
+            crowd: Crowd of n people.
+            x: Coordinate of the ego [m].
+            y: Coordinate of the ego [m].
+            speed: Speed of the ego [m/s].
+        """
         if len(crowd) <= PREDICT_ALL:
             return None
         reach = speed * self._span + self._beyond
@@ -48,21 +56,21 @@ class Relevance:
 
 
 class Nearby:
-    """Tells who is near enough for an ego that predicts the crowd again for each manoeuvre.
+    """Selects the people who matter to an ego that predicts the crowd for each manoeuvre.
 
-    Somebody counts who, at his present velocity, comes within ``MARGIN`` of the part of the path
-    that the ego's body can be on within the horizon, or its safe distance ahead of that. Who is
-    left out would have to walk that far to meet the ego, and the safety layer, if there is one,
-    does not act for him: the faster the ego is, the farther off it does.
-    What he does to others is left out, too: docs/planner.md compares runs.
+    A person matters who comes, at the present velocity, within a margin of the part of the path
+    that the ego's body can reach within the horizon, extended by the safe distance. The margin is
+    ``MARGIN``, or the distance at which the safety layer acts if that is larger; it grows with the
+    ego's speed. The influence of all others on the crowd is neglected; docs/planner.md compares
+    runs.
 
     Args:
-        waiting: the ego before its departure.
-        path: the ego's.
+        waiting: Ego before its departure.
+        path: Path of the ego.
         shape: Shape of its body.
-        span: that it looks ahead [s].
+        span: Prediction horizon [s].
         half_width: Half width of its corridor [m].
-        time_step: until its brake acts [s].
+        time_step: Time [s] until its brake acts.
     """
 
     def __init__(
@@ -86,7 +94,13 @@ class Nearby:
         self._lunge = 0.0 if safety is None else safety.walking_acceleration
 
     def of(self, crowd: Crowd, front: float, speed: float) -> Mask:
-        """Return who matters to a plan from station ``front`` [m] on at ``speed`` [m/s], (n,)."""
+        """Return whether each person (n,) matters to a plan from station ``front`` [m] on.
+
+        Args:
+            crowd: Crowd of n people.
+            front: Station of the front bumper [m].
+            speed: Speed of the ego [m/s].
+        """
         path, span = self._path, self._span
         reach = min(speed * span + self._gain, max(speed, self._wanted) * span)
         stop = self._time_step + speed / self._strongest
@@ -118,18 +132,18 @@ def come_near(
     margin: float,
     mask: Mask,
 ) -> None:
-    """Fill ``mask`` (n,): who comes within ``margin`` [m] of a part of a path on a straight way.
+    """Fill ``mask`` (n,): whether a person who walks straight on comes close to a part of a path.
 
     Args:
-        vertices: Vertices of the path; it goes on straight beyond its ends.
-        stations: [m] of these.
-        begin: station [m] where the part begins.
-        end: where it ends, farther on.
-        position: (n, 2) [m].
-        velocity: (n, 2) [m/s], kept to for the ``span``.
-        span: [s].
-        margin: [m].
-        mask: (n,).
+        vertices: Vertices of the path, which goes on straight beyond its ends.
+        stations: Stations [m] of the vertices.
+        begin: Station [m] at which the part begins.
+        end: Station [m] at which the part ends, > ``begin``.
+        position: Positions (n, 2) [m] of people.
+        velocity: Velocities (n, 2) [m/s] of people, constant over the ``span``.
+        span: Time [s] that is looked ahead.
+        margin: Distance [m] that counts as close.
+        mask: Marks (n,), filled.
     """
     mask[:] = False
     last = len(stations) - 2
@@ -153,7 +167,10 @@ def come_near(
 
 @inner
 def _farther(x: float, y: float, to_x: float, to_y: float, length: float, margin: float) -> bool:
-    """Return whether a way stays farther than ``margin`` from the axis between 0 and ``length``."""
+    """Return whether a straight walk stays farther than ``margin`` from a segment of the path.
+
+    The segment is the x axis between 0 and ``length`` [m].
+    """
     if min(y, to_y) > margin or max(y, to_y) < -margin:
         return True
     if min(x, to_x) > length + margin or max(x, to_x) < -margin:

@@ -1,4 +1,4 @@
-"""Pedestrians about to collide with the ego, and speeds at which none could make it stop hard."""
+"""Pedestrians in conflict with the ego, and speeds at which none could force a hard stop."""
 
 from typing import NamedTuple
 
@@ -9,26 +9,26 @@ from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import Array, inner
 
-_SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
-_HALVINGS = 5  # of the interval in which the calm speed is looked for
-_WHOLE = 1e-6  # of a step: so much longer a stop takes no step more
-_ROUNDING = 1e-6  # [m] farther off than could matter: nothing that is left out is a near miss
-_FADING = 0.5  # [s] beyond the conflict time in which somebody counts less and less
-_SPARE = 0.05  # [m] kept beyond what the safety layer needs: predictions are a little off
-_NOT_BEHIND_ONE = 0.0, 0.0, 0.0  # no kerb
+_SLOW = 0.2  # speed [m/s] at which the ego is no danger (Yang & Özgüner 2019: an obstacle)
+_HALVINGS = 5  # number of bisections in the search for the threat-free speed
+_WHOLE = 1e-6  # tolerance [steps] when a stopping time is rounded up to whole steps
+_ROUNDING = 1e-6  # tolerance [m] of distances that exclude a person
+_FADING = 0.5  # time [s] beyond the conflict time, in which a person's weight falls to 0
+_SPARE = 0.05  # margin [m] beyond the safety layer's need, for errors of the prediction
+_NOT_BEHIND_ONE = 0.0, 0.0, 0.0  # kerb of a person who is not on a sidewalk
 
 
 class Alarm(NamedTuple):
-    """The limits of bodies and brakes, as the kernels take them."""
+    """The limits of people and brakes that define a threat, as the kernels take them."""
 
-    radius: float  # of a body [m]
-    clearance: float  # kept to it by the safety layer [m]
-    walking_acceleration: float  # [m/s^2] that no pedestrian exceeds
-    walking_speed: float  # [m/s] that no pedestrian exceeds
-    braking: float  # of the ego at most [m/s^2]
-    heeded: bool  # there is a safety layer that would act
-    setting_out: float = np.inf  # [m/s^2] towards the kerb, that nobody on a sidewalk exceeds
-    kerbs: Array = NO_KERBS  # (n, 3) a x + b y = c [m] of those on sidewalks, 0 of the others
+    radius: float  # radius of a person's body [m]
+    clearance: float  # distance [m] that the safety layer keeps to a body
+    walking_acceleration: float  # largest acceleration [m/s^2] of a person
+    walking_speed: float  # largest speed [m/s] of a person
+    braking: float  # largest deceleration [m/s^2] of the ego
+    heeded: bool  # whether there is a safety layer that would act
+    setting_out: float = np.inf  # largest acceleration [m/s^2] from a sidewalk towards the kerb
+    kerbs: Array = NO_KERBS  # kerb lines (n, 3), a x + b y = c [m]; 0 for people not on sidewalks
 
 
 @inner
@@ -42,15 +42,15 @@ def conflicts_and_calm(
 ) -> tuple[float, float]:
     """Return the persons in conflict with the ego, and its threat-free speed.
 
-    A person is in conflict who would touch the ego within the conflict time if both kept their
-    velocity; one who would do so up to half a second later counts in proportion. The threat-free
-    speed [m/s] is that up to which no pedestrian could force an emergency stop, see
-    :func:`is_threat`; it is inf if ``speed`` is slow enough.
+    A person is in conflict if they would touch the ego within the conflict time, both keeping their
+    velocity. A contact up to half a second later counts in proportion. The threat-free speed [m/s]
+    is the highest one at which no pedestrian could force an emergency stop (:func:`is_threat`). It
+    is inf if ``speed`` itself is threat-free.
 
     Args:
         people: Positions of people now, before and after the interval [m], (n, 2) each.
-        pose: x, y of the front [m], heading of the body [rad], and heading of the way on which
-            the front would stop [rad].
+        pose: x, y of the front [m], heading of the body [rad], and heading [rad] of the line from
+            the front to where it would stop.
         speed: Speed of the ego [m/s].
         body: Half of its length and half of its width [m].
         times: Interval between two predictions, time to collision of a conflict, step [s].
@@ -77,7 +77,7 @@ def conflicts_and_calm(
         w_x = (after[j, 0] - before[j, 0]) / interval
         w_y = (after[j, 1] - before[j, 1]) / interval
         w_x, w_y = to_frame(w_x, w_y, c, s)
-        # Who cannot come beside, before or behind the body in that time needs no more thought.
+        # The least separation of the bodies within that time, along and across the ego.
         apart = max(
             abs(y) - half_width - abs(w_y) * soon,
             abs(x + half_length) - half_length - abs(w_x - speed) * soon,
@@ -115,29 +115,29 @@ def conflicts_and_calm(
 
 
 class Outline(NamedTuple):
-    """The outline of a full braking from a speed, the same for everybody."""
+    """The outline of a full braking from a speed, which is the same for all pedestrians."""
 
-    speed: float  # [m/s] from which it is braked
-    step: float  # [m] driven until the brake acts
-    stop: int  # steps until standstill
-    clear: float  # [m] to be kept between a body's centre and the front
-    most: float  # [m] with the farthest that somebody can deviate until then
-    farthest: float  # [m] that the front gets at most
+    speed: float  # initial speed [m/s]
+    step: float  # distance [m] driven until the brake acts
+    stop: int  # number of steps until standstill
+    clear: float  # distance [m] to be kept between a person's centre and the front
+    most: float  # this distance [m] plus the largest deviation of a person until standstill
+    farthest: float  # upper bound [m] of the distance that the front travels
 
 
 @inner
 def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
     """The outline of a full braking from ``speed`` [m/s], which acts after ``time_step`` [s]."""
     step = speed * time_step
-    # The instant of the stop counts too: in most of the cases it is the one that matters.
+    # The instant of standstill is included.
     stop = 1 + int(np.ceil(speed / (alarm.braking * time_step) - _WHOLE))
-    # half of a step's motion relative to the front
+    # Half of the relative motion in one step, as positions are compared once per step.
     within = 0.5 * (step + alarm.walking_speed * time_step)
     clear = max(
         alarm.radius + alarm.clearance, np.sqrt(alarm.radius * alarm.radius + within * within)
     )
     clear += _SPARE
-    # The longest reach, the last instant and the whole way of the front at once: too generous.
+    # Upper bounds over the whole braking, for a quick exclusion.
     last = stop * time_step
     most = clear + 0.5 * alarm.walking_acceleration * last * last + _ROUNDING
     farthest = speed * (last + time_step) + 0.5 * alarm.braking * time_step * last
@@ -156,20 +156,21 @@ def is_threat(
     alarm: Alarm,
     kerb: tuple[float, float, float] = _NOT_BEHIND_ONE,
 ) -> bool:
-    """Return whether a pedestrian could get before the front of the fully braking ego.
+    """Return whether a pedestrian could get in front of the ego although it brakes fully.
 
-    The safety layer would act then (controller/safety/layer.py knows exactly; this is its outline).
+    The safety layer would act then. This is an approximation of controller/safety/layer.py.
 
     Args:
-        x: ahead of the front's middle [m].
-        y: Distance to the left of it [m].
-        w_x: the velocity along the ego's heading [m/s].
-        w_y: across it [m/s].
+        x: Distance [m] of the pedestrian ahead of the middle of the front.
+        y: Distance [m] of the pedestrian to the left of this point.
+        w_x: Velocity [m/s] of the pedestrian along the ego's heading.
+        w_y: Velocity [m/s] of the pedestrian to the left of it.
         o: Outline of the braking.
         half_width: Half width of the ego [m].
-        time_step: [s] until the brake acts.
-        alarm: the limits.
-        kerb: Kerb of somebody on a sidewalk: the unit vector to it, and how far it is [m].
+        time_step: Time [s] until the brake acts.
+        alarm: Limits of people and brakes.
+        kerb: Unit vector to the kerb, and the distance [m] to it, of a person on a sidewalk; 0
+            for others.
     """
     to_x, to_y, depth = kerb
     last = o.stop * time_step

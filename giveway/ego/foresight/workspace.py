@@ -1,4 +1,4 @@
-"""The workspace of a branch and bound: what each manoeuvre has led to so far, reused."""
+"""The workspace of a branch and bound: arrays that are kept and reused by each search."""
 
 from typing import Any
 
@@ -13,28 +13,29 @@ Arrays = tuple[NDArray[Any], ...]
 
 
 class Workspace:
-    """Arrays of a branch and bound, which hold what each manoeuvre has led to so far.
+    """Arrays of a branch and bound: predicted crowds, outcomes and costs of each manoeuvre.
 
     Args:
-        count: Count of manoeuvres.
-        horizon: N [steps].
-        predicted: M [steps] of the crowd.
-        people: n, at most.
+        count: Number of manoeuvres.
+        horizon: Number N of a manoeuvre's steps.
+        predicted: Number M of prediction steps.
+        people: Largest number n of people.
 
     Attributes:
-        arrays: what the kernel takes.
+        arrays: All arrays, as the kernel takes them.
     """
 
     def __init__(self, count: int, horizon: int, predicted: int, people: int) -> None:
         self.count, self.people, self._predicted = count, people, predicted
         self._state = np.empty(count * predicted * people * 4)
         self._index = np.empty(count * predicted * people, dtype=np.int64)
-        prospects = np.zeros((3, count, horizon))  # gap, conflicts, calm
+        prospects = np.zeros((3, count, horizon))  # gaps, conflicts, threat-free speeds
         self._prospects = [Prospect(*rows) for rows in zip(*prospects, strict=True)]
-        self._sums = np.zeros((4, count))  # own and later cost, of others, missing distance, own
-        self._steps = np.zeros((2, count), dtype=np.int64)  # predicted, assessed
-        self._alike = np.zeros((count, count), dtype=np.int64)  # steps before they part
-        self._rows: dict[tuple[tuple[int, ...], ...], NDArray[np.int64]] = {}  # some hundred
+        # Rows: own and later cost, cost of others, missing distance, own cost
+        self._sums = np.zeros((4, count))
+        self._steps = np.zeros((2, count), dtype=np.int64)  # steps predicted, steps assessed
+        self._alike = np.zeros((count, count), dtype=np.int64)  # leading steps that are equal
+        self._rows: dict[tuple[tuple[int, ...], ...], NDArray[np.int64]] = {}  # by batches
         self._bad = np.zeros(1, dtype=np.int64)
         self.arrays: Arrays = (
             self._state,
@@ -51,7 +52,7 @@ class Workspace:
 
     @property
     def bad(self) -> int:
-        """The pedestrian whose predicted state is not finite, or -1."""
+        """The index of a pedestrian whose predicted state is not finite, or -1."""
         return int(self._bad[0])
 
     def rows_of(self, batches: Batches) -> NDArray[np.int64]:
@@ -65,13 +66,18 @@ class Workspace:
         return rows
 
     def positions(self, k: int, n: int) -> Array:
-        """Return the positions of people under a finished manoeuvre, (M, n, 2) [m]."""
+        """Return the predicted positions (M, n, 2) [m] of n people under a finished manoeuvre k."""
         M = self._predicted
         size = M * n * 4
         return self._state[k * size : (k + 1) * size].reshape(M, n, 4)[:, :, :2]
 
     def soon(self, k: int, n: int) -> Array:
-        """(4 n,) x, y [m], v_x, v_y [m/s] of the people after the first step, likewise."""
+        """Return the states (4 n,) after the first step: x, y [m], v_x, v_y [m/s] of each person.
+
+        Args:
+            k: Row of the manoeuvre.
+            n: Number of people.
+        """
         at = 4 * k * self._predicted * n
         return self._state[at : at + 4 * n]
 
