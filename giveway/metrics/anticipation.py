@@ -1,7 +1,7 @@
 """Anticipation: how early an ego slowed for people, and how long it stood among them.
 
-An attentive driver slows while the first person is still far off in time, and stops before a stream
-of people or flows through it. Lengths are in m, times in s.
+An attentive driver slows while the first person is still several seconds away, and stops before a
+stream of people or flows through it. Lengths are in m, times in s.
 """
 
 from dataclasses import fields
@@ -19,15 +19,16 @@ from giveway.metrics.standing import stops
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 PASSING = 5.0
-"""[m] from the front or the rear bumper: who crosses its line there walks round the car."""
+"""Distance [m] from the front or rear bumper within which a person who crosses the ego's line walks
+round the car."""
 
 
 class Anticipation(NamedTuple):
     """The anticipation of an ego.
 
     Attributes:
-        ttc_at_slowing: Time [s] to the first person at the begin of slowing, at constant speed; nan
-            if it never slowed, or would have reached nobody.
+        ttc_at_slowing: Time [s] to the first person at the beginning of slowing, at constant speed;
+            nan if the ego never slowed, or would have reached nobody.
         time_among_people: Time [s] at standstill with people passing in front of and behind it.
     """
 
@@ -51,7 +52,7 @@ def anticipation(
         crowd: Track of the crowd, R records of n pedestrians in time order.
         shape: Rectangle of the ego.
         body_radius: Radius of a pedestrian [m].
-        reference_speed: Reference speed v_r [m/s]; None: the lanes' limits count.
+        reference_speed: Reference speed v_r [m/s], or None if the lanes' limits count.
         stop_speed: Speed [m/s] below which the ego stands.
 
     Raises:
@@ -75,7 +76,8 @@ def _time_to_contact(
     """
     time, way = ego.time[begin:], np.maximum.accumulate(ego.position)
     station = way[begin] + ego.speed[begin] * (time - time[0])
-    count = int(np.searchsorted(station, way[-1], side="right"))  # nobody was recorded beyond it
+    # nobody was recorded beyond the way
+    count = int(np.searchsorted(station, way[-1], side="right"))
 
     def there(column: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.asarray(np.interp(station[:count], way, column), dtype=np.float64)

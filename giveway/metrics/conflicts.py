@@ -17,29 +17,28 @@ from giveway.geometry.kernel import kernel
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 CRITICAL_TTC = 1.5
-"""[s] Below it an encounter is a conflict: the threshold of SSAM (Gettman & Head 2003, FHWA), in
-the range that observers of Hayward's (1972) near misses found."""
+"""Time to collision [s] below which an encounter is a conflict: the threshold of SSAM (Gettman &
+Head 2003, FHWA), in the range that observers of Hayward's (1972) near misses found."""
 
 
 class Proximity(NamedTuple):
     """The proximity of pedestrian and ego for each of R crowd records; all are (R,).
 
     Attributes:
-        clearance: Distance [m] between the pedestrian's skin and the ego's bodywork; negative where
-            the circle overlaps the rectangle.
-        time_to_collision: Time [s] until the first contact if both kept their velocity: 0 when they
-            touch already, inf when they never do on these courses. The usual surrogate (Hayward
-            1972) without its usual shortcut of one line of travel: the rectangle moves along its
-            heading at its present speed, the circle along its present velocity, and the first
-            contact of the two shapes is solved exactly. A pedestrian walking into the side of a
-            standing ego therefore has a finite time to collision too.
-        deceleration: Deceleration [m/s^2] to avoid a crash (DRAC, Cooper & Ferguson 1976), the
-            constant braking that would just spare a pedestrian ahead: c^2 / (2 d) with the closing
-            speed c and the distance d to be closed. Here c is along the ego's heading and
-            d = c * (time to collision): braking by it, the ego has matched the pedestrian's speed
-            along its heading when it reaches the place of contact. It is 0 for a pedestrian who is
-            not on a collision course, is not ahead of the front bumper (braking is no remedy
-            there), or is touched already (no braking helps any more).
+        clearance: Distance [m] between the pedestrian's circle and the ego's rectangle; negative
+            where they overlap.
+        time_to_collision: Time [s] until the first contact if both kept their velocity: 0 if they
+            touch already, inf if they never do. It is the usual surrogate measure (Hayward 1972),
+            but the two need not move on one line: the rectangle moves along its heading at its
+            present speed, the circle along its present velocity, and the first contact of the two
+            shapes is solved exactly. Therefore a pedestrian who walks into the side of a standing
+            ego has a finite time to collision, too.
+        deceleration: Deceleration to avoid a crash [m/s^2] (DRAC, Cooper & Ferguson 1976): the
+            constant braking that just avoids a pedestrian ahead. It is c^2 / (2 d) with the closing
+            speed c along the ego's heading and d = c * (time to collision). With this braking, the
+            ego has the pedestrian's speed along its heading when it reaches the place of contact.
+            It is 0 for a pedestrian who is not on a collision course, is not ahead of the front
+            bumper (where braking does not help), or is touched already.
     """
 
     clearance: NDArray[np.float64]
@@ -83,9 +82,9 @@ class Critical:
     """The conflicts of a drive.
 
     Attributes:
-        pedestrians: Number of pedestrians who had one.
-        share: Share of the control instants at which somebody had one.
-        minimum_ttc: Smallest time [s] to collision with the moving ego; nan without one.
+        pedestrians: Number of pedestrians who had a conflict.
+        share: Share of the control instants with a conflict.
+        minimum_ttc: Smallest time to collision [s] with the moving ego; nan without any.
     """
 
     pedestrians: int
@@ -128,7 +127,7 @@ def contact_body(shape: VehicleShape, body_radius: float) -> tuple[float, float,
 
 
 def centre_poses(ego: EgoTrack, shape: VehicleShape) -> NDArray[np.float64]:
-    """Return the rectangle's centre and heading at every instant: (T, 4) of x, y, cos, sin."""
+    """Return the centre and heading of the rectangle at every instant: x, y, cos, sin (T, 4)."""
     poses = np.empty((ego.time.size, 4))
     _centre_poses(
         as_floats(ego.front_x),
@@ -141,12 +140,12 @@ def centre_poses(ego: EgoTrack, shape: VehicleShape) -> NDArray[np.float64]:
 
 
 def as_floats(column: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Return the column in the kernels' layout; a copy only if it has another one."""
+    """Return the column in the kernels' memory layout; it is copied only if needed."""
     return np.ascontiguousarray(column, dtype=np.float64)
 
 
 def as_integers(column: NDArray[np.integer]) -> NDArray[np.int64]:
-    """Return the column in the kernels' layout; a copy only if it has another one."""
+    """Return the column in the kernels' memory layout; it is copied only if needed."""
     return np.ascontiguousarray(column, dtype=np.int64)
 
 
@@ -154,7 +153,7 @@ def check_records(ego: EgoTrack, crowd: CrowdTrack) -> None:
     """Refuse records that point at instants or pedestrians that do not exist.
 
     Raises:
-        ValueError: naming the column, the value and the range it must lie in.
+        ValueError: a record is out of range; the message names column, value and range.
     """
     limits = (("step", crowd.step, ego.time.size), ("pedestrian", crowd.pedestrian, len(crowd.ids)))
     for name, column, count in limits:

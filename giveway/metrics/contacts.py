@@ -1,4 +1,4 @@
-"""Contacts of ego and pedestrian: every overlap of the two is frontal or lateral.
+"""The kinds of contact between ego and pedestrian: frontal or lateral.
 
 The ego is responsible for pedestrians that it drives into, not for those who walk into its side or
 into the standing ego. The rule and its rare cases are in docs/results.md.
@@ -26,7 +26,7 @@ NO_CONTACT = ""
 SIDE = "side"
 FRONTAL = "frontal"
 MOVING = 0.01
-"""[m/s] The ego moves above it; no controller creeps as slowly as a centimetre a second."""
+"""Speed [m/s] above which the ego moves; no controller creeps at a centimetre per second."""
 
 _NAMES = np.array([NO_CONTACT, SIDE, FRONTAL])
 _SIDE, _FRONTAL = 1, 2
@@ -41,10 +41,11 @@ def contacts(
 ) -> NDArray[np.str_]:
     """Return the kind of contact of each pedestrian with the ego, if there was one.
 
-    A contact is frontal if at its first instant the pedestrian's centre is ahead of the line of
-    the front bumper and the ego moves, or if both hold later on while the ego is the faster one
-    along its heading: then it moves into somebody who stands at its front. All others are ``side``.
-    The first instant is found between control instants, with straight motion between them.
+    A contact is frontal if at its first instant the pedestrian's centre is ahead of the front
+    bumper's line and the ego moves. It is also frontal if both hold later on while the ego is the
+    faster one along its heading: then it moves into a person who stands at its front. All others
+    are ``side``. The first instant is found between control instants, with straight motion between
+    them.
 
     Args:
         ego: Track of the ego, T instants.
@@ -54,7 +55,8 @@ def contacts(
         clearance: Clearance (R,) [m] of :func:`giveway.metrics.proximity`; below zero is a contact.
 
     Returns:
-        (n,) ``frontal`` after any frontal contact, otherwise ``side``, or empty without a contact.
+        Kind (n,): ``frontal`` after any frontal contact, otherwise ``side``, or empty without a
+            contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -87,7 +89,7 @@ def _first_touch(
     y: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Return place and ego's speed at the contact that begins in the step before k.
+    """Return the place and the ego's speed at the contact that begins in the step before k.
 
     The place [m] is the pedestrian's centre in the ego's frame.
     """
@@ -111,7 +113,7 @@ def _classify(
     body: tuple[float, float, float],
     kinds: NDArray[np.int64],
 ) -> None:
-    """Fill ``kinds`` (n,). The records are sorted by pedestrian, and then by time."""
+    """Fill ``kinds`` (n,). The records must be sorted by pedestrian, and then by time."""
     (x, y), (vx, vy) = position, velocity
     half_length, _, _ = body
     for i in range(kinds.size):

@@ -1,4 +1,4 @@
-"""The delay of each person by the egos: the run against its counterfactual run, the twin."""
+"""The delay of each person by the egos: the run compared with its counterfactual run."""
 
 from dataclasses import dataclass, fields
 from typing import Annotated, Literal, NamedTuple
@@ -14,7 +14,7 @@ Basis = Literal["arrival", "route", ""]
 
 
 class DelayRow:
-    """The columns that a twin adds to a pedestrian's row; empty far from every ego's path."""
+    """The columns that a counterfactual run adds to a pedestrian's row; empty if not counted."""
 
     delay: Annotated[
         float,
@@ -52,7 +52,7 @@ class Delays(NamedTuple):
 
 @dataclass(frozen=True)
 class DelaySummary:
-    """The columns that a twin adds to the summary; nan if nobody came close to an ego's path."""
+    """The columns that a counterfactual run adds to the summary; nan if nobody came close."""
 
     people_delayed: Annotated[
         int, Quantity("persons", "people who came within 30 m of an ego's way and have a delay")
@@ -74,7 +74,7 @@ class DelaySummary:
     ]
 
     def as_dict(self) -> dict[str, bool | int | float]:
-        """Names and values, in the order of ``DELAY_SUMMARY_FIELDS``."""
+        """The names and values, in the order of ``DELAY_SUMMARY_FIELDS``."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
@@ -82,19 +82,19 @@ DELAY_SUMMARY_FIELDS = columns_of(DelaySummary)
 
 
 def delays(run: WalkTrack, twin: WalkTrack) -> Delays:
-    """Compare every person who came close to an ego's path with the same person in the twin.
+    """Compare every person who came close to an ego's path with the same person without egos.
 
-    A person who reached the last way-point in both runs has the difference of the instants. For
-    others the delay is the difference of the remaining lengths at the last instant with records in
-    both, divided by the desired speed. With several walks (a person may go on by bus), the last one
-    that was finished in both counts.
+    For a person who reached the last way-point in both runs, the delay is the difference of the two
+    instants. For others it is the difference of the remaining lengths at the last instant with
+    records in both runs, divided by the desired speed. A person may have several walks (and go on
+    by bus in between): the last one that was finished in both runs counts.
 
     Args:
         run: Walks of the people.
-        twin: Walks of the same people when they did not feel the egos.
+        twin: Walks of the same people in the counterfactual run.
 
     Raises:
-        ValueError: their time steps differ.
+        ValueError: the time steps of the two differ.
     """
     if run.time_step != twin.time_step:
         raise ValueError(f"time steps {run.time_step} and {twin.time_step} s; expected the same")
@@ -115,13 +115,13 @@ def gave_way(
 ) -> NDArray[np.str_]:
     """Return whether each of n people gave way to an ego: "yes", "no", or "" without a crossing.
 
-    A person gives way who would have been at the place first, or together with the ego, without its
-    influence, but lets it go first.
+    A person gives way if they let the ego go first, but would have been first without its
+    influence, or there together with it.
 
     Args:
-        run: Road user (n,) who was first in the run, as in :class:`Encroachment`.
-        twin: Road user (n,) who was first in the twin.
-        crossed: Mask (n,) of the persons who count.
+        run: Road user (n,) that was first in the run, as in :class:`Encroachment`.
+        twin: Road user (n,) that was first in the counterfactual run.
+        crossed: Flags (n,) of the persons who count.
     """
     met = crossed & (run != "")
     yielded = met & (run == EGO) & ((twin == PERSON) | (twin == CONTACT))
@@ -136,7 +136,8 @@ def summarise_delays(
     Args:
         delay: Delay (n,) [s] of each person; nan if not counted.
         gave_way: Answer (n,) whether each person gave way: "yes", "no" or "".
-        differs: True if lights or background vehicles behaved differently in the twin.
+        differs: True if lights or background vehicles behaved differently in the counterfactual
+            run.
         traffic: Delay [s] of the background vehicles; nan if unknown.
     """
     known = delay[np.isfinite(delay)]
@@ -155,16 +156,16 @@ def summarise_delays(
 
 
 class _Walk(NamedTuple):
-    """One person's records."""
+    """The records of one person."""
 
     step: NDArray[np.int64]
-    remaining: NDArray[np.float64]  # [m]
-    length: NDArray[np.float64]  # [m] walked and remaining
-    arrivals: NDArray[np.int64]  # steps
+    remaining: NDArray[np.float64]  # [m] remaining length of each record
+    length: NDArray[np.float64]  # [m] length walked and remaining
+    arrivals: NDArray[np.int64]  # control steps of the arrivals
 
 
 class _Walks:
-    """The records of a track by person."""
+    """The records of a track, by person."""
 
     def __init__(self, track: WalkTrack) -> None:
         self._track = track
@@ -183,7 +184,7 @@ class _Walks:
 def _delay(
     run: _Walk, twin: _Walk, time_step: float, desired_speed: float
 ) -> tuple[float, Basis, float]:
-    """Return delay [s], method, and detour [m]."""
+    """Return the delay [s], the method and the detour [m]."""
     walks = min(len(run.arrivals), len(twin.arrivals))
     if walks:
         ours, theirs = run.arrivals[walks - 1], twin.arrivals[walks - 1]

@@ -19,12 +19,12 @@ from giveway.metrics.groups import PedestrianGroups
 from giveway.metrics.separation import blocks_of, ego_comes_later, separation
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
-SECTIONS = 16  # parts of a control period in which the smallest separation is searched
+SECTIONS = 16  # Number of parts of a control period in which the smallest separation is searched
 GOLDEN = 0.6180339887498949
 
 
 PERSON, EGO, CONTACT = "person", "ego", "contact"
-"""Who was first at the place that both came to; contact: they were there together."""
+"""The road user that was first at the common place; ``CONTACT`` if they were there together."""
 _WHO = np.array(["", PERSON, EGO, CONTACT])
 _NEVER, _PERSON, _EGO, _CONTACT = range(4)
 
@@ -34,7 +34,8 @@ class Encroachment(NamedTuple):
 
     Attributes:
         time: Post-encroachment time (n,) [s]; nan where the paths never cross.
-        first: Road user (n,) who was first: ``PERSON``, ``EGO`` or ``CONTACT``; empty if never.
+        first: Road user (n,) that was first: ``PERSON``, ``EGO`` or ``CONTACT``; empty if the paths
+            never cross.
     """
 
     time: NDArray[np.float64]
@@ -51,15 +52,13 @@ def encroachment(
     """Find the smallest time between the pedestrian's and the ego's presence at one place.
 
     Allen, Shin & Cooper (1978) measure from the instant at which the first road user leaves the
-    conflict area until the second one enters it; SSAM (Gettman & Head 2003, FHWA) takes the
-    smallest such time over the places that both occupy. This is SSAM's reading, with true shapes
-    in place of a conflict area that somebody has to draw: a pedestrian whose body is at a place at
-    time t, and an ego whose rectangle touches that body's circle there during [t_in, t_out], are
-    max(t_in - t, t - t_out, 0) apart, and the smallest value over all t counts. It holds whoever
-    comes first and on any curved path, since the ego's own poses are searched. Which of the three
-    is the largest says who came first.
-
-    Poses and positions are interpolated linearly between control instants, and the smallest value
+    conflict area until the second one enters it. SSAM (Gettman & Head 2003, FHWA) takes the
+    smallest such time over the places that both occupy. This function follows SSAM, with true
+    shapes in place of a conflict area that must be drawn by hand. A pedestrian's body is at a place
+    at time t, and the ego's rectangle touches that body's circle there during [t_in, t_out]. The
+    two are max(t_in - t, t - t_out, 0) apart, and the smallest value over all t counts. The ego's
+    own poses are searched, so that the result holds on any curved path, whoever comes first. The
+    largest of the three terms says who came first.
     within a control period is found to less than a thousandth of it.
 
     Args:
@@ -68,14 +67,14 @@ def encroachment(
         shape: Rectangle of the ego.
         body_radius: Radius of a pedestrian [m].
         clock: Control instants (K,) [s] to which the crowd's records belong, the first T of them
-            the ego's; None: the ego's.
+            the ego's. None if they are the ego's.
 
     Returns:
-        The time is 0 for a collision, nan where the paths never cross, which includes an ego whose
-        track ends before it reaches the place.
+        The times and who was first. A time is 0 for a collision, and nan where the paths never
+        cross. It is also nan if the ego's track ends before it reaches the place.
 
     Raises:
-        ValueError: a record points outside the instants.
+        ValueError: a record points outside the control instants.
     """
     if clock is None:
         check_records(ego, crowd)
@@ -96,7 +95,7 @@ def encroachment(
 def post_encroachment_time(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> NDArray[np.float64]:
-    """Return the times (n,) [s] of :func:`encroachment`."""
+    """Return the post-encroachment times (n,) [s], as :func:`encroachment` finds them."""
     return encroachment(ego, crowd, shape, body_radius).time
 
 
@@ -113,7 +112,7 @@ def _separation_on_the_way(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """Return the separation after a ``share`` of step k, from (x[0], y[0]) to (x[1], y[1])."""
+    """Return the separation [s] after a ``share`` of step k from (x[0], y[0]) to (x[1], y[1])."""
     t = share * (clock[k + 1] - clock[k])
     at_x, at_y = x[0] + share * (x[1] - x[0]), y[0] + share * (y[1] - y[0])
     return separation(clock[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
@@ -132,11 +131,12 @@ def _smallest_between(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """Find the smallest separation during step k of a walk from (x[0], y[0]) to (x[1], y[1]).
+    """Find the smallest separation [s] during step k of a walk from (x[0], y[0]) to (x[1], y[1]).
 
-    Golden section: a separation has one minimum in a step, at or shortly before the edge of the
-    swept strip if the walk crosses it, because the ego's corners are rounded. Beyond the edge it
-    is inf; ``leaving`` says on which side of the edge to look while both trials are beyond.
+    A golden-section search finds it. A separation has one minimum in a step; if the walk crosses
+    the edge of the swept strip, the minimum is at the edge or shortly before it, because the ego's
+    corners are rounded. Beyond the edge the separation is inf. ``leaving`` says on which side of
+    the edge to look while both trials are beyond it.
     """
     smallest = inf
     low, high = 0.0, 1.0
@@ -163,7 +163,7 @@ def _share_inside(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """Return the share of step k after which a walk is first found in the strip, or 0."""
+    """Return the share of step k after which a walk is first inside the swept strip, or 0."""
     for section in range(1, 4 * SECTIONS):
         share = section / (4.0 * SECTIONS)
         if _separation_on_the_way(share, k, x, y, inf, clock, time, poses, blocks, body) < inf:
@@ -192,7 +192,7 @@ def _smallest_separations(
     who = np.full(bounds.size - 1, _NEVER)
     for i in range(pets.size):
         nearest = inf
-        t, at_x, at_y, at, reach = 0.0, 0.0, 0.0, 0, inf  # of the record before
+        t, at_x, at_y, at, reach = 0.0, 0.0, 0.0, 0, inf  # those of the record before
         for r in range(bounds[i], bounds[i + 1]):
             k = step[r]
             # Within a period a separation shrinks by less than a period. A value beyond the cutoff

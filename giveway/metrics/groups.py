@@ -1,4 +1,4 @@
-"""The crowd's flat records, gathered by pedestrian."""
+"""The crowd's flat records, grouped by pedestrian."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,10 +7,10 @@ from giveway.run_data.tracks import CrowdTrack
 
 
 class PedestrianGroups:
-    """Reductions over each pedestrian's records; results are (n,), nan without records.
+    """Reductions over each pedestrian's records; results are (n,), and nan without records.
 
-    ``order`` (R,) sorts the records by pedestrian and keeps their order in time; pedestrian i then
-    owns the places ``bounds[i]`` to ``bounds[i + 1]``.
+    ``order`` (R,) sorts the records by pedestrian, and by time within a pedestrian. Pedestrian i
+    owns the entries ``bounds[i]`` to ``bounds[i + 1]`` of it.
     """
 
     def __init__(self, crowd: CrowdTrack) -> None:
@@ -22,16 +22,16 @@ class PedestrianGroups:
         self.last = self.bounds[1:][self.present] - 1
 
     def at(self, values: NDArray[np.float64], places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return the values (R,) at one place in ``order`` per present pedestrian."""
+        """Return the value at one place in ``order`` per present pedestrian; ``values`` is (R,)."""
         return self._spread(values[self.order[places]])
 
     def total(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The sum of the values (R,) of each pedestrian, added up in the order of time."""
+        """Return the sum of the values (R,) of each pedestrian, added up in the order of time."""
         sums = np.bincount(self.pedestrian, values[self.order], minlength=self.present.size)
         return np.where(self.present, sums, np.nan)
 
     def first_minimum(self, values: NDArray[np.float64]) -> NDArray[np.intp]:
-        """The place in ``order`` of each present pedestrian's smallest value, the earliest one."""
+        """Return the earliest place in ``order`` of each present pedestrian's smallest value."""
         if not self.first.size:
             return self.first
         ordered = values[self.order]
@@ -43,7 +43,7 @@ class PedestrianGroups:
     def walked(self, crowd: CrowdTrack) -> NDArray[np.float64]:
         """Return the distance [m] of each record (R,) to the same pedestrian's previous record.
 
-        The first record has 0. Records with a gap in time are joined by a straight line.
+        The first record has 0. Two records with a gap in time are joined by a straight line.
         """
         x, y = crowd.x[self.order], crowd.y[self.order]
         distance = np.zeros(x.size)

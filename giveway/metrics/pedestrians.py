@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SLOW = 0.2
-"""[m/s] Who walks slower stands: as of the ego, Yang & Özgüner 2019, section 2.1."""
+"""Speed [m/s] below which a person stands, as for the ego (Yang & Özgüner 2019, section 2.1)."""
 
 
 class PedestrianRow:
@@ -75,7 +75,7 @@ PEDESTRIAN_FIELDS = columns_of(PedestrianRow)
 def pedestrian_metrics(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> "pd.DataFrame":
-    """Return proximity and walk of every pedestrian, with the columns of ``PEDESTRIAN_FIELDS``.
+    """Return proximity and walk of every pedestrian, in the columns ``PEDESTRIAN_FIELDS``.
 
     Args:
         ego: Track of the ego, T instants.
@@ -84,8 +84,8 @@ def pedestrian_metrics(
         body_radius: Radius of a pedestrian [m].
 
     Returns:
-        n rows in the order of ``crowd.ids``; a pedestrian who was never seen has nan throughout,
-        and no contact.
+        Table with n rows in the order of ``crowd.ids``. A pedestrian who was never seen has nan in
+        all columns, and no contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -94,7 +94,7 @@ def pedestrian_metrics(
 
 
 def table_of(columns: Mapping[str, Any]) -> "pd.DataFrame":
-    """Return the table of :func:`pedestrian_columns`."""
+    """Return the table of the columns of :func:`pedestrian_columns`."""
     import pandas as pd
 
     return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
@@ -103,16 +103,16 @@ def table_of(columns: Mapping[str, Any]) -> "pd.DataFrame":
 def pedestrian_columns(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> dict[str, Any]:
-    """Return the columns (n,) of :func:`pedestrian_metrics`, quicker than their table.
+    """Return the columns (n,) of the table of :func:`pedestrian_metrics`, which is slower to make.
 
     Args:
-        ego: Track, as there.
-        crowd: Track, as there.
-        shape: Rectangle, as there.
-        body_radius: Radius, as there.
+        ego: Track of the ego, T instants.
+        crowd: Track of the crowd, R records of n pedestrians in time order.
+        shape: Rectangle of the ego.
+        body_radius: Radius of a pedestrian [m].
 
     Raises:
-        ValueError: see there.
+        ValueError: a record points outside the ego's track.
     """
     clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
@@ -136,7 +136,7 @@ def pedestrian_columns(
 
 
 def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":
-    """Return the walk of every pedestrian without an ego, in the columns that need none.
+    """Return the walk of every pedestrian in a run without an ego.
 
     Args:
         time: Control instants (T,) [s].
@@ -149,7 +149,7 @@ def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataF
 
 @dataclass(frozen=True)
 class WalkSummary:
-    """The walks of people in a run without an ego; nan if there were none."""
+    """The summary of people's walks in a run without an ego; nan if there were no people."""
 
     mean_walking_speed: Annotated[float, Quantity("m/s", "mean of these people's mean speeds")]
     mean_slow_time: Annotated[
@@ -158,7 +158,7 @@ class WalkSummary:
     mean_walk: Annotated[float, Quantity("m", "mean length of these people's paths")]
 
     def as_dict(self) -> dict[str, float]:
-        """Names and values, in the order of ``WALK_SUMMARY_FIELDS``."""
+        """The names and values, in the order of ``WALK_SUMMARY_FIELDS``."""
         return asdict(self)
 
 
@@ -166,7 +166,7 @@ WALK_SUMMARY_FIELDS = columns_of(WalkSummary)
 
 
 def summarise_walks(table: "pd.DataFrame") -> WalkSummary:
-    """Summarise the rows of :func:`walks_without_ego` in one."""
+    """Summarise the rows of :func:`walks_without_ego` in one row."""
     seen = table[table["first_seen"].notna()]
     return WalkSummary(
         mean_walking_speed=float(seen["mean_speed"].mean()),
@@ -178,7 +178,7 @@ def summarise_walks(table: "pd.DataFrame") -> WalkSummary:
 def _walks(
     crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
 ) -> dict[str, Any]:
-    """Return the columns about walks; ``time`` (R,) [s] is that of the records."""
+    """Return the columns about walks; ``time`` (R,) [s] is the time of each record."""
     first_seen, last_seen = groups.at(time, groups.first), groups.at(time, groups.last)
     path = groups.total(groups.walked(crowd))
     lasting, change = _changes(crowd, groups, time)
@@ -202,8 +202,9 @@ def _changes(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return each record's duration (R,) [s], and the acceleration (R,) [m/s^2] before it.
 
-    A duration lasts until the same pedestrian's record of the next control instant; both are 0
-    where that, or the one before, is not on record.
+    A duration lasts until the same pedestrian's record of the next control instant. Duration and
+    acceleration are 0 if there is no record at the next or the previous control instant,
+    respectively.
     """
     order = groups.order
     step = crowd.step[order]

@@ -23,7 +23,7 @@ from giveway.run_data.columns import SUMMARY_HEAD, Column, columns_of
 
 _OURS = (*SUMMARY_HEAD, *SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS, *WALK_SUMMARY_FIELDS)
 _TAKEN = {"run": "giveway", "cell": "giveway"} | {column.name: "giveway" for column in _OURS}
-"""Owner of each column that the tables of runs and studies have already."""
+"""Owner of each column that the tables of runs and studies already have."""
 _EXPECTED = {
     "number": "a finite number, or nan if there is none",
     "integer": "a whole number",
@@ -45,7 +45,8 @@ class Metric(Protocol):
         """Return an instance of ``Columns``.
 
         Args:
-            drive: :class:`~giveway.results.ego_result.EgoResult` of one ego; not to be changed.
+            drive: :class:`~giveway.results.ego_result.EgoResult` of one ego, which must not be
+                changed.
         """
 
 
@@ -56,7 +57,7 @@ class Measured:
     Attributes:
         columns: Columns that they add to the summary.
         values: Value of each column by its name; nan if its metric failed.
-        faults: Faults of metrics, a sentence each.
+        faults: Faults of metrics, one sentence each.
     """
 
     columns: tuple[Column, ...] = ()
@@ -112,10 +113,10 @@ def metric_columns(config: RunConfig) -> tuple[Column, ...]:
 
 
 def measured(config: RunConfig, drive: Any) -> Measured:
-    """Return what the metrics of a run measure of one ego's drive.
+    """Return the measurements of one ego's drive by the metrics of other packages.
 
-    A metric that fails costs its own columns and nothing else: the run has been driven, and its
-    other numbers are as good as without the metric.
+    If a metric fails, only its own columns are lost: the run has been driven, and its other numbers
+    do not depend on the metric.
 
     Args:
         config: Configuration of the run.

@@ -15,8 +15,8 @@ BLOCK = 8  # number of ego instants that are excluded together
 def blocks_of(
     poses: NDArray[np.float64], half_length: float, half_width: float, radius: float
 ) -> NDArray[np.float64]:
-    """Return circles that hold the ego's reach in BLOCK steps: rows of x, y, radius^2."""
-    # A tenth more than the rectangle's own circle, for turns by up to 49 deg in a step.
+    """Return circles around all that the ego reaches in BLOCK steps: rows of x, y, radius^2."""
+    # Ten per cent more than the rectangle's own circle allow for turns of up to 49 deg in a step.
     reach = 1.1 * (hypot(half_length, half_width) + radius)
     steps = max(poses.shape[0] - 1, 1)
     blocks = np.empty(((steps + BLOCK - 1) // BLOCK, 3))
@@ -41,9 +41,10 @@ def _touch_in_step(
     poses: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Return when the ego touches a circle at (x, y) during step k; (inf, -inf) if never.
+    """Return the first and last time [s] at which the ego touches a circle at (x, y) in step k.
 
-    The circle moves relative to the ego; this motion is taken as straight within a step.
+    It is (inf, -inf) if it never does. The circle moves relative to the ego, and this motion is
+    taken as straight within a step.
     """
     half_length, half_width, radius = body
     end = min(k + 1, time.size - 1)
@@ -74,14 +75,14 @@ def _separation_in_step(
     poses: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """Return the time from t to the ego's touch of a circle in step k; inf without one."""
+    """Return the time [s] between t and the ego's touch of a circle in step k; inf without one."""
     first, last = _touch_in_step(k, x, y, time, poses, body)
     return max(first - t, t - last, 0.0)
 
 
 @inner
 def _out_of_reach(b: int, x: float, y: float, blocks: NDArray[np.float64]) -> bool:
-    """Return whether the ego touches no circle at (x, y) in any step of block b."""
+    """Return whether the ego certainly touches no circle at (x, y) in any step of block b."""
     return bool((x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2])
 
 
@@ -97,11 +98,10 @@ def separation(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
-    """Return the time from t to the ego's nearest touch of a circle; inf beyond the cutoff.
+    """Return the time [s] between t and the ego's nearest touch of a circle; inf beyond ``cutoff``.
 
-    ``step`` is the ego's step that contains t, and (x, y) the circle's place. The search runs
-    outwards from there and ends where nothing closer in time can follow, so only near misses cost
-    time.
+    ``step`` is the ego's step that contains t, and (x, y) the place of the circle. The search runs
+    outwards from this step, and ends where no touch closer in time can follow.
     """
     nearest = inf
     steps = max(time.size - 1, 1)
@@ -139,7 +139,7 @@ def ego_comes_later(
 ) -> bool:
     """Return whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
 
-    Arguments as for ``separation``.
+    The arguments are those of :func:`separation`.
     """
     steps = max(time.size - 1, 1)
     k = min(step, steps - 1)

@@ -1,8 +1,7 @@
-"""The severity of each pedestrian's conflict with the ego, its time and its place.
+"""The severity, the time and the place of each pedestrian's conflict with the ego.
 
-Times before a collision order conflicts, and a speed tells the severity of a collision. No single
-number does both (Laureshyn, Svensson & Hydén 2010). Therefore class and speed have columns of their
-own.
+The time to a collision ranks conflicts, while the speed ranks collisions. No single number does
+both (Laureshyn, Svensson & Hydén 2010). Therefore class and speed have columns of their own.
 """
 
 from typing import TYPE_CHECKING, Annotated
@@ -21,20 +20,21 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SERIOUS_TTC = 1.0
-"""[s] Below it a conflict is serious: the highest of the three classes of Sayed, Brown & Navin
-(1994) and Sayed & Zein (1999); from it to ``CRITICAL_TTC`` it is of their middle one."""
+"""Time to collision [s] below which a conflict is serious: the highest of the three classes of
+Sayed, Brown & Navin (1994) and Sayed & Zein (1999). From here to ``CRITICAL_TTC`` it is in their
+middle class."""
 
 CRITICAL_PET = 1.0
-"""[s] At most so much is critical whatever the TTC: DOCTOR, the Dutch technique of observing
-conflicts (Kraay, van der Horst & Oppe 1986)."""
+"""Largest post-encroachment time [s] that is critical at any TTC, from DOCTOR, the Dutch technique
+of observing conflicts (Kraay, van der Horst & Oppe 1986)."""
 
 SEVERITIES = ("slight", "serious", "collision")
-"""From the mildest to the worst: TTC of 1.0 to 1.5 s or PET of at most 1.0 s; TTC below 1.0 s; the
-ego moved into the pedestrian."""
+"""The classes from the mildest to the worst: TTC of 1.0 to 1.5 s or PET of at most 1.0 s; TTC below
+1.0 s; the ego moved into the pedestrian."""
 
 
 class SeverityRow:
-    """The columns of a pedestrian's conflict; empty without one."""
+    """The columns of a pedestrian's conflict; empty cells without one."""
 
     severity: Annotated[
         str,
@@ -68,8 +68,8 @@ def severities(
 ) -> "pd.DataFrame":
     """Return class, instant, relative speed and place of each pedestrian's conflict.
 
-    A conflict is closest to a collision where the time to collision with the moving ego is
-    smallest; one by PET alone, where the clearance was.
+    The instant of a conflict is the one with the smallest time to collision with the moving ego.
+    For a conflict by PET alone, it is the one with the smallest clearance.
 
     Args:
         ego: Track of the ego, T instants.
@@ -113,7 +113,7 @@ def severities(
 
 
 def _classes(ttc: NDArray[np.float64], per_pedestrian: "pd.DataFrame") -> NDArray[np.object_]:
-    """Return the class (n,) of each pedestrian's conflict, empty without one."""
+    """Return the class (n,) of each pedestrian's conflict, or an empty text without one."""
     pet = per_pedestrian["post_encroachment_time"].to_numpy(dtype=np.float64)
     frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy(dtype=np.bool_)
     slight, serious, collision = SEVERITIES

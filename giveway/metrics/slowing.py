@@ -1,4 +1,4 @@
-"""Slowing for people: an ego's speed compared with its free speed, with nobody about."""
+"""Slowing for people: an ego's speed compared with its free speed."""
 
 import math
 
@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from giveway.run_data.tracks import EgoTrack
 
 SLOWED = 0.8
-"""Of the free speed: an ego below it is slowed."""
+"""Share of the free speed below which an ego is slowed."""
 SLOWING = 0.95
-"""Of the free speed: an ego that gets below it, and then is slowed, begins to slow there."""
-_RISE = 0.5  # [m/s^2] rise of the free speed from the start, or from the place of a delay
-_HELD = 30.0  # [m] distance to a stop or a vehicle in front below which these may delay the ego
-_STANDING = 0.1  # [m/s] free speed below which nothing can be concluded
+"""Share of the free speed at which an ego that will be slowed begins to slow."""
+_RISE = 0.5  # Acceleration [m/s^2] of the free speed from the start, or from the place of a delay
+_HELD = 30.0  # Distance [m] to a stop or a vehicle in front below which these may delay the ego
+_STANDING = 0.1  # Free speed [m/s] below which nothing can be concluded
 
 
 def slowed(ego: EgoTrack, reference: float | None) -> bool:
@@ -25,7 +25,7 @@ def slowed(ego: EgoTrack, reference: float | None) -> bool:
 
     Args:
         ego: Track of the ego.
-        reference: Reference speed v_r [m/s]; None where the lanes' limits count. Then it is the
+        reference: Reference speed v_r [m/s], or None if the lanes' limits count. Then it is the
             speed that the controller aimed at while nobody was in front, interpolated over the
             path.
     """

@@ -10,8 +10,8 @@ from giveway.run_data.tracks import EgoTrack
 def stops(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.int64]:
     """Return the instants (n, 2) at which each stop begins and ends, in order of time.
 
-    An instant stands for the time until the next one, so a stop lasts from the first instant below
-    ``stop_speed`` [m/s] to the first one that is not, or to the end of the track.
+    A stop lasts from the first instant below ``stop_speed`` [m/s] to the first one that is not, or
+    to the end of the track, since each instant stands for the time until the next one.
     """
     standing = np.concatenate(([False], ego.speed < stop_speed, [False]))
     edges = np.diff(standing.astype(np.int8))

@@ -1,4 +1,4 @@
-"""A run in one row: the numbers by which runs and controllers are compared."""
+"""The summary of a run in one row: the numbers by which runs and controllers are compared."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -23,13 +23,14 @@ from giveway.run_data.tracks import EgoTrack
 if TYPE_CHECKING:
     import pandas as pd
 
-SAFETY = "safety"  # the name under which the safety layer acts
+SAFETY = "safety"  # name under which the safety layer acts
 HARD = 4.0
-"""[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
-_CAUSE = 15.0  # [m] distance ahead of a cause (person, vehicle, stop) of a hard brake
-_ROUNDING = 1.0 + 1e-6  # relative tolerance for the rounding of velocities in a table
+"""Deceleration [m/s^2] above which braking is hard: more than standing passengers can bear."""
+# Distance [m] ahead within which a person, vehicle or stop is the cause of a hard brake
+_CAUSE = 15.0
+_ROUNDING = 1.0 + 1e-6  # Relative tolerance for the rounding of velocities in a table
 _NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
-_AROUND = 0.5  # [s] time before and after its begin in which the cause is searched
+_AROUND = 0.5  # Time [s] before and after the beginning of braking in which the cause is searched
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ class Summary:
     ]
 
     def as_dict(self) -> dict[str, bool | int | float]:
-        """Names and values, in the order of ``SUMMARY_FIELDS``."""
+        """The names and values, in the order of ``SUMMARY_FIELDS``."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
@@ -150,9 +151,9 @@ def summarise(
 ) -> Summary:
     """Summarise a run in one row.
 
-    A step is one control instant. An instant stands for the time until the next one, so a stop
-    lasts from the first instant below ``stop_speed`` to the first one that is not, or to the end
-    of the track; one uninterrupted stop is one waiting time.
+    A control instant stands for the time until the next one. Therefore a stop lasts from the first
+    instant below ``stop_speed`` to the first one that is not, or to the end of the track. One
+    uninterrupted stop is one waiting time.
 
     Args:
         ego: Track of the ego, at least one instant.
@@ -162,12 +163,13 @@ def summarise(
         goal: Position that ends the run [m]; the time at which it is reached is interpolated
             between control instants.
         safe_distance: Safe distance d_safe [m].
-        reference_speed: Reference speed v_r [m/s]; None: the lanes' limits count.
+        reference_speed: Reference speed v_r [m/s], or None if the lanes' limits count.
         stop_speed: Speed [m/s] below which the ego stands.
-        controller: Name of the controller; "mpc" and "mpc-paper" optimise.
-        people: Worst motion of people that the safety layer assumes; None without the layer.
-        hasty: Rows of ``per_pedestrian`` who set out from a sidewalk harder than that.
-        vehicles: Background vehicles that it came into contact with.
+        controller: Name of the controller.
+        people: Worst motion of people that the safety layer assumes, or None without the layer.
+        hasty: Rows of ``per_pedestrian`` of the people who set out from a sidewalk harder than
+            that.
+        vehicles: Background vehicles with which the ego had contact.
 
     Raises:
         ValueError: the ego's track is empty.
@@ -238,7 +240,7 @@ def summarise(
 
 
 def _share(whom: NDArray[np.bool_]) -> float:
-    """Return the share of the marked pedestrians in all; nan without pedestrians."""
+    """Return the share of the marked pedestrians, or nan without pedestrians."""
     return float(np.mean(whom)) if len(whom) else float("nan")
 
 
@@ -249,7 +251,7 @@ def _beyond(hardest: NDArray[np.float64], people: WorstMotion) -> NDArray[np.boo
 
 
 def _time_at(ego: EgoTrack, goal: float) -> float:
-    """Return the time [s] since the start at which ``goal`` [m] is reached; nan if never."""
+    """Return the time [s] since the start at which ``goal`` [m] is reached, or nan."""
     if ego.position[-1] < goal:
         return float("nan")
     k = int(np.argmax(ego.position >= goal))
@@ -261,7 +263,7 @@ def _time_at(ego: EgoTrack, goal: float) -> float:
 
 
 def hard_brakes(ego: EgoTrack) -> NDArray[np.int64]:
-    """Return the instants at which a deceleration beyond ``HARD`` begins.
+    """Return the instants at which a deceleration above ``HARD`` begins.
 
     A pause of less than ``_AROUND`` does not end the braking.
     """
@@ -271,7 +273,7 @@ def hard_brakes(ego: EgoTrack) -> NDArray[np.int64]:
 
 
 def _has_cause(ego: EgoTrack, k: int) -> bool:
-    """Return whether a person, vehicle or stop was within ``_CAUSE`` ahead about instant k."""
+    """Return whether a person, vehicle or stop was within ``_CAUSE`` ahead at about instant k."""
     first, last = np.searchsorted(ego.time, (ego.time[k] - _AROUND, ego.time[k] + _AROUND))
     near = [gap[first : last + 1].min() for gap in (ego.gap, ego.vehicle_gap, ego.stop_gap)]
     return bool(min(near) <= _CAUSE)
@@ -280,6 +282,6 @@ def _has_cause(ego: EgoTrack, k: int) -> bool:
 def _extreme(
     values: NDArray[np.float64], extreme: Callable[[NDArray[np.float64]], np.float64]
 ) -> float:
-    """Return the smallest or largest of the finite values; nan without any."""
+    """Return the smallest or largest of the finite values, or nan if there are none."""
     finite = values[np.isfinite(values)]
     return float(extreme(finite)) if finite.size else np.nan

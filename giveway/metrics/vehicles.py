@@ -1,4 +1,4 @@
-"""The background vehicles that came into contact with the ego."""
+"""The background vehicles that had contact with the ego."""
 
 from typing import NamedTuple
 
@@ -8,15 +8,15 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.run_data.tracks import BackgroundTrack, EgoTrack
 
-_SAME_INSTANT = 1e-6  # [s]
+_SAME_INSTANT = 1e-6  # Difference [s] up to which two instants are one
 
 
 class VehicleContact(NamedTuple):
-    """One background vehicle whose rectangle overlapped the ego's."""
+    """A background vehicle whose rectangle overlapped the ego's."""
 
     id: str
-    first: float  # [s] first instant, in simulation time
-    duration: float  # [s] sum of all contacts with it
+    first: float  # [s] first instant of contact, in simulation time
+    duration: float  # [s] duration of all contacts together
 
 
 def vehicle_contacts(
@@ -24,8 +24,8 @@ def vehicle_contacts(
 ) -> tuple[VehicleContact, ...]:
     """Return the background vehicles that overlapped the ego, in order of their first contact.
 
-    Background vehicles are taken at SUMO's instants and places. An instant stands for the time
-    until the next one of the same vehicle.
+    Background vehicles are at the instants and places that SUMO gives. An instant stands for the
+    time until the same vehicle's next one.
 
     Args:
         ego: Track of the ego, T instants.

@@ -12,8 +12,8 @@ class BackgroundVehicles:
 
     ids: tuple[str, ...]
     types: tuple[str, ...]
-    x: NDArray[np.float64]  # (m,) [m]
-    y: NDArray[np.float64]  # (m,) [m]
+    x: NDArray[np.float64]  # (m,) [m] front-bumper centre
+    y: NDArray[np.float64]  # (m,) [m] front-bumper centre
     heading: NDArray[np.float64]  # (m,) [rad] counter-clockwise from +x
     speed: NDArray[np.float64]  # (m,) [m/s]
     length: NDArray[np.float64]  # (m,) [m]
@@ -21,12 +21,12 @@ class BackgroundVehicles:
 
     @property
     def numbers(self) -> tuple[NDArray[np.float64], ...]:
-        """Columns of numbers: all but ids and types."""
+        """The columns of numbers: all except ids and types."""
         return self.x, self.y, self.heading, self.speed, self.length, self.width
 
     @property
     def bodies(self) -> NDArray[np.float64]:
-        """Rectangles (m, 5) of the vehicles: x, y, heading, length, width."""
+        """The rectangles (m, 5) of the vehicles: x, y [m], heading [rad], length, width [m]."""
         return np.column_stack([self.x, self.y, self.heading, self.length, self.width])
 
 

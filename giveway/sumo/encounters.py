@@ -8,12 +8,12 @@ import numpy as np
 
 from giveway.sumo.types import ROAD_CLASSES
 
-_MEETING = 10.0  # [m] largest distance between a moving vehicle's front and a pedestrian
-_MOVING = 0.5  # [m/s] speed above which a vehicle counts as moving
-_PERIOD = 1.0  # [s] between two counts
-_CELL = 100.0  # [m] side of the squares of the ranking
+_MEETING = 10.0  # Largest distance [m] between a moving vehicle's front and a pedestrian it meets
+_MOVING = 0.5  # Speed [m/s] above which a vehicle moves
+_PERIOD = 1.0  # Time [s] between two counts
+_CELL = 100.0  # Side [m] of the squares of the ranking
 _SHOWN = 3
-_EDGES = 12  # largest number of edges shown of a route
+_EDGES = 12  # Largest number of edges shown of a route
 
 
 class Encounters:
@@ -26,17 +26,17 @@ class Encounters:
     def __init__(self, sumo: Any) -> None:
         self._sumo = sumo
         self._looked = -np.inf
-        self._met: defaultdict[str, set[str]] = defaultdict(set)  # people by vehicle
+        self._met: defaultdict[str, set[str]] = defaultdict(set)  # people that each vehicle met
         self._places: defaultdict[tuple[int, int], set[tuple[str, str]]] = defaultdict(set)
         self._departures: dict[str, tuple[float, tuple[str, ...]]] = {}
 
     def departed(self, name: str, kind: str, route: tuple[str, ...]) -> None:
-        """Note a vehicle that departs, of SUMO's class ``kind``."""
+        """Note a vehicle of SUMO's class ``kind`` that departs."""
         if kind in ROAD_CLASSES:
             self._departures[name] = float(self._sumo.simulation.getTime()), route
 
     def look(self) -> None:
-        """Count the present encounters; most calls return at once."""
+        """Count the present encounters, if a second has passed since the last count."""
         now = float(self._sumo.simulation.getTime())
         people = self._sumo.person.getIDList()
         if now < self._looked + _PERIOD or not people:
@@ -62,9 +62,9 @@ class Encounters:
     def ranking(self) -> Mapping[str, Any]:
         """Return the vehicles, routes and squares with most encounters, as JSON values.
 
-        ``egos``: id, departure [s], people. ``routes``: edges, departure [s] of its vehicle with
-        most encounters, people per vehicle. ``zones``: x_min, y_min, x_max, y_max [m], encounters,
-        and the vehicle that meets most people there.
+        ``egos``: id, departure [s], people. ``routes``: edges, departure [s] of the route's vehicle
+        that meets most people, people per vehicle. ``zones``: x_min, y_min, x_max, y_max [m],
+        encounters, and the vehicle that meets most people in the square.
         """
         egos = sorted(self._met, key=lambda name: (-len(self._met[name]), name))
         of_route: defaultdict[tuple[str, ...], list[str]] = defaultdict(list)

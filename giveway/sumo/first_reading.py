@@ -1,9 +1,10 @@
-"""The first reading of a scenario: SUMO reads it in a child process before it reads it in ours.
+"""The first reading of a scenario, in a child process.
 
-A few broken networks and demands kill the process that reads them. In a supervised run or a
-study's worker that costs one run; in a process that has called :func:`giveway.run` itself it would
-cost everything there. So the same command is tried in a child first, once for each content of the
-scenario's files. What SUMO refuses in words is left to our own reading, which says it better.
+A few broken networks and demands crash the process that reads them. In a supervised run or a worker
+of a study that costs one run; in the user's own process, which has called :func:`giveway.run`, it
+would cost everything. Therefore a child process tries the same command first, once for each content
+of the scenario's files. What SUMO refuses with a message is left to the second reading, which
+reports it better.
 
 ``python -m giveway.sumo.first_reading OPTION ...`` is the child.
 """
@@ -24,13 +25,14 @@ from giveway.processes.causes import cause_of_end
 from giveway.processes.child import is_supervised
 from giveway.sumo.library import import_libsumo, version
 
-PATIENCE: Final = 600.0  # [s] the largest city scenarios load within some minutes
+# Longest time [s] to load a scenario; the largest city scenarios take some minutes
+PATIENCE: Final = 600.0
 _HOUSE: Final = Path(__file__).resolve().parents[2]
 _MODULE: Final = "giveway.sumo.first_reading"
-_ROUTE_STEPS: Final = "--route-steps"  # 0: all routes are read at once, not as they depart
+_ROUTE_STEPS: Final = "--route-steps"  # with 0, SUMO reads all routes at once, not as they depart
 _ADDRESS: Final = re.compile(r"[^/\\\s]{2,}:\d+")
 _DONE: Final = "read"
-_SPARED: Final = ("numpy", "pyproj", "lxml")  # half of what libsumo's Python takes to load
+_SPARED: Final = ("numpy", "pyproj", "lxml")  # optional imports of libsumo's Python modules
 _known: set[str] = set()
 
 
@@ -53,7 +55,7 @@ def read_first(
         SumoError: SUMO crashed, or was still busy.
     """
     if is_supervised() or any(map(_ADDRESS.fullmatch, command)):
-        return  # whoever listens at an address would take the child for the run
+        return  # a listener at an output address would take the child for the run
     digest = _digest(config_file, files)
     marker = user_cache() / "read_by_sumo" / digest
     if digest in _known or marker.exists():
@@ -61,13 +63,14 @@ def read_first(
     at_once = [] if _ROUTE_STEPS in command else [_ROUTE_STEPS, "0"]
     _try(config_file, [*command, *at_once], patience)
     _known.add(digest)
-    with suppress(OSError):  # without a cache it is read first in every process: slow, not wrong
+    # without this cache each process reads first, which is slow but not wrong
+    with suppress(OSError):
         marker.parent.mkdir(parents=True, exist_ok=True)
         marker.touch()
 
 
 def _try(config_file: Path, command: Sequence[str], patience: float) -> None:
-    # -P: a controller.py in the user's folder must not come before giveway's own.
+    # -P: giveway's modules must come before a controller.py in the user's folder.
     child = [sys.executable, "-P", "-m", _MODULE, *command]
     ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
     remedy = f"look at it alone: sumo -c {config_file}; netconvert may rebuild the network"
@@ -85,7 +88,7 @@ def _try(config_file: Path, command: Sequence[str], patience: float) -> None:
             f"{config_file}: SUMO was still reading this scenario after {patience:g} s; {remedy}"
         ) from None
     except OSError:
-        return  # no process can be started: our own reading is the first
+        return  # no process can be started: the second reading becomes the first
     if _DONE.encode() not in result.stdout.split():
         raise SumoError(
             f"{config_file}: SUMO crashes while reading this scenario "
@@ -115,15 +118,15 @@ def _bare_libsumo() -> Any:
 
 
 def main(command: Sequence[str]) -> None:
-    """Read the scenario, do one step, and report it; a refusal in words is an answer, too."""
+    """Read the scenario, do one step, and report the end; a refusal is no crash, either."""
     sumo = _bare_libsumo()
-    with suppress(Exception):  # libsumo's own kinds
+    with suppress(Exception):  # libsumo's exceptions
         sumo.start(list(command))
         sumo.simulationStep()
         sumo.close()
     sys.stdout.write(f"\n{_DONE}\n")
     sys.stdout.flush()
-    os._exit(0)  # destructors of native code have nothing left to save
+    os._exit(0)  # skips the destructors of native code
 
 
 if __name__ == "__main__":

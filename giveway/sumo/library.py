@@ -10,7 +10,7 @@ def import_libsumo() -> Any:
     """Import and return libsumo, which has no types.
 
     Raises:
-        InstallationError: it cannot be imported.
+        InstallationError: libsumo cannot be imported.
     """
     try:
         import libsumo
@@ -23,7 +23,7 @@ def import_libsumo() -> Any:
 
 
 def direct(sumo: Any, domain: str, function: str) -> Any:
-    """Return ``sumo.domain.function`` without its wrapper, which doubles the time of a call.
+    """Return ``sumo.domain.function`` without its Python wrapper.
 
     Args:
         sumo: The libsumo module.
@@ -35,11 +35,12 @@ def direct(sumo: Any, domain: str, function: str) -> Any:
 
 
 def is_refusal(error: BaseException) -> bool:
-    """Return whether an error is SUMO's own, from a call that it could not carry out."""
+    """Return whether an error is SUMO's answer to a call that it could not carry out."""
     sumo = import_libsumo()
-    return isinstance(error, (sumo.TraCIException, sumo.FatalTraCIError))  # no common base
+    # they have no common base class
+    return isinstance(error, (sumo.TraCIException, sumo.FatalTraCIError))
 
 
 def version() -> str:
-    """SUMO's own version string."""
+    """The version text of SUMO."""
     return str(import_libsumo().simulation.getVersion()[1])

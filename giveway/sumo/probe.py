@@ -1,6 +1,6 @@
 """A trial of a scenario in SUMO: ``python -m giveway.sumo.probe CONFIG`` prints a JSON line.
 
-It is a process of its own, because SUMO may crash or hang, and holds one simulation per process.
+It is a process of its own, because SUMO may crash or hang, and one process holds one simulation.
 """
 
 import json
@@ -17,18 +17,18 @@ from giveway.sumo.library import import_libsumo
 from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.types import ROAD_CLASSES
 
-_LOOK = 3.0  # [s] wall-clock time: enough to see vehicles depart, and short to wait for
-_ENOUGH = 3  # number of vehicles to see
-_WATCH = 10.0  # [s] wall-clock time in which encounters with people are counted
-_LONGEST_WATCH = 600.0  # [s] longest time in the scenario
+_LOOK = 3.0  # Wall-clock time [s] of the trial: vehicles have departed by then in most scenarios
+_ENOUGH = 3  # Number of vehicles after which the trial ends
+_WATCH = 10.0  # Wall-clock time [s] in which encounters with people are counted
+_LONGEST_WATCH = 600.0  # Longest time [s] in the scenario
 
 
 def look(config_file: Path, people: bool = False) -> dict[str, Any]:
-    """Load the scenario as a run would and let it run for a moment.
+    """Load the scenario as a run would, and let it run for a moment.
 
     Args:
-        config_file: The .sumocfg.
-        people: Let it run for longer, and count which vehicles meet people on foot.
+        config_file: File .sumocfg of the scenario.
+        people: True to let it run for longer, and count which vehicles meet pedestrians.
     """
     sumo = import_libsumo()
     began = perf_counter()
@@ -75,7 +75,7 @@ def look(config_file: Path, people: bool = False) -> dict[str, Any]:
 
 
 def _way(lanes: Lanes, vehicles: dict[str, list[str]]) -> list[list[float]]:
-    """Return x, y [m] of the path of the first vehicle that departed; empty without one."""
+    """Return the path x, y [m] of the first vehicle that departed; empty without a vehicle."""
     for kind, *route in vehicles.values():
         try:
             points: list[list[float]] = lanes.along(route, None, kind=kind).points.tolist()
@@ -86,10 +86,10 @@ def _way(lanes: Lanes, vehicles: dict[str, list[str]]) -> list[list[float]]:
 
 
 def main(config_file: Path, people: bool) -> None:
-    """Print how SUMO read the scenario, or why it refused."""
+    """Print how SUMO read the scenario, or why it refused to."""
     try:
         answer = look(config_file, people)
-    except Exception as error:  # libsumo's, or ours; the rest of the reason is on stderr
+    except Exception as error:  # an error of libsumo or giveway; further reasons are on stderr
         answer = {"refused": " ".join(str(error).split())}
     sys.stdout.write("\n" + json.dumps(answer) + "\n")
 

@@ -1,6 +1,7 @@
-"""The folder for files that a session writes for SUMO: the session's own, or kept in a worker.
+"""The folder for files that a session writes for SUMO.
 
-Some file systems take longer to remove a folder than SUMO takes to load a small scenario.
+A session has a folder of its own, or a worker process keeps one for all its sessions, because some
+file systems take longer to remove a folder than SUMO takes to load a small scenario.
 """
 
 import shutil
@@ -13,10 +14,10 @@ _kept: list["KeptFolder"] = []
 
 
 class KeptFolder:
-    """A folder that one session after the other uses, and leaves empty.
+    """A folder that one session after the other uses and empties.
 
     Attributes:
-        name: Its path, as that of a ``tempfile.TemporaryDirectory``.
+        name: Path of the folder, as in a ``tempfile.TemporaryDirectory``.
     """
 
     name: str
@@ -28,7 +29,7 @@ class KeptFolder:
         """Remove the contents of the folder.
 
         Raises:
-            OSError: something cannot be removed.
+            OSError: some content cannot be removed.
         """
         for path in Path(self.name).iterdir():
             if path.is_dir():
@@ -38,9 +39,9 @@ class KeptFolder:
 
 
 def keep_scratch() -> None:
-    """Let this process's sessions share one folder from now on, which nobody removes.
+    """Let the sessions of this process share one folder from now on, which nobody removes.
 
-    This is for a process whose folder for temporary files is its own, and is removed with it.
+    This is for a process whose own folder for temporary files is removed with it.
 
     Raises:
         OSError: the folder cannot be made.
@@ -50,9 +51,9 @@ def keep_scratch() -> None:
 
 
 def scratch() -> "tempfile.TemporaryDirectory[str] | KeptFolder":
-    """Return an empty folder for the session that begins; its ``cleanup`` ends the use.
+    """Return an empty folder for a new session; the session calls its ``cleanup`` in the end.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: the folder cannot be made.
     """
     return _kept[0] if _kept else tempfile.TemporaryDirectory(prefix=PREFIX)

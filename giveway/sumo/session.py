@@ -1,14 +1,14 @@
-"""The one object that owns libsumo.
+"""The running simulation: the only object that owns libsumo.
 
-SUMO is synchronised to our own state. The ego and the pedestrians are moved to where the vehicle
-FMU and the VCI model put them, and our state is exported. These rules of moving them were found by
-experiment on SUMO 1.28:
+SUMO is synchronised to giveway's state: egos and pedestrians are moved to the positions that the
+vehicle FMU and the VCI model give, and giveway's state is exported. These rules for the moves were
+found by experiment on SUMO 1.28:
 
 * a person follows ``moveToXY(..., keepRoute=2, matchThreshold=-1)`` exactly; other arguments kill
   the process when the person is mapped onto a walkingarea (SUMO issue 17257);
 * only the striping pedestrian model obeys moveToXY;
-* a pending moveToXY at ``close`` crashes the next simulation, so nothing that can raise stands
-  between the moves and ``simulationStep``.
+* a pending moveToXY at ``close`` crashes the next simulation, so nothing that can raise an error
+  stands between the moves and ``simulationStep``.
 """
 
 import collections
@@ -38,23 +38,26 @@ from giveway.sumo.stderr import NativeStderr, of_others
 from giveway.sumo.types import PEDESTRIAN_TYPE
 from giveway.sumo.vehicles import SumoVehicles
 
-POSITION_TOLERANCE = 1e-6  # [m] largest difference between our state and SUMO's after each step
+# Largest difference [m] between giveway's positions and SUMO's after each step
+POSITION_TOLERANCE = 1e-6
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
-_KEEP_ROUTE = 2  # move exactly to x, y, whatever lane is there
+_KEEP_ROUTE = 2  # libsumo's constant for a move exactly to x, y, whatever lane is there
 _NO_EDGE = itertools.repeat("")
 _EXACTLY = itertools.repeat(_KEEP_ROUTE)
-_WITHOUT_MATCHING = itertools.repeat(-1.0)  # the "ghost" mode: no lane is sought (issue 17257)
+# libsumo's "ghost" mode, in which no lane is searched for (issue 17257)
+_WITHOUT_MATCHING = itertools.repeat(-1.0)
 
 
 class SumoSession:
-    """A running simulation; one per process at a time, closed in every case.
+    """A running simulation. A process can have one at a time; it is closed in every case.
 
     Args:
-        scenario: The scenario's files; nothing is written beside them.
+        scenario: Files of the scenario; nothing is written beside them.
         options: Options for SUMO's start.
-        types: Text of an additional file with the types of all that is going to be added.
-        native_log: File for the output of SUMO; None: a temporary one.
-        careful: Let a child read the scenario first if a crash of this process costs everything.
+        types: Text of an additional file with the types of all that giveway is going to add.
+        native_log: File for the output of SUMO, or None for a temporary one.
+        careful: True to let a child process read the scenario first, in a process that must not
+            crash.
 
     Raises:
         ScenarioError: an input file is missing or cannot be read.
@@ -104,7 +107,8 @@ class SumoSession:
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._added: set[str] = set()
-        self._just_added: dict[str, tuple[float, str | None]] = {}  # when, on which lane
+        # time [s] of the addition, and lane
+        self._just_added: dict[str, tuple[float, str | None]] = {}
         self._host_lanes: dict[str, str | None] = {}  # host lanes by edge
 
     def _load(self) -> None:
@@ -130,45 +134,45 @@ class SumoSession:
 
     @property
     def time(self) -> float:
-        """SUMO's clock [s]."""
+        """The time on SUMO's clock [s]."""
         return float(self._sumo.simulation.getTime())
 
     @cached_property
     def end(self) -> float:
-        """The scenario's end [s]; infinite if it names none."""
+        """The scenario's end [s], or infinity if it names none."""
         end = float(self._sumo.simulation.getEndTime())
         return end if end >= 0.0 else math.inf
 
     @property
     def version(self) -> str:
-        """SUMO's version string."""
+        """The version text of SUMO."""
         return str(self._sumo.simulation.getVersion()[1])
 
     @property
     def messages(self) -> str:
-        """Return the output of SUMO on stderr so far, mostly warnings."""
+        """The output of SUMO on stderr so far, mostly warnings."""
         return of_others(self._stderr.text(), self._added)
 
     @property
     def expects_more(self) -> bool:
-        """Return whether vehicles or persons are on the way or yet to depart."""
+        """True if vehicles or persons are on the way or have yet to depart."""
         return bool(self._sumo.simulation.getMinExpectedNumber() > 0)
 
     def light_state(self, system: str) -> str:
-        """The state of a traffic light, one letter per movement."""
+        """Return the state of a traffic light, one letter per movement."""
         return str(self._light_state(system))
 
     def light_states(self, systems: Iterable[str]) -> dict[str, str]:
-        """The state of each of these traffic lights, one letter per movement."""
+        """Return the state of each of these traffic lights, one letter per movement."""
         return {system: self.light_state(system) for system in systems}
 
     @cached_property
     def light_systems(self) -> tuple[str, ...]:
-        """SUMO's ids of all traffic lights."""
+        """The ids of all traffic lights in SUMO."""
         return tuple(self._sumo.trafficlight.getIDList())
 
     def persons(self, added: Container[str]) -> ScenarioPersons:
-        """The scenario's own persons, to take over and hand back.
+        """Return the scenario's own persons, which can be taken over and handed back.
 
         Args:
             added: Ids of persons that giveway added, which are never touched.
@@ -199,15 +203,15 @@ class SumoSession:
         return FootPaths(self._sumo).lane(host_edge)
 
     def remove_persons(self, ids: Sequence[str]) -> None:
-        """Let persons arrive. They are gone with the next step."""
+        """Let persons arrive. They leave SUMO with the next step."""
         for name in ids:
             self._just_added.pop(name, None)
-            self.call(self._sumo.person.removeStages, name)  # unlike remove: counts as arrival
+            self.call(self._sumo.person.removeStages, name)  # counts as an arrival, unlike `remove`
 
     def _clear_host_edges(self) -> None:
-        """Move departed persons away from the beginning of their host edge in SUMO's books.
+        """Move departed persons away from the beginning of their host edge in SUMO's records.
 
-        SUMO's own pedestrians would swerve round persons that seem to stand there.
+        SUMO's own pedestrians would walk round persons that seem to stand there.
         """
         now = self.time
         for name, (added_at, lane) in list(self._just_added.items()):
@@ -226,7 +230,7 @@ class SumoSession:
         y: Sequence[float],
         angles: Sequence[float],
     ) -> None:
-        """Move egos and persons, make one SUMO step, and check that SUMO stands where we do.
+        """Move egos and persons, make one SUMO step, and compare SUMO's positions with giveway's.
 
         Args:
             egos: Id of each ego, and pose of its front bumper after the step.
@@ -236,7 +240,7 @@ class SumoSession:
             angles: Angles of each person [deg, 0 = north, clockwise], finite.
 
         Raises:
-            SumoError: SUMO failed, or disagrees by more than 1e-6 m.
+            SumoError: SUMO failed, or a position differs by more than 1e-6 m.
         """
         if self._just_added:
             self._clear_host_edges()
@@ -249,7 +253,7 @@ class SumoSession:
                 moves = map(
                     self._move_person, ids, _NO_EDGE, x, y, angles, _EXACTLY, _WITHOUT_MATCHING
                 )
-                collections.deque(moves, maxlen=0)  # the fastest loop that Python has
+                collections.deque(moves, maxlen=0)  # runs through the moves
                 self._step()
                 self._moves_pending = False
         except Exception as error:
@@ -268,7 +272,8 @@ class SumoSession:
                 there = self._vehicle_position(name)
                 if there != pose[:2]:
                     _compare("vehicle", name, there, pose, self.time)
-            # As a rule they are equal to the bit, and the differing ones are found in one pass.
+            # most positions are equal to the last bit, so the differing ones are searched only if
+            # needed
             if any(map(operator.ne, map(self._person_position, ids), zip(x, y, strict=True))):
                 for name, here in zip(ids, zip(x, y, strict=True), strict=True):
                     _compare("person", name, self._person_position(name), here, self.time)
@@ -276,11 +281,11 @@ class SumoSession:
             raise self._failure(error) from error
 
     def step(self) -> None:
-        """Let the scenario go on by itself for one step."""
+        """Let the scenario go on by itself for one SUMO step."""
         self.call(self._step)
 
     def call(self, function: Any, *arguments: Any, **keywords: Any) -> Any:
-        """Call libsumo; its failure becomes a :class:`SumoError` with SUMO's own reason."""
+        """Call libsumo; a failure becomes a :class:`SumoError` with SUMO's own reason."""
         try:
             with self._stderr:
                 return function(*arguments, **keywords)
@@ -303,9 +308,10 @@ class SumoSession:
             return
         SumoSession._running = False
         with self._stderr:
-            if self._moves_pending:  # only then: SUMO's own outputs would hold one step more
-                with contextlib.suppress(Exception):  # the simulation is being given up anyway
-                    self._step()  # carries out the moves, which close() would leak
+            if self._moves_pending:  # a step without pending moves would only add to SUMO's outputs
+                with contextlib.suppress(Exception):  # the simulation is being closed anyway
+                    # carries out the pending moves, which would crash the next simulation
+                    self._step()
             self._sumo.close()
         self._stderr.close()
         with contextlib.suppress(OSError):
@@ -324,6 +330,6 @@ def _compare(
 
 
 def _calls_somebody(scenario: ScenarioFiles) -> bool:
-    """Return whether an output goes to a network address; a child would be taken for the run."""
+    """Return whether an output goes to a network address."""
     names = [name for files in scenario.outputs.values() for name in files]
     return any(":" in name and not is_file(name) for name in names)

@@ -1,38 +1,39 @@
-"""The plans of traffic lights: what they show next, and when, as told to connected vehicles.
+"""The plans of traffic lights: their next states and times, as connected vehicles receive them.
 
-SAE J2735 calls it *signal phase and timing* (SPaT), ISO/TS 19091 says what it is for.
+SAE J2735 calls it *signal phase and timing* (SPaT). ISO/TS 19091 describes its use.
 """
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-_GOES = tuple("gGoO")  # states that let vehicles go: green, blinking yellow and off
+_GOES = tuple("gGoO")  # States that let vehicles go: green, blinking yellow and off
 
 
 class SignalChange(NamedTuple):
     """The next change of a traffic light."""
 
-    time: float  # [s] until then; an actuated light may extend its phase
+    time: float  # [s] time until then; an actuated light may extend its phase
     state: str  # state after the change, one letter per movement
 
 
 ChangeOf = Callable[[str], SignalChange | None]
-"""The next change of a traffic light by its id; None: nobody can tell."""
+"""Function that returns the next change of a traffic light by its id, or None if it is unknown."""
 
 
 Greens = tuple[tuple[float, float], ...]
-"""When a movement may go, as far as its plan tells: from and until [s] from now, in order."""
+"""The green times of a movement that its plan tells: begin and end [s] from now, in order."""
 
 GreensOf = Callable[[str, int], Greens]
-"""The greens of a traffic light by its id and the movement's number; none: nobody can tell."""
+"""Function that returns the green times by a light's id and a movement's number; empty if
+unknown."""
 
 
 class _Phase(NamedTuple):
-    """A phase of a program."""
+    """A phase of a signal program."""
 
     state: str
-    duration: float  # [s]
-    follows: int  # number of the next phase; -1: several are possible, or there is none
+    duration: float  # [s] duration
+    follows: int  # number of the next phase, or -1 if there is none or it is not certain
 
 
 def untold(_: str) -> SignalChange | None:
@@ -41,7 +42,7 @@ def untold(_: str) -> SignalChange | None:
 
 
 class SignalPlans:
-    """The plans of a running simulation's traffic lights, each read when it is first asked for.
+    """The plans of a running simulation's traffic lights. Each is read when it is first needed.
 
     Args:
         sumo: The libsumo module, with a loaded simulation.
@@ -52,7 +53,7 @@ class SignalPlans:
         self._plans: dict[tuple[str, str], tuple[_Phase, ...]] = {}
 
     def change(self, system: str) -> SignalChange | None:
-        """Return the next change, or None if it is unknown.
+        """Return the next change of a light, or None if it is unknown.
 
         Args:
             system: SUMO's id of the traffic light.
@@ -63,7 +64,7 @@ class SignalPlans:
         return SignalChange(self._left(system), plan[plan[phase].follows].state)
 
     def greens(self, system: str, link: int) -> Greens:
-        """Return the times at which a movement may go in one round of the plan; empty if unknown.
+        """Return the green times of a movement in one round of the plan; empty if they are unknown.
 
         Args:
             system: SUMO's id of the traffic light.
@@ -86,7 +87,7 @@ class SignalPlans:
         return tuple(found)
 
     def _now(self, system: str) -> tuple[tuple[_Phase, ...], int]:
-        """Return the running program and the number of its phase, or -1 for an unknown phase."""
+        """Return the running program and the number of its phase, or -1 if the phase is unknown."""
         lights = self._sumo.trafficlight
         program = str(lights.getProgram(system))
         plan = self._plans.get((system, program))
@@ -101,7 +102,7 @@ class SignalPlans:
         return max(switches - float(self._sumo.simulation.getTime()), 0.0)
 
     def _read(self, system: str, program: str) -> tuple[_Phase, ...]:
-        """The phases of a program."""
+        """Read the phases of a program."""
         for logic in self._sumo.trafficlight.getAllProgramLogics(system):
             if str(logic.programID) == program:
                 phases = logic.phases
@@ -117,5 +118,5 @@ class SignalPlans:
 
 
 def _only(follows: list[int], count: int) -> int:
-    """Return the only phase of ``count`` that may follow, or -1."""
+    """Return the only phase of ``count`` phases that may follow, or -1 if it is not certain."""
     return int(follows[0]) if len(follows) == 1 and 0 <= follows[0] < count else -1

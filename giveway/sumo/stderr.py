@@ -1,4 +1,4 @@
-"""The output of SUMO on the process's own stderr: kept, and read back."""
+"""The output of SUMO on the process's own stderr, which is kept in a file and read back."""
 
 import os
 import re
@@ -13,7 +13,7 @@ _MET = re.compile(r"^Warning: Collision of person '([^']*)' and person '([^']*)'
 def of_others(text: str, ours: Container[str]) -> str:
     """Return the output of SUMO without collisions among the people that giveway moves.
 
-    In its books all of them are on one lane, at whose beginning new persons appear.
+    In SUMO's records they are all on one lane, at whose beginning new persons appear.
 
     Args:
         text: Output of SUMO.
@@ -30,10 +30,10 @@ def of_others(text: str, ours: Container[str]) -> str:
 class NativeStderr:
     """Redirects file descriptor 2 into a file while a native call runs.
 
-    Use the object itself as the context manager, round one call at a time; ``close`` it at the end.
+    The object itself is the context manager, for one call at a time. Call ``close`` at the end.
 
-    Args:
-        path: Path of the file, to be read after this process has died; None: a temporary file
+    path: Path of the file, which can be read after this process has died, or None for a temporary
+    file without a name.
             without a name.
     """
 
@@ -46,7 +46,7 @@ class NativeStderr:
         self._file_descriptor = self._log.fileno()
         try:
             self._saved = os.dup(2)
-        except OSError:  # stderr is closed: its output goes nowhere
+        except OSError:  # stderr is closed, and its output is lost
             self._saved = os.open(os.devnull, os.O_WRONLY)
 
     def __enter__(self) -> None:
@@ -56,12 +56,12 @@ class NativeStderr:
         os.dup2(self._saved, 2)
 
     def text(self) -> str:
-        """Everything printed so far."""
+        """The output so far."""
         self._log.seek(0)
         return self._log.read().decode("utf-8", "replace")
 
     def errors(self) -> str:
-        """Return the reasons in the output, on one line."""
+        """The reasons for errors in the output, on one line."""
         lines = [line.strip() for line in self.text().splitlines()]
         reasons = [
             line.removeprefix("Error:").strip()
@@ -71,6 +71,6 @@ class NativeStderr:
         return "; ".join(dict.fromkeys(reasons))
 
     def close(self) -> None:
-        """Forget the output."""
+        """Close the file; its content is lost if it is a temporary one."""
         os.close(self._saved)
         self._log.close()

@@ -15,18 +15,18 @@ ROAD_CLASSES: Final = (
     *("bus", "coach", "tram", "delivery", "truck", "trailer"),
     *("motorcycle", "moped", "scooter", "bicycle", "custom1", "custom2"),
 )
-"""SUMO's vehicle classes that drive where people walk."""
+"""SUMO's vehicle classes that drive on roads where people walk."""
 
 
 def inserted_type(ego_id: str) -> str:
-    """The type of an ego that is inserted."""
+    """Return the id of the type of an ego that is inserted."""
     return f"giveway_inserted_{ego_id}"
 
 
 def ego_type(vehicle_class: str) -> str:
-    """The type for an ego of ``vehicle_class`` that is taken over from the scenario.
+    """Return the id of the type for an ego of ``vehicle_class`` that is taken over.
 
-    The vehicle's own length and width are to be set again afterwards, for it alone.
+    The vehicle's own length and width have to be set again afterwards, for this vehicle only.
 
     Raises:
         ScenarioError: a vehicle of this class does not drive on roads.
@@ -40,13 +40,13 @@ def ego_type(vehicle_class: str) -> str:
 
 
 def all_types(egos: Mapping[str, VehicleShape]) -> str:
-    """The additional file with every type that giveway may give to a vehicle or person.
+    """Return the additional file with every type that giveway may give to a vehicle or person.
 
     Args:
-        egos: The type's id of each inserted ego, to its body.
+        egos: Body of each inserted ego, by the id of its type.
     """
-    # timeToTeleport: an ego that waits for a crowd is not stuck. speedDev=0: a drawn speed factor
-    # would shift SUMO's random stream and with it the background traffic.
+    # timeToTeleport: an ego that waits for people must not be removed as stuck. speedDev=0: a drawn
+    # speed factor would shift SUMO's random numbers and with them the background traffic.
     never_stuck = 'maxSpeed="100" speedDev="0" timeToTeleport="-1"'
     inserted = [
         f'    <vType id={quoteattr(name)} vClass="passenger" length="{body.length}" '

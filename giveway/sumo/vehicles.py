@@ -1,4 +1,4 @@
-"""SUMO's vehicles: read, taken over, inserted, slowed down."""
+"""SUMO's vehicles: reading, taking over, inserting and slowing them."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
@@ -15,23 +15,23 @@ from giveway.sumo.library import direct
 from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.types import ego_type, inserted_type
 
-_PARKING_AREA = 64  # SUMO's flag of a stop
+_PARKING_AREA = 64  # SUMO's flag of a stop in a parking area
 _ALL_CHECKS, _WITHOUT_SAFE_SPEED = 31, 30  # SUMO's speed modes
 
 
 @dataclass(frozen=True)
 class VehicleState:
-    """One of SUMO's vehicles at one instant."""
+    """The state of one of SUMO's vehicles at one instant."""
 
     id: str
     type: str
     kind: str  # SUMO's vehicle class
-    edges: tuple[str, ...]  # its route from the present edge on
-    lane: int  # index on the present edge
-    lane_position: float  # [m]
+    edges: tuple[str, ...]  # edges of its route from the present one on
+    lane: int  # index of its lane on the present edge
+    lane_position: float  # [m] position on the lane
     x: float  # [m] front-bumper centre
-    y: float  # [m]
-    heading: float  # [rad]
+    y: float  # [m] front-bumper centre
+    heading: float  # [rad] counter-clockwise from +x
     speed: float  # [m/s]
     length: float  # [m]
     width: float  # [m]
@@ -39,23 +39,23 @@ class VehicleState:
 
 
 class PlannedStop(NamedTuple):
-    """A stop of one of SUMO's vehicles."""
+    """A planned stop of one of SUMO's vehicles."""
 
     lane: str
-    start: float  # [m] begin on the lane
+    start: float  # [m] beginning on the lane
     end: float  # [m] place of the front bumper at the stop
-    duration: float  # [s]; at most 0: not given
-    until: float  # [s] end of the stop on SUMO's clock; negative: not given
-    beside: bool  # True in a parking area, off the lane
+    duration: float  # [s] duration; not given if it is not positive
+    until: float  # [s] end of the stop on SUMO's clock; not given if negative
+    beside: bool  # True if it is in a parking area beside the lane
 
 
 class SumoVehicles:
-    """The access to SUMO's vehicles: reading them, and acting on them.
+    """The vehicles of a running simulation: reading them, and acting on them.
 
     Args:
         sumo: The libsumo module.
-        call: Function that calls a function of it and explains its failure.
-        lanes: The network's lanes.
+        call: Function that calls libsumo and explains its failures.
+        lanes: Lanes of the network.
     """
 
     def __init__(self, sumo: Any, call: Callable[..., Any], lanes: Lanes) -> None:
@@ -77,27 +77,27 @@ class SumoVehicles:
     # --- reading ------------------------------------------------------------------------------
 
     def departed(self) -> frozenset[str]:
-        """The vehicles that have departed in SUMO's latest step."""
+        """Return the ids of the vehicles that departed in SUMO's latest step."""
         return frozenset(self._sumo.simulation.getDepartedIDList())
 
     def present(self) -> tuple[str, ...]:
-        """Every vehicle on the road."""
+        """Return the ids of all vehicles on the road."""
         return tuple(self._vehicle.getIDList())
 
     def background(self) -> BackgroundVehicles:
-        """Every vehicle of the scenario except the egos, as of SUMO's clock."""
+        """Return all vehicles of the scenario except the egos, at SUMO's present instant."""
         everybody = self._id_list()
         if self.egos.issuperset(everybody):
             return NO_VEHICLES
         return self._bodies(sorted(name for name in everybody if name not in self.egos))
 
     def everybody_but(self, name: str) -> BackgroundVehicles:
-        """Every vehicle on the road except the one named, egos included, as of SUMO's clock."""
+        """Return all vehicles on the road except the one named, egos included."""
         others = sorted(set(self._id_list()) - {name})
         return self._bodies(others) if others else NO_VEHICLES
 
     def _bodies(self, names: Sequence[str]) -> BackgroundVehicles:
-        """Return the places and shapes of at least one vehicle."""
+        """Return the positions and bodies of at least one vehicle."""
         vehicle, ids = self._vehicle, tuple(names)
         for name in ids:
             if name not in self._shapes:
@@ -117,7 +117,7 @@ class SumoVehicles:
         )
 
     def state(self, name: str) -> VehicleState:
-        """One vehicle as SUMO has it now."""
+        """Return the state of one vehicle as SUMO has it now."""
         vehicle = self._vehicle
         x, y = vehicle.getPosition(name)
         return VehicleState(
@@ -142,7 +142,7 @@ class SumoVehicles:
         return bool(road) and not road.startswith(":")
 
     def stops(self, name: str) -> list[PlannedStop]:
-        """The stops that are ahead of the vehicle, in order."""
+        """Return the stops that are ahead of the vehicle, in order."""
         return [
             PlannedStop(
                 stop.lane,
@@ -156,7 +156,7 @@ class SumoVehicles:
         ]
 
     def parked(self, name: str) -> bool:
-        """Return whether the vehicle stands beside the road."""
+        """Return whether the vehicle stands in a parking area beside the lane."""
         return bool(self._vehicle.isStoppedParking(name))
 
     def edges_of_entry(self, but: Collection[str]) -> set[str]:
@@ -169,20 +169,20 @@ class SumoVehicles:
         }
 
     def first_edge(self, route: str) -> str:
-        """Return the first edge of a route that the scenario names; empty for an unknown route."""
+        """Return the first edge of a route that the scenario names, or "" if it is unknown."""
         known = route in self._sumo.route.getIDList()
         return str(self._sumo.route.getEdges(route)[0]) if known else ""
 
     def whereabouts(self, name: str) -> tuple[str, str, float]:
-        """Return the vehicle's lane (or an empty text), its route's id, and its position [m]."""
+        """Return the vehicle's lane ("" if it has none), its route's id, and its position [m]."""
         return self._lane_id(name), self._route_id(name), self._lane_position(name)
 
     def lanes_ahead(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
-        """Return the vehicle's ``lane`` and those that it reaches within ``distance`` [m]."""
+        """Return the vehicle's ``lane`` and the next ones within ``distance`` [m]."""
         return self._by_its_route(name, lane, distance) or self._by_its_plan(name, lane, distance)
 
     def _by_its_route(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
-        """Return the lanes ahead if its route leaves no choice (quick to find), otherwise none."""
+        """Return the lanes ahead if the route leaves no choice of lanes, otherwise none."""
         vehicle = self._vehicle
         if vehicle.getStops(name, 1):
             return ()  # SUMO's plans end at a stop
@@ -198,7 +198,7 @@ class SumoVehicles:
         return tuple(lanes)
 
     def _by_its_plan(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
-        """Return the lanes ahead as SUMO's driver plans them, with those inside junctions."""
+        """Return the lanes ahead that SUMO's driver plans to use, with those inside junctions."""
         lanes = [lane, *self._lanes.out_of_junction(lane)]
         known = sum(map(self._lanes.length, lanes[1:]))
         for link in self._vehicle.getNextLinks(name):
@@ -215,11 +215,11 @@ class SumoVehicles:
         return self._lanes.shape(lane)
 
     def lane_length(self, lane: str) -> float:
-        """Return SUMO's length [m] of a lane, which may differ from its centre line's."""
+        """Return SUMO's nominal length [m] of a lane, which may differ from its centre line's."""
         return float(self._sumo.lane.getLength(lane))
 
     def leader(self, name: str, distance: float) -> str:
-        """Return the id of the vehicle's leader within ``distance`` [m]; empty without one."""
+        """Return the id of the vehicle's leader within ``distance`` [m], or "" without one."""
         found = self._vehicle.getLeader(name, distance)
         return str(found[0]) if found else ""
 
@@ -228,17 +228,17 @@ class SumoVehicles:
         return float(self._vehicle.getDecel(name))
 
     def time_loss(self, name: str) -> float:
-        """Return the time [s] that the vehicle has lost since departure by driving slowly."""
+        """Return the time [s] that the vehicle has lost since its departure, as SUMO counts it."""
         return float(self._time_loss(name))
 
-    # --- doing --------------------------------------------------------------------------------
+    # --- acting -------------------------------------------------------------------------------
 
     def insert(
         self, ego_id: str, edges: Sequence[str], *, lane: int, position: float, speed: float
     ) -> None:
         """Insert an ego. It appears with the next mirrored step.
 
-        The FMU determines the speed; SUMO is told at most the lane's limit.
+        The FMU determines the ego's speed. SUMO is given at most the lane's limit.
         """
         permitted = min(speed, self._sumo.lane.getMaxSpeed(f"{edges[0]}_{lane}"))
         self._add(ego_id, edges, departPos=f"{position:.3f}", departSpeed=f"{permitted:.3f}")
@@ -247,7 +247,7 @@ class SumoVehicles:
     def queue(
         self, ego_id: str, edges: Sequence[str], *, lane: str, position: float, speed: float
     ) -> None:
-        """Let SUMO insert an ego as soon as its own check finds room there; see :meth:`claim`.
+        """Let SUMO insert an ego as soon as its own check finds room; then use :meth:`claim`.
 
         Args:
             ego_id: Id of the ego.
@@ -292,7 +292,7 @@ class SumoVehicles:
             ) from error
 
     def adopt(self, state: VehicleState, shape: VehicleShape) -> None:
-        """Drive one of SUMO's own vehicles from now on, with the body ``shape``."""
+        """Take over one of SUMO's vehicles, with the body ``shape``, and drive it from now on."""
         name = state.id
         try:
             kind = ego_type(state.kind)
@@ -305,10 +305,11 @@ class SumoVehicles:
         self.egos.add(name)
 
     def _drop_stops(self, name: str) -> None:
-        """Remove a vehicle's stops: SUMO would park it beside the road while the FMU drives on.
+        """Remove a vehicle's stops.
 
-        SUMO would also look for them anew, and fail, where the ego drives a step beyond the end of
-        its route; therefore the route is extended there.
+        SUMO would park the vehicle beside the road while the FMU drives on. Where the ego drives a
+        step beyond the end of its route, SUMO would look for the stops again, and fail. Therefore
+        the route is extended there.
         """
         if self._vehicle.isStopped(name):
             self._call(self._vehicle.resume, name)
@@ -321,7 +322,7 @@ class SumoVehicles:
             self._call(self._vehicle.replaceStop, name, 0, "")
 
     def dismiss(self, name: str) -> None:
-        """Take an ego that has reached its goal off the road."""
+        """Remove an ego that has reached its goal from the road."""
         self._call(self._vehicle.remove, name)
         self.egos.discard(name)
 
@@ -330,15 +331,15 @@ class SumoVehicles:
         self._call(self._vehicle.setSpeed, name, speed)
 
     def pull_away(self, name: str, speed: float) -> None:
-        """Let SUMO's driver go at ``speed`` [m/s] despite its leader."""
+        """Let SUMO's driver go at ``speed`` [m/s] although a leader is in front."""
         self._call(self._vehicle.setSpeedMode, name, _WITHOUT_SAFE_SPEED)
         self._call(self._vehicle.setSpeed, name, speed)
 
     def heed_leaders(self, name: str) -> None:
-        """End :meth:`pull_away`."""
+        """Let SUMO's driver heed leaders again, after :meth:`pull_away`."""
         self._call(self._vehicle.setSpeedMode, name, _ALL_CHECKS)
         self._call(self._vehicle.setSpeed, name, -1.0)
 
     def release(self, name: str) -> None:
-        """Let SUMO's driver go as it wants again."""
+        """Let SUMO's driver choose its speed again."""
         self._call(self._vehicle.setSpeed, name, -1.0)

@@ -1,6 +1,6 @@
-"""The judge of the law of the road: an independent pass over the tables of a drive.
+"""The judgement by the law of the road: an independent pass over the tables of a drive.
 
-The judge does not know the ego's own reasons for giving way. Definitions are in docs/law.md.
+It does not know the ego's own reasons for giving way. Definitions are in docs/law.md.
 """
 
 from giveway.metrics.law.drive import Drive, Undisturbed

@@ -1,4 +1,4 @@
-"""The areas of crossings over which the ego's body sweeps, and which it shares with people."""
+"""The areas of crossings that the ego's body sweeps over and shares with people."""
 
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ _GRAIN = 0.25  # [m] largest distance between two points of its outline
 class Area(NamedTuple):
     """The part of a crossing that the ego's body sweeps over in one visit.
 
-    Lengths along the crossing count from the first of its ends.
+    Lengths along the crossing count from its first end.
     """
 
     crossing: CrossingOnWay
@@ -26,19 +26,19 @@ class Area(NamedTuple):
     along: Array  # (2,) unit vector to the second end
     length: float  # [m] between the ends
     entry: float  # [m] station of the front bumper at which the body reaches the crossing
-    leave: float  # [m] station at which it has left it
-    low: float  # [m] begin of the swept part along the crossing
-    high: float  # [m] end of that part
+    leave: float  # [m] station of the front bumper at which the body has left it
+    low: float  # [m] beginning of the swept part, along the crossing
+    high: float  # [m] end of that part, along the crossing
 
     def place(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Return lengths along the crossing and to the side of its middle line [m] of points."""
+        """Return the points' lengths along the crossing, and offsets from its middle line [m]."""
         d_x, d_y = x - self.kerb[0], y - self.kerb[1]
         c, s = self.along
         return d_x * c + d_y * s, d_y * c - d_x * s
 
 
 def areas_of(drive: Drive) -> tuple[Area, ...]:
-    """Return the areas on a drive's path, in order, without those beyond its end."""
+    """Return the areas on a drive's path, in driving order, without those beyond its end."""
     if not drive.way.crossings:
         return ()
     line = _Line(drive)
@@ -93,12 +93,12 @@ def _visits(line: _Line, shape: VehicleShape, crossing: CrossingOnWay) -> list[A
 
 
 def _outline(line: _Line, shape: VehicleShape, stations: Array) -> tuple[Array, Array]:
-    """Return x and y (n, p) [m] of points of the body, for each station (n,) of its front."""
+    """Return points of the body's outline x, y (n, p) [m] for each station (n,) of its front."""
     front, rear = line.at(stations), line.at(stations - shape.length)
     heading = np.arctan2(front[:, 1] - rear[:, 1], front[:, 0] - rear[:, 0])[:, None]
     back = np.linspace(0.0, shape.length, 1 + int(np.ceil(shape.length / _GRAIN)))
     side = np.linspace(-0.5, 0.5, 1 + int(np.ceil(shape.width / _GRAIN))) * shape.width
-    # both sides from front to rear, and the front
+    # the two sides from front to rear, and the front
     a = np.concatenate([-back, -back, np.zeros(len(side))])
     b = np.concatenate([np.full(len(back), side[0]), np.full(len(back), side[-1]), side])
     c, s = np.cos(heading), np.sin(heading)

@@ -19,21 +19,22 @@ from giveway.metrics.law.standing import BEFORE, Owed
 from giveway.run_data.way import JunctionOnWay
 
 AFTER = 2.0
-"""[s] A cause counts for so long after it was there."""
+"""Time [s] for which a cause still counts after it has gone."""
 
 SIGHT = 10.0
-"""[m] A cause counts this far in front of the ego."""
+"""Distance [m] in front of the ego within which a cause counts."""
 
 _ASIDE = 0.5  # [m] distance beside the ego's path within which people block it
-_FOE = 9.0  # [s] time to another vehicle: largest critical headway and time to start
+_FOE = 9.0  # Largest time [s] to another vehicle: critical headway plus time to start
 _ROOM = 3.5  # [m] space that the ego wants behind a crossing or junction, besides its length
-_BEHIND = 40.0  # [m] distance behind the ego from which a follower is no conflicting vehicle
-_ABOUT, _SHORTEST = 20.0, 0.01  # [m] path beyond the examined part; shortest segment
-_APART = 0.5  # [m] distance between points of its path
-_STARTING = 3.0  # [s] time in which an ego drives off that departs standing
-_HALT = 1.0  # [m] tolerance around a scheduled stop
-_AT_LINE, _OVER_LINE = 4.0, 0.5  # [m] range about a stop sign's line in which it stands there
-_POINTS = 5  # number of points of a vehicle's middle line, front to rear
+# Distance [m] behind the ego from which a vehicle is a follower, not a conflicting vehicle
+_BEHIND = 40.0
+_ABOUT, _SHORTEST = 20.0, 0.01  # Lengths [m]: path beyond the examined part, shortest segment
+_APART = 0.5  # Distance [m] between examined points of the path
+_STARTING = 3.0  # Time [s] in which an ego that departs from standstill drives off
+_HALT = 1.0  # Tolerance [m] around a scheduled stop
+_AT_LINE, _OVER_LINE = 4.0, 0.5  # Range [m] before and behind a stop line
+_POINTS = 5  # Number of points on a vehicle's middle line, front to rear
 _GO = np.array(list("GgOo"))
 
 Mask = NDArray[np.bool_]
@@ -42,16 +43,16 @@ Mask = NDArray[np.bool_]
 class Uncaused(NamedTuple):
     """A stop without a cause."""
 
-    first: int  # first control instant without a cause
+    first: int  # [s] time without a cause
     duration: float  # [s] duration without a cause
 
 
 class _Stand(NamedTuple):
-    """A stand of the ego: its place and its time."""
+    """A stand of the ego: its place, its time and how far it looks."""
 
     front: float  # [m] station of the front
-    sight: float  # [m] distance ahead within which a vehicle keeps it from driving on
-    foes: float  # [m] distance ahead within which vehicles pass for which it waits
+    sight: float  # [m] distance ahead within which a vehicle prevents the ego from driving on
+    foes: float  # [m] distance ahead within which crossing vehicles make the ego wait
     begin: int  # first control instant
     end: int  # control instant after the last one
 
@@ -59,12 +60,12 @@ class _Stand(NamedTuple):
 def stops_without_cause(
     drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]
 ) -> list[Uncaused]:
-    """Return the stops during which the ego stood without a cause, present or just before.
+    """Return the stops during which the ego stood without a present or recent cause.
 
     Args:
         drive: Drive of the ego.
-        areas: Areas on its way.
-        owed: Times at which it had to let people pass at each of them.
+        areas: Areas of crossings on its path.
+        owed: Times at which it had to let people pass at each crossing.
     """
     time, found = drive.ego.time, []
     lasting = np.append(np.diff(time), 0.0)
@@ -98,7 +99,7 @@ def owed_to(drive: Drive, encounters: Sequence[Encounter]) -> list[Owed]:
 
 
 def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
-    """Return the distance [m] ahead within which a vehicle keeps the ego on a keep-clear area."""
+    """Return the distance [m] ahead within which a vehicle holds the ego on a keep-clear area."""
     length = drive.shape.length
     kept_free = [(area.entry, area.leave) for area in areas]
     kept_free += [(place.entry, place.exit + length) for place in drive.way.junctions]
@@ -107,10 +108,10 @@ def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
 
 
 def _foes(drive: Drive, front: float) -> float:
-    """Return the distance [m] ahead of its ``front`` within which vehicles pass that it waits for.
+    """Return the distance [m] ahead of ``front`` within which crossing vehicles make the ego wait.
 
-    The distance reaches to the end of the junction in which or before which the ego stands. From a
-    waiting place inside a junction it may be 17 m to the crossing of the paths.
+    It reaches to the end of the junction in which or before which the ego stands. From a waiting
+    place inside a junction, the paths may cross 17 m ahead.
     """
     ends = [place.exit - front for place in drive.way.junctions if _at(place, front)]
     return max([SIGHT, *ends])
@@ -122,7 +123,7 @@ def _at(place: JunctionOnWay, front: float) -> bool:
 
 
 def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple[Mask, float]]:
-    """Yield the times (T,) with a cause of a stand, and how long [s] before that it counts."""
+    """Yield the instants (T,) at which each cause was there, and how long [s] before it counts."""
     time, front = drive.ego.time, stand.front
     for entry, there in owed:
         if front <= entry <= front + SIGHT:
@@ -132,7 +133,8 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
             yield ~np.isin(drive.letters(line.system, line.link, time), _GO), 0.0
     for place in drive.way.junctions:
         if place.stop_sign and place.entry - _AT_LINE <= front <= place.entry + _OVER_LINE:
-            yield np.arange(len(time)) == stand.begin, 0.0  # the ego has stood there then
+            # the ego has just come to a stop at the sign
+            yield np.arange(len(time)) == stand.begin, 0.0
     if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
         yield np.ones(len(time), dtype=np.bool_), 0.0
     yield _people_ahead(drive, stand), AHEAD
@@ -141,7 +143,7 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
 
 
 def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
-    """Return when (T,) a person was on the ego's path in front of it."""
+    """Return when a person was on the ego's path in front of it, as flags (T,)."""
     crowd, front = drive.crowd, stand.front
     x, y, _ = drive.path.pose(front)
     rows = _during(drive, stand, drive.ego.time[crowd.step])
@@ -156,16 +158,16 @@ def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
 
 
 def _vehicles_ahead(drive: Drive, stand: _Stand) -> Mask:
-    """Return when (T,) another vehicle was on the ego's path within its sight."""
+    """Return when another vehicle was on the ego's path within its sight, as flags (T,)."""
     rows = _during(drive, stand, drive.vehicles.time)
     ahead, _ = _on_way(drive, stand, rows, stand.sight)
     return _at_instants(drive, rows[ahead])
 
 
 def _foes_ahead(drive: Drive, stand: _Stand) -> Mask:
-    """Return when (T,) another vehicle was about to enter the ego's path ahead, not from behind.
+    """Return when another vehicle, not a follower, was about to enter the ego's path: flags (T,).
 
-    It did so within ``_FOE``, or would have done so straight on at its speed.
+    It entered the path within ``_FOE``, or would have entered it straight on at its speed.
     """
     others = drive.vehicles
     rows = _during(drive, stand, others.time)
@@ -185,7 +187,7 @@ def _at_instants(drive: Drive, rows: NDArray[np.intp]) -> Mask:
 
 
 def _on_way(drive: Drive, stand: _Stand, rows: NDArray[np.intp], sight: float) -> tuple[Mask, Mask]:
-    """Return which vehicles (n,) are on the ego's path ahead, and which are behind its front."""
+    """Return flags (n,) of the vehicles on the ego's path ahead, and of those behind its front."""
     others, front = drive.vehicles, stand.front
     ahead, behind = np.zeros((2, len(rows)), dtype=np.bool_)
     x, y, _ = drive.path.pose(front)
@@ -203,7 +205,7 @@ def _on_way(drive: Drive, stand: _Stand, rows: NDArray[np.intp], sight: float) -
 
 
 def _straight_on(drive: Drive, stand: _Stand, rows: NDArray[np.intp]) -> Mask:
-    """Return which vehicles (n,) would enter the ego's path ahead, straight on for a while."""
+    """Return flags (n,) of the vehicles that would soon enter the ego's path, going straight on."""
     others, front = drive.vehicles, stand.front
     at = np.arange(front, front + stand.foes + _APART, _APART)
     way = shapely.LineString(drive.path.points(at)).buffer(drive.shape.width / 2, cap_style="flat")
@@ -216,16 +218,16 @@ def _straight_on(drive: Drive, stand: _Stand, rows: NDArray[np.intp]) -> Mask:
 
 
 def _during(drive: Drive, stand: _Stand, time: Array) -> NDArray[np.intp]:
-    """Return the rows (in order of ``time`` [s]) that may be the cause of a stand."""
+    """Return the rows, in order of ``time`` [s], of vehicles that may be the cause of a stand."""
     own = drive.ego.time
     since, until = own[stand.begin] - AFTER, own[stand.end - 1] + _FOE + BEFORE
     return np.arange(*np.searchsorted(time, (since, until)))
 
 
 def _on_path(drive: Drive, stand: _Stand, x: Array, y: Array) -> tuple[Array, Array]:
-    """Return stations and distances (n,) [m] of points beside the ego's path near its stand.
+    """Return stations and lateral distances (n,) [m] of points beside the ego's path.
 
-    A path may pass a place twice. Therefore only its part near the stand counts.
+    A path may pass a place twice, so only its part near the stand counts.
     """
     stations = drive.path.stations
     begin = max(stand.front - _BEHIND, 0.0)

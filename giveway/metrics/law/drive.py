@@ -1,4 +1,4 @@
-"""The input of the judge: one ego's tables, and the rules along its path."""
+"""The input of the judgement: one ego's tables, and the rules along its path."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,11 +15,11 @@ from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Peopl
 from giveway.run_data.way import EgoWay
 
 NO_LIGHT = "O"
-_SAME = 1e-6  # [s]
+_SAME = 1e-6  # Difference [s] up to which two instants are one
 
 
 class Undisturbed(NamedTuple):
-    """The positions of the people in the run's twin, in which they did not feel the ego."""
+    """The positions of the people in the counterfactual run, in which they did not feel the ego."""
 
     step: NDArray[np.int64]  # (R,) control instants, counted from the ego's first one
     pedestrian: NDArray[np.int64]  # (R,) index of the person, as in the run's crowd
@@ -35,15 +35,15 @@ class Drive:
         ego: Track of the ego, T instants.
         shape: Shape of its body.
         body_radius: Body radius of a pedestrian [m].
-        way: Way with all that stood on it.
+        way: Path with the crossings, lights, junctions and stops on it.
         crowd: People on foot, counted from the ego's first instant.
         people: Routes and desired speeds of the people, from the same instant.
-        signals: Changes of Changes of the traffic lights.
+        signals: Changes of the traffic lights.
         vehicles: All other vehicles.
-        comfortable: Deceleration [m/s^2] that a yellow light asks of it.
-        goal: Position [m] at which it leaves the road.
-        stop_speed: Speed [m/s] below which it stands.
-        undisturbed: People of the run's twin; None without a twin.
+        comfortable: Deceleration [m/s^2] that the ego must be ready to use at a yellow light.
+        goal: Position [m] at which the ego leaves the road.
+        stop_speed: Speed [m/s] below which the ego stands.
+        undisturbed: People of the counterfactual run, or None without one.
     """
 
     ego: EgoTrack
@@ -75,9 +75,10 @@ class Drive:
         return self.way.departure + self.goal
 
     def time_at(self, station: float) -> float:
-        """Return when [s] the front reaches ``station`` [m]; inf if never, -inf before departure.
+        """Return the time [s] at which the front reaches ``station`` [m].
 
-        Between control instants it is interpolated linearly.
+        It is inf if the front never does, and -inf if it was there before departure. Between
+        control instants it is interpolated linearly.
         """
         beyond = np.flatnonzero(self.front >= station)
         if not len(beyond):
@@ -94,9 +95,9 @@ class Drive:
         return np.asarray(np.maximum(found, 0), dtype=np.int64)
 
     def letters(self, system: str, link: int, time: Array) -> NDArray[np.str_]:
-        """Return the letter (n,) of a light's movement at each ``time`` (n,) [s], in any order.
+        """Return the letter (n,) of a movement's light at each ``time`` (n,) [s], in any order.
 
-        Before the first record the first one counts. A light without records is out.
+        Before the first record, the first one counts. A light without records is off.
         """
         mine = np.flatnonzero(self.signals.system == system)
         if not len(mine) or link < 0:
@@ -108,14 +109,14 @@ class Drive:
 
 
 def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the stretches in which ``mask`` (n,) is true: first index, and one after the last."""
+    """Return the intervals in which ``mask`` (n,) is true: first index, and one after the last."""
     edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
     begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return list(zip(begins.tolist(), ends.tolist(), strict=True))
 
 
 def spread(time: Array, there: NDArray[np.bool_], before: float, after: float) -> NDArray[np.bool_]:
-    """Extend ``there`` (T,) by the times ``before`` and ``after`` [s]."""
+    """Extend the instants ``there`` (T,) by the times ``before`` and ``after`` [s]."""
     hits = time[there]
     if not len(hits):
         return there

@@ -1,6 +1,6 @@
 """Encounters at crossings: people's priority, and whether the ego let them pass.
 
-The definitions, and the reason for each number, stand in docs/law.md.
+The definitions, and the reason for each number, are in docs/law.md.
 """
 
 from typing import NamedTuple
@@ -14,37 +14,37 @@ from giveway.metrics.law.drive import Drive, runs
 from giveway.metrics.law.walks import Walk
 
 AHEAD = 4.0
-"""[s] Who would reach the ego's way later than this is not met yet."""
+"""Largest time [s] in which a person reaches the ego's path and is met."""
 
 BRAKING = 3.0
-"""[m/s^2] Who cannot be stopped for by braking so hard comes too late to be met."""
+"""Deceleration [m/s^2] up to which the ego has to brake for a person."""
 
 AFTER = 5.0
-"""[s] Who has left the ego's way this long before it could be there is not met: the largest
-post-encroachment time that SSAM looks at (Gettman & Head 2003, FHWA)."""
+"""Time [s] after which a person who has left the ego's path is no longer met: the largest
+post-encroachment time that SSAM considers (Gettman & Head 2003, FHWA)."""
 
 PULL_AWAY = 2.0
-"""[m/s^2] with which it could come."""
+"""Acceleration [m/s^2] with which the ego could come nearer."""
 
 TOUCHES, NOSE = 2.0, 1.4
-"""[m] and [s]: nearer to its body than the one, and the way that it drives in the other, the ego
-may push somebody. Farther off the model's vehicles act with less than 30 N (docs/law.md).
+"""Distance [m] to the ego's body, and time [s] of its driving, within which it may push a person.
+Farther off, the model's vehicles act with less than 30 N (docs/law.md).
 """
 
 ABOUT = 2.0
-"""[s] before and after it what happens in the twin is the same event."""
+"""Time [s] before and after an event within which the counterfactual run shows the same event."""
 
 BY = 20.0
-"""[m] before a crossing from which on the ego may push people back there."""
+"""Distance [m] before a crossing from which on the ego may push people there."""
 
 
 class Encounter(NamedTuple):
-    """An encounter of the ego with a person with priority at a crossing."""
+    """An encounter of the ego with a person who has priority at a crossing."""
 
     area: Area
     walk: Walk
     first: int  # first control instant
-    owed: NDArray[np.bool_]  # (m,) records of the walk at which the ego has to let the person pass
+    owed: NDArray[np.bool_]  # (m,) True where the ego has to let the person pass
     too_early: float  # [s] time by which the ego entered before the person left; 0 if it waited
 
     @property
@@ -54,16 +54,16 @@ class Encounter(NamedTuple):
 
 
 class PushedBack(NamedTuple):
-    """A person with priority who went back on a crossing."""
+    """A person with priority who moved back on a crossing."""
 
     area: Area
     walk: Walk
-    farthest: int  # record of the walk from which on the person went back
+    farthest: int  # record of the walk from which on the person moved back
     distance: float  # [m]
 
 
 def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
-    """Return the encounter of one walk with the ego, or none.
+    """Return the encounter of one walk with the ego, in a list that is empty without one.
 
     Args:
         drive: Drive of the ego.
@@ -90,13 +90,13 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
 
 
 def _comes(speed: Array, fastest: float, time: Array) -> Array:
-    """Return the distance [m] of an ego within ``time`` [s] that accelerates to ``fastest``."""
+    """Return the distance [m] that the ego drives in ``time`` [s], accelerating to ``fastest``."""
     faster = np.clip((fastest - speed) / PULL_AWAY, 0.0, np.maximum(time, 0.0))
     return speed * faster + PULL_AWAY / 2.0 * faster**2 + fastest * (time - faster)
 
 
 def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
-    """Return when [s] a person lost priority; record ``end`` is the first one without it."""
+    """Return when [s] a person left the ego's path or lost priority before the record ``end``."""
     time = drive.ego.time[walk.steps]
     if end == len(time):
         return float(time[-1])
@@ -108,8 +108,8 @@ def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
 def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
     """Return how far a person with priority went back where the ego may have pushed them.
 
-    Pushes by other people or by SUMO's vehicles do not count while the ego is far, nor does what
-    happens to the person in the run's twin as well.
+    Pushes by other people or by SUMO's vehicles do not count while the ego is far. Neither does a
+    movement back that the same person makes in the counterfactual run.
 
     Args:
         drive: Drive of the ego.
@@ -135,7 +135,7 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
 
 
 def _goes_back_anyway(drive: Drive, area: Area, walk: Walk, first: int, last: int) -> float:
-    """Return how far [m] a person goes back in the twin about the records ``first`` to ``last``."""
+    """Return how far [m] the person moves back in the counterfactual run at about the same time."""
     twin = drive.undisturbed
     if twin is None:
         return 0.0
@@ -151,7 +151,7 @@ def _goes_back_anyway(drive: Drive, area: Area, walk: Walk, first: int, last: in
 
 
 def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
-    """Return whether (m,) the ego is near enough to push a person."""
+    """Return flags (m,) of the records at which the ego is near enough to push a person."""
     ego, k = drive.ego, walk.steps
     c, s = np.cos(ego.heading[k]), np.sin(ego.heading[k])
     d_x, d_y = walk.x - ego.front_x[k], walk.y - ego.front_y[k]
@@ -163,7 +163,7 @@ def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
 
 
 def waiting_time(drive: Drive, found: Encounter) -> float:
-    """Return how long [s] a person stood although the ego had to let them pass."""
+    """Return the time [s] for which a person stood although the ego had to let them pass."""
     steps = found.walk.steps
     lasting = np.append(np.diff(drive.ego.time), 0.0)[steps]
     return float(lasting[found.owed & (found.walk.speed < drive.stop_speed)].sum())

@@ -23,7 +23,7 @@ from giveway.metrics.vehicles import VehicleContact
 from giveway.run_data.columns import Quantity, columns_of
 
 BACK = 0.3
-"""[m] Nobody with priority is to be pushed back by more."""
+"""Largest distance [m] by which a person with priority may be pushed back."""
 
 ENCOUNTER = "encounter"
 
@@ -31,13 +31,13 @@ ENCOUNTER = "encounter"
 class Event(NamedTuple):
     """One row of ``ledger.csv``, without the ego's id."""
 
-    time: float  # [s]
+    time: float  # [s] time
     kind: str
     violation: bool
     other: str
     place: str
-    x: float  # [m]
-    y: float  # [m]
+    x: float  # [m] place
+    y: float  # [m] place
     value: float
     unit: str
     words: str
@@ -70,7 +70,7 @@ class LawSummary:
     longest_zebra_wait: Annotated[float, Quantity("s", "the longest of these waits; empty: none")]
 
     def as_dict(self) -> dict[str, int | float]:
-        """Names and values, in the order of ``LAW_FIELDS``."""
+        """The names and values, in the order of ``LAW_FIELDS``."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
@@ -145,7 +145,7 @@ def ledger(drive: Drive, vehicles: Sequence[VehicleContact] = ()) -> Ledger:
 
 
 def count(events: Iterable[Event]) -> dict[str, int]:
-    """Count the events of each kind, in the order of their first."""
+    """Count the events of each kind; the kinds are in the order of their first events."""
     found: dict[str, int] = {}
     for event in events:
         found[event.kind] = found.get(event.kind, 0) + 1
@@ -217,7 +217,7 @@ def _of_contact(drive: Drive, contact: VehicleContact) -> Event:
 
 
 def _at(drive: Drive, k: int, kind: str, value: float, unit: str, words: str) -> Event:
-    """Return a violation at the place of the ego's front bumper at instant ``k``."""
+    """Return a violation at the place of the ego's front bumper at control instant ``k``."""
     ego = drive.ego
     place = float(ego.front_x[k]), float(ego.front_y[k])
     return Event(float(ego.time[k]), kind, True, "", "", *place, value, unit, words)

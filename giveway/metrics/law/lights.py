@@ -10,7 +10,7 @@ from giveway.run_data.way import StopLine
 RED = frozenset("rRu")
 YELLOW = frozenset("yY")
 ARROW = "s"
-"""A green arrow beside red: one may turn after a stop."""
+"""State of a green arrow beside red: a vehicle may turn after a stop."""
 
 _STOPPED = 3.0  # [m] distance before the line within which a stop counts
 
@@ -19,9 +19,10 @@ class RedLight(NamedTuple):
     """A stop line that the ego passed although its light forbade it."""
 
     line: StopLine
-    time: float  # [s]
+    time: float  # [s] time at which the front passed the line
     letter: str
-    value: float  # [s] time since red, or [m/s^2] deceleration that would have sufficed at yellow
+    # time since red [s], or deceleration [m/s^2] that would have been enough at yellow
+    value: float
 
 
 def red_lights(drive: Drive) -> list[RedLight]:
@@ -49,7 +50,7 @@ def red_lights(drive: Drive) -> list[RedLight]:
 
 
 def _since(drive: Drive, line: StopLine, time: float) -> float:
-    """Return when [s] the line's light changed to the colour that it has at ``time`` [s]."""
+    """Return the time [s] since which the line's light has its colour of ``time`` [s]."""
     mine = drive.signals.system == line.system
     changes = drive.signals.time[mine]
     changes = changes[changes <= time + 1e-6]

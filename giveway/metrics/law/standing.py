@@ -11,42 +11,43 @@ from giveway.metrics.law.drive import Drive, runs, spread
 from giveway.metrics.law.walks import is_open
 
 LONG = 2.0
-"""[s] A shorter stand blocks nobody."""
+"""Time [s] up to which a stand blocks nobody."""
 
 BEFORE = 1.0
-"""[s] A cause to stand counts from so long before it is there: to be early is careful."""
+"""Time [s] before a cause is there, from which on it counts: to stop early is careful."""
 
 NEAR = 3.0
-"""[m] Somebody who is this near in front keeps the ego from driving on."""
+"""Distance [m] in front within which a person or vehicle keeps the ego from driving on."""
 
-_SAME = 1e-6  # [s]
-_WAITING = (-3.0, 0.5)  # [m] range about a line or a waiting place in which the ego waits
+_SAME = 1e-6  # Difference [s] up to which two durations are one
+_WAITING = (-3.0, 0.5)  # Range [m] around a line or a waiting place in which the ego waits
 
 
 Owed = tuple[float, NDArray[np.bool_]]
-"""Station [m] at which a crossing begins, and when (T,) the ego owes somebody the way there."""
+"""Station [m] at which a crossing begins, and flags (T,): the ego has to let somebody pass
+there."""
 
 
 class Blocked(NamedTuple):
     """A crossing or a junction that the ego blocked."""
 
     place: str  # the crossing's id or the junction's number
-    first: int  # the control instant
-    duration: float  # [s]
+    first: int  # first control instant
+    duration: float  # [s] time for which it was blocked
 
 
 def blocked_crossings(
     drive: Drive, areas: tuple[Area, ...], owed: Sequence[Owed] = ()
 ) -> list[Blocked]:
-    """Return the crossings on which the ego stood without having to, stand by stand.
+    """Return the crossings on which the ego stood without need, one entry per stand.
 
     A crossing that is closed to people and empty is not blocked. Neither is one beside a place
     inside a junction where the ego may wait for vehicles to pass.
 
     Args:
         drive: Drive of the ego.
-        areas: Areas on its way.
-        owed: Times at which it had to let people pass at each of them.
+        areas: Areas of crossings on its path.
+        owed: Times at which it had to let people pass at each crossing.
     """
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
     for junction in drive.way.junctions:
@@ -65,11 +66,11 @@ def blocked_crossings(
 def blocked_junctions(
     drive: Drive, areas: tuple[Area, ...] = (), owed: Sequence[Owed] = ()
 ) -> list[Blocked]:
-    """Return the junctions in which the ego stood without having to, outside waiting places.
+    """Return the junctions in which the ego stood without need, outside waiting places.
 
     Args:
         drive: Drive of the ego.
-        areas: Areas on its way.
+        areas: Areas of crossings on its path.
         owed: Times at which it had to let people pass at a crossing.
     """
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
@@ -84,13 +85,13 @@ def blocked_junctions(
 
 
 def _waits_at(drive: Drive, place: float) -> NDArray[np.bool_]:
-    """Return whether (T,) the ego's front is at a waiting place [m]."""
+    """Return flags (T,): the ego's front is at a waiting place with the station ``place`` [m]."""
     off = drive.front - place
     return np.asarray((off >= _WAITING[0]) & (off <= _WAITING[1]))
 
 
 def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDArray[np.bool_]:
-    """Return whether (T,) people are to pass right in front of the ego, by right or not."""
+    """Return flags (T,): the ego lets people pass right in front of it, with priority or not."""
     passing = np.zeros(len(drive.ego.time), dtype=np.bool_)
     on_it = [(area.entry, _used(drive, area)) for area in areas]
     for entry, there in (*owed, *on_it):
@@ -101,7 +102,7 @@ def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDA
 
 
 def _used(drive: Drive, area: Area) -> NDArray[np.bool_]:
-    """Return whether (T,) people are on a crossing."""
+    """Return flags (T,): people are on a crossing."""
     crowd = drive.crowd
     u, w = area.place(crowd.x, crowd.y)
     on = (u >= 0.0) & (u <= area.length) & (np.abs(w) <= area.crossing.width / 2)
@@ -115,7 +116,7 @@ def _stands(drive: Drive) -> NDArray[np.bool_]:
 
 
 def _longest(drive: Drive, wrong: NDArray[np.bool_]) -> list[tuple[int, float]]:
-    """Return the longest uninterrupted wrong part of each stand: first instant, duration [s]."""
+    """Return the longest part of each stand where ``wrong`` holds: first instant, duration [s]."""
     time, found = drive.ego.time, []
     for begin, end in runs(_stands(drive)):
         parts = [
@@ -129,7 +130,7 @@ def _longest(drive: Drive, wrong: NDArray[np.bool_]) -> list[tuple[int, float]]:
 
 
 def somebody_in_front(drive: Drive, within: float = NEAR) -> NDArray[np.bool_]:
-    """Return whether (T,) a body reaches into the ego's straight path within a distance [m].
+    """Return flags (T,): a body reaches into the ego's straight path within a distance [m].
 
     Args:
         drive: Drive of the ego.

@@ -10,25 +10,25 @@ from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive
 
 KERB = 1.0
-"""[m] Who is this near to a crossing's kerb and heads for it is about to use it."""
+"""Distance [m] to a crossing's kerb within which a person who heads for it is about to use it."""
 
-_OVER = 0.5  # [m] length along a crossing below which a route does not cross there
-_ON = 1.0  # [m] distance beyond the kerb at which a person first seen has entered by right
+_OVER = 0.5  # Length [m] along a crossing below which a route does not cross there
+_ON = 1.0  # Distance [m] beyond the kerb: a person first seen beyond it has entered by right
 _GREEN = np.array(["G", "g"])
 _OUT = np.array(["O", "o"])
-_SLOWEST = 0.1  # [m/s] smallest desired speed here, as it may be zero
+_SLOWEST = 0.1  # Smallest desired speed [m/s] used here, since it may be zero
 
 
 class Walk(NamedTuple):
-    """The records of one person near a crossing, on one of their ways over it, in order of time."""
+    """The records of one person near a crossing, in order of time, for one route over it."""
 
     pedestrian: int
     steps: NDArray[np.int64]  # (m,) control instants
     progress: Array  # (m,) [m] in the person's own direction, from the kerb of entry
-    priority: NDArray[np.bool_]  # (m,)
-    x: Array  # (m,) [m]
-    y: Array  # (m,) [m]
-    speed: Array  # (m,) [m/s]
+    priority: NDArray[np.bool_]  # (m,) True where the person has priority
+    x: Array  # (m,) [m] place
+    y: Array  # (m,) [m] place
+    speed: Array  # (m,) [m/s] speed
     desired_speed: float  # [m/s]
     reach: float  # [m] progress at which the body reaches the ego's path
     clear: float  # [m] progress at which it has left it
@@ -38,8 +38,8 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
     """Return the walks of all people over an area's crossing.
 
     Args:
-        drive: Drive with its crowd.
-        area: Area on its way.
+        drive: Drive of the ego, with its crowd.
+        area: Area of the crossing.
     """
     crowd, people = drive.crowd, drive.people
     if not len(crowd.step) or not len(people.step):
@@ -78,11 +78,11 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
 
 
 def is_open(drive: Drive, area: Area) -> NDArray[np.bool_]:
-    """Return whether (T,) people who are about to enter the crossing have priority.
+    """Return flags (T,): people who are about to enter the crossing have priority.
 
     Args:
         drive: Drive of the ego.
-        area: Area on its way.
+        area: Area of the crossing.
     """
     crossing = area.crossing
     if not crossing.system:
@@ -94,9 +94,10 @@ def is_open(drive: Drive, area: Area) -> NDArray[np.bool_]:
 def _priority(
     drive: Drive, area: Area, progress: Array, aside: Array, open_at: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Return whether (m,) a person has priority, record by record.
+    """Return flags (m,): a person has priority, record by record.
 
-    At the kerb a person has it if the crossing is open, and on the crossing if they had it there.
+    At the kerb, a person has priority if the crossing is open. On the crossing, they keep the
+    priority that they had at the kerb.
     """
     half = area.crossing.width / 2
     on = (progress >= 0.0) & (progress <= area.length)
@@ -106,7 +107,7 @@ def _priority(
     priority = np.empty(len(progress), dtype=np.bool_)
     before = bool(on[0] and progress[0] > _ON)
     if before and not area.crossing.system and not area.crossing.zebra:
-        before = False  # nobody enters such a crossing by right
+        before = False  # nobody has a right to enter such a crossing
     for k, (now, there, enters) in enumerate(
         zip(open_at.tolist(), on.tolist(), kerb.tolist(), strict=True)
     ):
@@ -119,8 +120,8 @@ class _Route(NamedTuple):
     """A route of one person that leads over a crossing."""
 
     pedestrian: int
-    begin: int  # first control instant at which it holds
-    end: int  # first control instant at which the next one holds
+    begin: int  # first control instant at which the route holds
+    end: int  # first control instant at which the person's next route holds
     onwards: bool  # True from the crossing's first end to its second
     desired_speed: float  # [m/s]
 
@@ -133,7 +134,7 @@ def _routes(drive: Drive, area: Area) -> list[_Route]:
     another[1:] |= np.diff(people.step) != 0
     begins = np.flatnonzero(another)
     joined = np.ones(len(u), dtype=np.bool_)
-    joined[begins] = False  # the legs end at the places of a way but its first
+    joined[begins] = False  # each leg ends at a place, except at the first one of a route
     half = area.crossing.width / 2 + drive.body_radius
     over = _along(u, w, area.length, half)
     over = np.add.reduceat(np.where(joined, over, 0.0), begins)
@@ -151,9 +152,9 @@ def _routes(drive: Drive, area: Area) -> list[_Route]:
 
 
 def _along(u: Array, w: Array, length: float, half: float) -> Array:
-    """Return how far (n,) [m] the leg to each place leads along the crossing.
+    """Return the length (n,) [m] along the crossing of the leg that ends at each place.
 
-    Only its part on the crossing counts: |w| at most ``half``, u from 0 to ``length``.
+    Only the part of a leg on the crossing counts: |w| at most ``half``, u from 0 to ``length``.
     """
     u_0, w_0 = np.roll(u, 1), np.roll(w, 1)
     d_u, d_w = u - u_0, w - w_0

@@ -1,1 +1,1 @@
-"""The loaded network: its lanes, junctions, crossings and footpaths."""
+"""The network of the running simulation: its lanes, junctions, crossings and footpaths."""

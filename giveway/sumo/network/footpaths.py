@@ -1,4 +1,4 @@
-"""The lanes of the running network that people walk on, edge by edge."""
+"""The footpaths of the running network: the lanes that people walk on, edge by edge."""
 
 import itertools
 import math
@@ -10,8 +10,8 @@ from typing import Any
 from giveway.sumo.network.lanes import admits
 
 _IN_JUNCTION = re.compile(r"^:(.*)_[wc]?\d+$")  # the edge of a crossing, walkingarea or turn
-_HALF_BODY = 0.25  # [m] a person keeps this far from its lane's edge
-_LANE_END = 0.05  # [m] a person keeps this far from its lane's ends
+_HALF_BODY = 0.25  # Distance [m] that a person keeps from the lane's edge
+_LANE_END = 0.05  # Distance [m] that a person keeps from the lane's ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,18 +19,18 @@ class Foot:
     """The point of a lane that is nearest to some place."""
 
     lane: str
-    position: float  # [m] along the lane, in SUMO's metres
+    position: float  # [m] place along the lane, in SUMO's metres
     lateral: float  # [m] offset to the left of the centre line, at most half the usable width
-    distance: float  # [m] distance from the lane's centre line
+    distance: float  # [m] distance from the centre line
 
 
 @dataclass(frozen=True, slots=True)
 class _Lane:
-    """The remembered properties of a lane."""
+    """The remembered properties of a lane for pedestrians."""
 
     name: str
     shape: Sequence[tuple[float, float]]
-    length: float  # [m] SUMO's: nominal
+    length: float  # [m] SUMO's nominal length
     metres: float  # [m] length of the polyline
     half_width: float  # [m] largest distance of a body's centre from the centre line
 
@@ -86,7 +86,7 @@ class FootPaths:
     def index(self, person: str, edges: Sequence[str], lane: str, arrival: float) -> int:
         """Return the index in ``edges`` (of its route) of the edge of a person on ``lane``.
 
-        Of a person inside a junction it is the edge before the junction.
+        For a person inside a junction, it is the edge before the junction.
         """
         edge = lane.rpartition("_")[0]
         inside = _IN_JUNCTION.match(edge)
@@ -103,10 +103,10 @@ class FootPaths:
     def _by_distance(
         self, person: str, edges: Sequence[str], arrival: float, candidates: Sequence[int]
     ) -> int:
-        """Return the edge from which the rest of the route is as long as the person's.
+        """Return the index of the edge from which the rest of the route is as long as the person's.
 
         This is for an edge that a route repeats. Where no footpaths join the edges, SUMO knows no
-        distance: then the nearest candidate is taken.
+        distance, and the nearest candidate is taken.
         """
         sumo = self._sumo
         try:
@@ -117,7 +117,7 @@ class FootPaths:
         return min(candidates, key=lambda k: abs(sum(lengths[k + 1 : -1]) + arrival - left))
 
     def _nearest(self, edges: Sequence[str], candidates: Sequence[int], x: float, y: float) -> int:
-        """The first of the candidates whose footpath is closest to a place [m]."""
+        """Return the first candidate whose footpath is closest to a place [m]."""
 
         def distance(k: int) -> float:
             foot = self.foot(edges[k], x, y)
@@ -126,7 +126,7 @@ class FootPaths:
         return min(candidates, key=distance)
 
     def _joined(self, edge: str) -> tuple[str, str]:
-        """The junctions at both ends of an edge."""
+        """Return the junctions at both ends of an edge."""
         if edge not in self._ends:
             edges = self._sumo.edge
             self._ends[edge] = edges.getFromJunction(edge), edges.getToJunction(edge)
@@ -138,7 +138,7 @@ class FootPaths:
         return self._lanes[edge]
 
     def _find(self, edge: str) -> _Lane | None:
-        """Find SUMO's choice: a lane for pedestrians alone, else the first that admits them."""
+        """Find the lane that SUMO uses: one for pedestrians alone, else the first to admit them."""
         sumo = self._sumo
         try:
             names = [f"{edge}_{i}" for i in range(sumo.edge.getLaneNumber(edge))]
@@ -156,6 +156,6 @@ class FootPaths:
 
 
 def _inside(lane: _Lane, position: float) -> float:
-    """Return ``position`` [m], moved off the very ends of the lane."""
+    """Return ``position`` [m], moved off the ends of the lane."""
     margin = min(_LANE_END, lane.length / 2)
     return min(max(position, margin), lane.length - margin)

@@ -1,4 +1,4 @@
-"""The heights of lanes: SUMO tells a lane's shape as x, y only, and z at a place on it."""
+"""The heights of lanes: SUMO gives a lane's shape as x, y, and z only at a place on it."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -10,16 +10,16 @@ from giveway.geometry.path import stations_of
 
 
 class Height(NamedTuple):
-    """A point of the road's profile along a lane path."""
+    """A point of the road's height profile along a lane path."""
 
-    station: float  # [m] along the lane path
-    z: float  # [m]
+    station: float  # [m] station along the lane path
+    z: float  # [m] height
 
 
 def heights_of(sumo: Any, lane: str, shape: Array, begin: float, length: float) -> Iterator[Height]:
     """Yield the heights at the vertices of a lane's centre line.
 
-    SUMO counts places on a lane along the inclined line, but a path lies in the plane. Therefore
+    SUMO measures places on a lane along the inclined line, but a path lies in the plane. Therefore
     the vertices are looked up twice, the second time by their distances in space.
 
     Args:
@@ -27,7 +27,7 @@ def heights_of(sumo: Any, lane: str, shape: Array, begin: float, length: float) 
         lane: SUMO's id of the lane.
         shape: Centre line (k, 2) [m] of the lane.
         begin: Station [m] on the path at which the lane begins.
-        length: Length [m] that it takes up there; more where the path changes lanes.
+        length: Length [m] of the lane on the path; it is more where the path changes lanes.
     """
     flat = stations_of(shape)
     if flat[-1] < 1e-6:  # a lane without length, as inside a small junction

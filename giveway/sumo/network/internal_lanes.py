@@ -1,4 +1,4 @@
-"""The lanes inside junctions, which SUMO puts between those of the edges."""
+"""The lanes inside junctions, which SUMO puts between the lanes of the edges."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ def lanes_inside(sumo: Any, lane: str) -> tuple[str, ...]:
 
     Args:
         sumo: The libsumo module, while a simulation runs.
-        lane: First of the lanes; empty where the network has none.
+        lane: First of the lanes, or an empty text if the network has none.
     """
     lanes: list[str] = []
     while lane and lane not in lanes:

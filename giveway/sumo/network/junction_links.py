@@ -12,18 +12,18 @@ from giveway.sumo.network.lanes import Lanes
 class Movement(NamedTuple):
     """A link through a junction, from one lane to another."""
 
-    junction: str  # SUMO's id
-    number: int  # index of the link among the junction's
-    source: str  # lane
-    target: str  # lane
-    inside: tuple[str, ...]  # lanes in between, in order; a vehicle may wait where one ends
-    state: str  # SUMO's letter of the link where no light governs it
+    junction: str  # SUMO's id of the junction
+    number: int  # index of the link in the junction
+    source: str  # lane before the junction
+    target: str  # lane behind the junction
+    inside: tuple[str, ...]  # lanes in between, in order; a vehicle may wait at the end of one
+    state: str  # SUMO's letter for the link without a traffic light
     direction: str  # SUMO's letter: "s" straight on, "l", "L" left, "r", "R" right, "t" turn
     speed: float  # [m/s] speed limit of the lanes inside
-    system: str  # SUMO's id of the traffic light; empty: none
+    system: str  # SUMO's id of the traffic light; empty without one
     link: int  # index of the movement in the light's state
     yields_to: frozenset[int]  # numbers of links whose vehicles go first
-    meets: frozenset[int]  # numbers of links whose ways cross or join its own
+    meets: frozenset[int]  # numbers of links whose paths cross or join this one
 
     @property
     def has_stop_sign(self) -> bool:
@@ -36,8 +36,8 @@ class Junctions:
 
     Args:
         sumo: The libsumo module, while a simulation runs.
-        net_file: The network's file.
-        lanes: The network's.
+        net_file: File of the network.
+        lanes: Lanes of the network.
     """
 
     def __init__(self, sumo: Any, net_file: Path, lanes: Lanes) -> None:
@@ -47,14 +47,14 @@ class Junctions:
         self._known: dict[str, dict[int, Movement]] = {}
 
     def at(self, inside: str) -> dict[int, Movement]:
-        """Return :meth:`of` the junction inside which a link ends with the lane ``inside``."""
+        """Return the movements of the junction in which a link ends with the lane ``inside``."""
         return self.of(self._junctions.get(inside, ""))
 
     def of(self, junction: str) -> dict[int, Movement]:
         """Return all movements of vehicles through a junction, by number.
 
         Raises:
-            ScenarioError: the network's file cannot be read (any more).
+            ScenarioError: the network's file cannot be read.
         """
         if junction not in self._known:
             logic = self._logic.get(junction)
@@ -67,7 +67,7 @@ class Junctions:
 
     @cached_property
     def _junctions(self) -> dict[str, str]:
-        """The junction of each lane that ends a link inside one."""
+        """Return the junction of each lane that ends a link inside one."""
         return {lane: name for name, logic in self._logic.items() for lane in logic.inside}
 
     def _movements(self, junction: str, logic: JunctionLogic) -> dict[int, Movement]:
@@ -75,7 +75,7 @@ class Junctions:
         found: dict[int, Movement] = {}
         for source in logic.incoming:
             if source.startswith(":"):
-                continue  # people's
+                continue  # a link for people
             for link in self._sumo.lane.getLinks(source):
                 inside = lanes_inside(self._sumo, link[4])
                 number = numbers.get(inside[-1]) if inside else None

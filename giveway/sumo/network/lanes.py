@@ -1,4 +1,4 @@
-"""The lanes of the loaded network: the path along a route, and the outlines to draw."""
+"""The lanes of the running network: the path along a route, and the outlines to draw."""
 
 import itertools
 import re
@@ -18,9 +18,9 @@ from giveway.sumo.network.lane_path import LanePath, Light, Passage, SpeedLimit
 from giveway.sumo.network.pedestrian_crossings import Crossing, crossings
 from giveway.sumo.network.shared_lanes import Merging, mergings
 
-CHANGE_LENGTH = 30.0  # [m] length of a lane change
+CHANGE_LENGTH = 30.0  # Length [m] of a lane change
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
-_SAMPLE = 1.0  # [m] distance between the points of a lane change
+_SAMPLE = 1.0  # Distance [m] between the points of a lane change
 
 
 class Link(NamedTuple):
@@ -31,7 +31,7 @@ class Link(NamedTuple):
 
 
 class Lanes:
-    """The lanes of the network, as libsumo knows them while a simulation runs.
+    """The lanes of the network, read through libsumo while a simulation runs.
 
     Args:
         sumo: The libsumo module, as ``SumoSession`` owns it.
@@ -58,12 +58,12 @@ class Lanes:
         """Return the path along ``edges``, junctions included, with few lane changes.
 
         Args:
-            edges: The route.
-            lane: Index of the lane to start on; None: the best one.
+            edges: Edges of the route.
+            lane: Index of the lane to start on, or None for the best one.
             kind: SUMO's vehicle class.
             start: Station [m] on the first lane at which the vehicle starts, before lane changes.
-            by: The lane on which to leave an edge, by the edge's place in the route, as far as the
-                way can go on from there.
+            by: Lane on which to leave an edge, by the edge's index in the route. It is used if the
+                path can go on from there.
 
         Raises:
             ScenarioError: an edge or lane does not exist or is not for such vehicles, or the
@@ -124,7 +124,7 @@ class Lanes:
         return heights_of(self._sumo, lane, self.shape(lane), begin, length)
 
     def mergings(self, lane_path: LanePath) -> tuple[Merging, ...]:
-        """Return the places where others come onto the lanes of a path, in its order."""
+        """Return the places where other lanes join the lanes of a path, in driving order."""
         return mergings(self._sumo, lane_path.lanes, lane_path.edges, self.shape)
 
     @cached_property
@@ -151,17 +151,17 @@ class Lanes:
         return length
 
     def speed_limit(self, lane: str) -> float:
-        """Return the speed limit [m/s] of a lane, whatever the vehicle is."""
+        """Return the speed limit [m/s] of a lane, for any vehicle."""
         return float(self._sumo.lane.getMaxSpeed(lane))
 
     def point(self, lane: str, position: float) -> tuple[float, float]:
-        """Return x, y [m] of SUMO's ``position`` [m] on a lane; its nominal length may differ."""
+        """Return x, y [m] of a ``position`` [m] in SUMO's metres along a lane."""
         share = position / max(float(self._sumo.lane.getLength(lane)), 1e-3)
         x, y = _at(self.shape(lane), np.array([share]))[0]
         return float(x), float(y)
 
     def edges_after(self, edge: str, kind: str) -> list[str]:
-        """The edges to which vehicles of SUMO's class ``kind`` can go on from ``edge``."""
+        """Return the edges to which vehicles of SUMO's class ``kind`` can go on from ``edge``."""
         lanes = [f"{edge}_{i}" for i in self._drivable(edge, kind)]
         targets = [link[0] for lane in lanes for link in self._sumo.lane.getLinks(lane)]
         return [
@@ -171,12 +171,12 @@ class Lanes:
         ]
 
     def edges_before(self, edge: str) -> frozenset[str]:
-        """The edges that end where ``edge`` begins."""
+        """Return the edges that end where ``edge`` begins."""
         junction = self._sumo.edge.getFromJunction(edge)
         return frozenset(self._sumo.junction.getIncomingEdges(junction))
 
     def onwards(self, lane: str, edge: str) -> tuple[str, ...]:
-        """The lanes right after ``lane``, of the junction or behind it, towards ``edge``."""
+        """Return the lanes right after ``lane``, in the junction or behind it, towards ``edge``."""
         found = self._onwards.get((lane, edge))
         if found is None:
             links = self._sumo.lane.getLinks(lane)
@@ -185,7 +185,7 @@ class Lanes:
         return found
 
     def out_of_junction(self, lane: str) -> tuple[str, ...]:
-        """Return the lanes after one inside a junction, up to the first outside, or no lanes."""
+        """Return the lanes after one inside a junction, up to the first one outside."""
         lanes: list[str] = []
         while lane.startswith(":"):
             links = self._sumo.lane.getLinks(lane)
@@ -219,7 +219,7 @@ class Lanes:
     def _cheapest(
         self, edges: Sequence[str], first: list[int], kind: str, by: Mapping[int, int]
     ) -> tuple[list[tuple[int, int]], list[Link]]:
-        """The lanes on which to enter and leave each edge, and the links between them."""
+        """Find the lanes on which to enter and leave each edge, and the links between them."""
         # best[lane]: changes so far, (entry, leave) of each edge before, links taken
         best: dict[int, tuple[int, list[tuple[int, int]], list[Link]]]
         best = {lane: (0, [], []) for lane in first}
@@ -249,7 +249,7 @@ class Lanes:
         return [*pairs, (lane, leave)], links
 
     def _links(self, lane: str, edge: str) -> list[Link]:
-        """The links from ``lane`` over the junction to ``edge``."""
+        """Return the links from ``lane`` over the junction to ``edge``."""
         return [
             Link(link[0], lanes_inside(self._sumo, link[4]))
             for link in self._sumo.lane.getLinks(lane)
@@ -268,7 +268,7 @@ class Lanes:
 
     @cached_property
     def signals(self) -> dict[tuple[str, str], tuple[str, int]]:
-        """The traffic light that governs each link from lane to lane, if one does."""
+        """The traffic light and movement of each link from lane to lane, if a light governs it."""
         return {
             (source, target): (system, index)
             for system in self._sumo.trafficlight.getIDList()
@@ -315,13 +315,13 @@ def _length(points: Array) -> float:
 
 
 def _at(points: Array, shares: Array) -> Array:
-    """The points of a polyline at ``shares`` in [0, 1] of its length."""
+    """Return the points of a polyline at ``shares`` in [0, 1] of its length."""
     along = stations_of(points)
     return points_at(points, along, shares * along[-1])
 
 
 def lane_area(centre_line: Array, width: float) -> Array:
-    """The closed outline (2k + 1, 2) [m] of a lane.
+    """Return the closed outline (2k + 1, 2) [m] of a lane.
 
     Args:
         centre_line: Centre line (k, 2) [m], k >= 2.

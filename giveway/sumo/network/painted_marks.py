@@ -14,7 +14,7 @@ def road_marks(lanes: Lanes) -> RoadMarks:
 
 
 def stop_lines(lanes: Lanes) -> tuple[SignalHead, ...]:
-    """The stop line of each lane for vehicles that a traffic light governs."""
+    """Return the stop line of each lane for vehicles that a traffic light governs."""
     governed: dict[tuple[str, str], list[int]] = {}
     for (source, _), (system, index) in lanes.signals.items():
         if not source.startswith(":"):  # people enter crossings from walkingareas

@@ -1,8 +1,9 @@
 """The pedestrian crossings of the loaded network: their places, and who has priority there.
 
 For each link that leads people onto a crossing, a network says whether they have priority (state
-``M``, a zebra) or have to wait for a gap (``m``). Where a traffic light governs it, the light's
-present letter says so. The ``priority`` that netconvert was given is not in the network.
+``M``, a zebra crossing) or have to wait for a gap (``m``). If a traffic light governs the link, the
+light's present letter says so. The network does not keep the ``priority`` that netconvert was
+given.
 """
 
 import re
@@ -13,17 +14,17 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 
-_LANE = re.compile(r"^(:.*)_c\d+_0$")  # SUMO's names of the lanes
-_PRIORITY = "MOo"  # states of the link; at a light that is out people go first as at a zebra
+_LANE = re.compile(r"^(:.*)_c\d+_0$")  # lane ids of crossings in SUMO
+_PRIORITY = "MOo"  # states of the link; at a light that is off, people have priority as at a zebra
 
 
 class Crossing(NamedTuple):
     """A crossing, from kerb to kerb."""
 
-    lane: str  # SUMO's id
-    ends: Array  # (2, 2) [m] the middle of each kerb
+    lane: str  # SUMO's id of the crossing's lane
+    ends: Array  # (2, 2) [m] middle of each kerb
     width: float  # [m]
-    zebra: bool  # True if people have priority wherever no light says otherwise
+    zebra: bool  # True if people have priority where no light says otherwise
     system: str  # SUMO's id of the traffic light; empty without one
     link: int  # index of the movement in the light's state
 
@@ -31,11 +32,11 @@ class Crossing(NamedTuple):
 def crossings(
     sumo: Any, movements: Mapping[tuple[str, str], tuple[str, int]]
 ) -> tuple[Crossing, ...]:
-    """All crossings of the network.
+    """Return all crossings of the network.
 
     Args:
         sumo: The libsumo module, while a simulation runs.
-        movements: Traffic light of each link that one governs, from lane to lane: its id and the
+        movements: Traffic light of each link from lane to lane that has one: the light's id and the
             index of the movement in its state.
     """
     lanes = sumo.lane.getIDList()

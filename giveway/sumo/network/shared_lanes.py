@@ -1,7 +1,7 @@
-"""The places where others join a route's lanes: lane changes, and lanes that end in a zipper.
+"""The places where other lanes join a route's lanes: lane changes and zippers.
 
-At both nobody has priority by a sign. At a zipper (link state ``Z``) two lanes become one and
-vehicles go in turn; a vehicle that changes lanes joins those on the other one.
+At neither of them does a sign give priority. At a zipper (link state ``Z``) two lanes become one
+and vehicles go in turn. A vehicle that changes lanes joins the vehicles on the other lane.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,19 +10,19 @@ from typing import Any, NamedTuple
 from giveway.geometry.kernel import Array
 from giveway.sumo.network.internal_lanes import lanes_inside
 
-_ZIPPER = "Z"  # SUMO's state of a link at which lanes are joined in turn
-_NARROW = 30.0  # [m] distance before the junction at which two roads may be close
+_ZIPPER = "Z"  # SUMO's state of a link at which lanes join in turn
+_NARROW = 30.0  # Distance [m] before the junction at which two roads may be close
 
 
 class Merging(NamedTuple):
-    """A place at which a route and others come onto one lane."""
+    """A place at which a route and other vehicles come onto one lane."""
 
     lane: str  # the shared lane
     origin: float  # [m] station at which that lane begins
-    begin: float  # [m] station before which the ways are apart
+    begin: float  # [m] station before which the paths are apart
     end: float  # [m] station beyond which they are one, or apart again
     lines: tuple[Array, ...]  # (k, 2) [m] each: centre lines along which the others come
-    over: frozenset[str]  # lanes right before the shared one from which they come; empty: any
+    over: frozenset[str]  # lanes before the shared one from which they come; empty if from any
 
 
 def mergings(

@@ -1,1 +1,1 @@
-"""The persons of the scenario, taken over from SUMO and handed back to it."""
+"""The persons of the scenario: taken over from SUMO and handed back to it."""

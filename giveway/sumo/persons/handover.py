@@ -1,18 +1,20 @@
-"""The handover of a walking person: SUMO lets go of it, and walks it on again later.
+"""The handover of a walking person: SUMO releases the person, and walks it on again later.
 
-``person.moveTo`` ends a ``moveToXY``: the person walks on in SUMO from the lane position given,
-with its id, type, parameters and remaining stages. It takes effect at once. What SUMO 1.28 gets
-wrong, found by experiment and in its sources:
+``person.moveTo`` ends a ``moveToXY``: the person walks on in SUMO from the given lane position,
+with its id, type, parameters and remaining stages. It takes effect at once. These defects of SUMO
+1.28 were found by experiment and in its sources:
 
-* a person moved as a ghost stays in the books of the lane where it was: SUMO's pedestrians walk
-  round that spot and vehicles wait for ever at a crossing that it has long left. Far outside of
-  the lane it stands in nobody's way;
-* a person taken over inside a junction keeps that inner edge in its books, from which moveTo
-  derives a wrong walking direction: it would leave the network, and the simulation end with
-  "Disconnected walk". A fresh walk has clean books;
-* on the last edge the direction is the one from the former position to the new one, so that a
-  person put before its destination must come from the right side: else it arrives at once;
-* a fresh walk is as fast as the person likes, whatever speed the scenario gave to the former one.
+* A person moved as a ghost stays in the records of its former lane. SUMO's pedestrians walk round
+  that spot, and vehicles wait for ever at a crossing that the person has long left. Therefore the
+  person's recorded place is moved far outside of the lane.
+* A person taken over inside a junction keeps that inner edge in its records, from which moveTo
+  derives a wrong walking direction: the person would leave the network, and the simulation would
+  end with "Disconnected walk". A new walk has no such record.
+* On the last edge, the walking direction is the one from the former position to the new one.
+  Therefore a person put before its destination must come from the right side, or it arrives at
+  once.
+* A new walk has the person's desired speed, although the scenario may give another speed to the
+  former walk.
 """
 
 from dataclasses import dataclass
@@ -20,25 +22,25 @@ from typing import Any
 
 from giveway.sumo.network.footpaths import Foot
 
-_WALKING = 2  # SUMO's stage type
-NOWHERE = -1000.0  # [m] position on its lane of a held person in SUMO's books
-_RUN_UP = 0.5  # [m] distance before its place at which a person is put on its last edge
+_WALKING = 2  # SUMO's number of the walking stage type
+NOWHERE = -1000.0  # [m] position of a held person on its lane in SUMO's records
+_RUN_UP = 0.5  # Distance [m] before its place at which a person is put on its last edge first
 
 
 @dataclass(frozen=True, slots=True)
 class Route:
     """The remembered route of a held person: the rest of its present walk in SUMO."""
 
-    edges: tuple[str, ...]  # remaining, the current one first
-    arrival_position: float  # [m] arrival position on the last edge
+    edges: tuple[str, ...]  # remaining edges, the current one first
+    arrival_position: float  # [m] position on the last edge at which the walk ends
     stages_left: int  # number of stages after this route
     type: str
-    own_speed: float | None  # [m/s] speed that the scenario gives to this walk alone
-    was_inside: bool  # taken over inside a junction
+    own_speed: float | None  # [m/s] speed that the scenario gives to this walk alone, or None
+    was_inside: bool  # True if it was taken over inside a junction
 
 
 class Handover:
-    """Moves persons in SUMO's books.
+    """Moves persons in SUMO's records of lanes and walks.
 
     All methods may raise one of ``refusals``.
 
@@ -54,11 +56,13 @@ class Handover:
     def __init__(self, sumo: Any) -> None:
         self._simulation = sumo.simulation
         self._person = sumo.person
-        self._paced: dict[str, tuple[float, int]] = {}  # usual speed factor, until when
-        self.refusals = (sumo.TraCIException, sumo.FatalTraCIError)  # neither is the other's base
+        # usual speed factor; stages left when it applies again
+        self._paced: dict[str, tuple[float, int]] = {}
+        # neither is the base class of the other
+        self.refusals = (sumo.TraCIException, sumo.FatalTraCIError)
 
     def park(self, name: str, lane: str) -> None:
-        """Put a person where it stands in nobody's way, in the books of a lane of its route."""
+        """Put a person outside of a lane of its route in SUMO's records, where nobody heeds it."""
         self._person.moveTo(name, lane, NOWHERE)
 
     def walk_on(self, name: str, route: Route, step: int, foot: Foot) -> None:
@@ -68,7 +72,8 @@ class Handover:
             self._approach(name, route, foot)
             return
         present = tuple(self._person.getStage(name).edges)
-        rerouted = present[-len(route.edges) :] != route.edges  # by a device of SUMO
+        # a rerouting device of SUMO has changed the route
+        rerouted = present[-len(route.edges) :] != route.edges
         if rerouted or route.was_inside or edges[0] in edges[1:] + route.edges[:step]:
             self._restart(name, route, edges)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
@@ -76,7 +81,7 @@ class Handover:
     def walk_anew(self, name: str, route: Route, edge: str, foot: Foot) -> bool:
         """Let a person walk from ``foot`` on any ``edge`` to the end of its route.
 
-        It takes the route that SUMO finds fastest; False if SUMO finds none.
+        The walk takes the route that SUMO finds fastest. Returns False if SUMO finds none.
         """
         found = self._simulation.findIntermodalRoute(
             edge,
@@ -106,7 +111,8 @@ class Handover:
         if route.was_inside or len(route.edges) > 1:
             self._restart(name, route, last)
         self._person.moveTo(name, foot.lane, max(behind, 0.0))
-        self._restart(name, route, last)  # departs there, since it is on this edge already
+        # the walk departs at once, since the person is on this edge already
+        self._restart(name, route, last)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
     def _restart(self, name: str, route: Route, edges: tuple[str, ...]) -> None:
@@ -134,5 +140,5 @@ class Handover:
                     continue
                 self._person.setSpeedFactor(name, factor)
             except self.refusals:
-                pass  # it has arrived
+                pass  # the person has arrived
             del self._paced[name]

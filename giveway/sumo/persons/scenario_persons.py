@@ -1,7 +1,7 @@
 """The scenario's own persons: taken over where they walk, handed back to SUMO afterwards.
 
-A person keeps everything in SUMO while we hold it: its plan, type, colour and parameters. A held
-person is moved as a ghost (see giveway/sumo/session.py), and its place in SUMO's books lies far
+A person keeps everything in SUMO while giveway holds it: plan, type, colour and parameters. A held
+person is moved as a ghost (see giveway/sumo/session.py). In SUMO's records its place lies far
 outside of its lane: otherwise SUMO's pedestrians would walk round the spot where it was taken over,
 and vehicles would wait for ever at a crossing that it has long left.
 """
@@ -24,13 +24,14 @@ from giveway.sumo.network.footpaths import Foot, FootPaths
 from giveway.sumo.persons.handover import Handover, Route
 from giveway.sumo.persons.walk_speeds import WalkSpeeds
 
-_WALKING = 2  # SUMO's stage type
-_SLOWEST = 0.1  # [m/s] smallest desired speed
-_DETOUR = 5.0  # [m] largest extra distance to a person's own route if it is to go on along it
+_WALKING = 2  # SUMO's number of the walking stage type
+_SLOWEST = 0.1  # Smallest desired speed [m/s]
+# Largest extra distance [m] to the person's own route, up to which it goes on along it
+_DETOUR = 5.0
 
 
 class Arrival(enum.Enum):
-    """The outcome for a person that has reached the end of its route."""
+    """What becomes of a person who has reached the end of the route."""
 
     ARRIVED = "arrived"  # the person leaves SUMO with the next step
     CONTINUED = "continued"  # a stop, a ride or another walk follows in SUMO
@@ -38,32 +39,33 @@ class Arrival(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """A person as SUMO walks it, at SUMO's present instant."""
+    """A person as SUMO has it at its present instant."""
 
     id: str
     type: str
-    x: float  # [m]
-    y: float  # [m]
+    x: float  # [m] place
+    y: float  # [m] place
     heading: float  # [rad], counter-clockwise from +x
-    speed: float  # [m/s]
-    desired_speed: float  # [m/s] > 0
-    edges: tuple[str, ...]  # the present walk's remaining normal edges, the current one first
-    lane: str  # SUMO's present lane, may lie inside a junction
-    arrival_position: float  # [m] arrival position on the last edge
+    speed: float  # [m/s] speed
+    desired_speed: float  # [m/s] positive
+    edges: tuple[str, ...]  # remaining normal edges of the present walk, the current one first
+    lane: str  # SUMO's present lane, which may lie inside a junction
+    arrival_position: float  # [m] position on the last edge at which the walk ends
     stages_left: int  # number of stages after this walk
 
 
 class ScenarioPersons:
-    """The scenario's persons: which of them SUMO moves at present, and which giveway moves.
+    """The scenario's persons: those that SUMO moves now, and those that giveway moves.
 
     Args:
         sumo: The libsumo module, with a simulation running.
-        ours: Ids of persons that giveway added: never touched.
+        ours: Ids of persons that giveway added, which are never touched.
 
     Attributes:
-        held: Ids of the persons that giveway moves at present.
-        counts: ``taken`` = ``handed_back`` + ``arrived`` + ``continued`` + ``lost`` + those held;
-            ``lost`` are held persons that something else took out of SUMO.
+        held: Ids of the persons that giveway moves now.
+        counts: Numbers of persons. ``taken`` is the sum of ``handed_back``, ``arrived``,
+            ``continued``, ``lost`` and those held; ``lost`` are held persons that something else
+            removed from SUMO.
     """
 
     held: set[str]
@@ -74,28 +76,29 @@ class ScenarioPersons:
         self._ours = ours
         self.held = set()
         self.counts = Counter(taken=0, handed_back=0, arrived=0, continued=0, lost=0)
-        self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
-        self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
+        self._free: dict[str, None] = {}  # departed persons that SUMO moves, in order of departure
+        self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was last updated
         self._routes: dict[str, Route] = {}
-        self._leaving: dict[str, tuple[int, float]] = {}  # at their walks' ends: see `arrive`
-        self._put_back: set[str] = set()  # since SUMO's last step
+        # persons at the end of their walks, see `arrive`
+        self._leaving: dict[str, tuple[int, float]] = {}
+        self._put_back: set[str] = set()  # persons handed back since SUMO's last step
         self._paths = FootPaths(sumo)
         self._speeds = WalkSpeeds.of_running(sumo)
         self._handover = Handover(sumo)
         self._position = direct(sumo, "person", "getPosition")
 
-    # --- who is where -------------------------------------------------------------------------
+    # --- where everybody is --------------------------------------------------------------------
 
     def positions(self) -> tuple[list[str], NDArray[np.float64]]:
-        """Ids and positions (n, 2) [m] of every departed person that we do not hold.
+        """The ids and positions (n, 2) [m] of all departed persons that giveway does not hold.
 
-        Call it once after each of SUMO's steps. After a step without a call, all persons in SUMO
-        are looked at.
+        Call it once after each SUMO step. After a step without a call, it looks through all persons
+        in SUMO.
         """
         self._update()
         try:
             return self._read()
-        except self._handover.refusals:  # somebody vanished without having arrived
+        except self._handover.refusals:  # a person vanished without having arrived
             self._look_at_everybody()
             return self._read()
 
@@ -139,7 +142,7 @@ class ScenarioPersons:
             del self._leaving[name]
 
     def _end_overdue(self) -> None:
-        """End the walks that SUMO's step should have ended and has not."""
+        """End the walks that SUMO should have ended in its step."""
         person = self._sumo.person
         for name, (stages_left, begun) in self._leaving.items():
             if person.getStage(name).depart == begun:  # still the same stage
@@ -161,17 +164,17 @@ class ScenarioPersons:
     def take(self, ids: Sequence[str]) -> list[Person]:
         """Take over those of ``ids`` that walk right now, and skip the others.
 
-        A person that was handed back since SUMO's last step is skipped, too. From now on those
-        taken over are held: they must be moved in every step of SUMO.
+        A person that was handed back since SUMO's last step is skipped, too. The persons taken over
+        are held from now on: they must be moved in every step of SUMO.
         """
         return [taken for taken in map(self._take, ids) if taken is not None]
 
     def _take(self, name: str) -> Person | None:
         person = self._sumo.person
-        if name not in self._free or name in self._put_back:  # its speed would be the jump's
+        if name not in self._free or name in self._put_back:  # the speed would come from the jump
             return None
         lane = person.getLaneID(name)
-        if not lane:  # waiting; this call is cheaper than to ask for the stage
+        if not lane:  # the person waits
             return None
         stage = person.getStage(name)
         if stage.type != _WALKING:
@@ -199,7 +202,7 @@ class ScenarioPersons:
         try:
             self._handover.park(name, hideout or lane)
         except self._handover.refusals:
-            return None  # it stands beside its own route, where SUMO cannot put it back either
+            return None  # the person stands beside its own route, and SUMO could not put it back
         self._routes[name] = Route(
             edges=taken.edges,
             arrival_position=arrival,
@@ -216,17 +219,18 @@ class ScenarioPersons:
     # --- giving back --------------------------------------------------------------------------
 
     def hand_back(self, name: str, x: float, y: float, place: tuple[str, float]) -> bool:
-        """Give a held person back to SUMO, which walks it on to the same destination.
+        """Give a held person back to SUMO, which lets it walk on to the same destination.
 
         Args:
-            name: The person's id.
-            x: Coordinate x of its place [m].
-            y: Coordinate y of its place [m].
-            place: The nearest edge for pedestrians, and the position [m] on it. If an edge of the
-                person's route is hardly farther away, it goes on there; else it gets a new route.
+            name: Id of the person.
+            x: Coordinate x of its position [m].
+            y: Coordinate y of its position [m].
+            place: Nearest edge for pedestrians, and the position [m] on it. If an edge of the
+                person's route is hardly farther away, the person goes on there, else on a new
+                route.
 
         Returns:
-            False if SUMO finds no way; the person stays held then, unharmed.
+            False if SUMO finds no route. The person then stays held.
         """
         if not all(map(math.isfinite, (x, y, place[1]))):
             return False
@@ -259,12 +263,13 @@ class ScenarioPersons:
     def arrive(self, name: str) -> Arrival:
         """Let a held person end its walk in SUMO's next step.
 
-        It is put on the very end of its route, so that SUMO itself makes it arrive or go on with
-        what follows: a stop, a ride or another walk, on which it can be taken over again.
+        The person is put on the very end of its route, so that SUMO makes it arrive or go on with
+        what follows: a stop, a ride or another walk, during which it can be taken over again.
         """
         route = self._routes[name]
         end = self._paths.lane(route.edges[-1])
-        with contextlib.suppress(*self._handover.refusals):  # otherwise it is ended after the step
+        # if this fails, the walk is ended after the step
+        with contextlib.suppress(*self._handover.refusals):
             self._handover.finish(name, end or "", route)
         self._leaving[name] = route.stages_left, self._sumo.person.getStage(name).depart
         arrival = Arrival.CONTINUED if route.stages_left else Arrival.ARRIVED

@@ -1,7 +1,7 @@
-"""The speeds that a scenario gives to single walks, which libsumo does not tell.
+"""The speeds that a scenario gives to single walks, which libsumo does not report.
 
 ``<walk ... speed="1.1"/>`` and ``<walk ... duration="60"/>`` override the person's own desired
-speed. They are read from the scenario's files, for the persons that have them only.
+speed. They are read from the scenario's files, only for persons that have them.
 """
 
 import io
@@ -21,18 +21,18 @@ _PLAN = frozenset({"walk", "personTrip", "ride", "stop", "tranship", "access"})
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """An element of a person's plan. Without speed and duration the own speed counts."""
+    """One element of a person's plan. Without speed and duration, the person's own speed counts."""
 
     speed: float | None = None  # [m/s]
     duration: float | None = None  # [s] duration of the whole walk
-    end: str = ""  # the edge or stopping place to which it leads; empty if not known
+    end: str = ""  # edge or stopping place to which it leads; empty if unknown
 
 
 class WalkSpeeds:
     """Speeds that the scenario gives to walks.
 
     Args:
-        files: SUMO route and additional files, plain or gzipped; unreadable ones are passed over,
+        files: Route and additional files of SUMO, plain or gzipped. Unreadable files are skipped,
             since SUMO has read them already.
     """
 
@@ -46,7 +46,7 @@ class WalkSpeeds:
 
     @classmethod
     def of_running(cls, sumo: Any) -> Self:
-        """The speeds in the simulation that runs in the libsumo module ``sumo``."""
+        """Read the speeds for the simulation that runs in the libsumo module ``sumo``."""
         names: list[str] = []
         for option in _OPTIONS:
             names += str(sumo.simulation.getOption(option)).split(",")
@@ -56,14 +56,15 @@ class WalkSpeeds:
         """Return the speed [m/s] that the scenario gives to a walk, or None.
 
         Args:
-            person: The person's id.
-            stage: The walk, as libsumo's ``person.getStage`` tells it.
+            person: Id of the person.
+            stage: Stage of the walk, as libsumo's ``person.getStage`` returns it.
             remaining: Number of the person's remaining stages, this one included.
         """
         if not self._plans:
             return None
         plan = self._plans.get(person) or self._plans.get(person.rpartition(".")[0])
-        # Counted from the end: SUMO splits trips in several stages when it comes to them.
+        # Plans are counted from the end, because SUMO splits a trip into several stages when it
+        # begins.
         if not plan or remaining > len(plan):
             return None
         step = plan[-remaining]
@@ -75,10 +76,10 @@ class WalkSpeeds:
 
 
 def _plans(file: Path) -> dict[str, list[_Step]]:
-    """The plans in which at least one walk has a speed or a duration, by person or flow."""
+    """Read the plans in which at least one walk has a speed or a duration, by person or flow."""
     with opened(file) as stream:
         data = stream.read()
-    if b"<walk" not in data:  # far faster than to parse a large file of vehicles
+    if b"<walk" not in data:  # a large file of vehicles need not be parsed
         return {}
     return dict(_with_speeds(data))
 
@@ -95,7 +96,7 @@ def _with_speeds(data: bytes) -> Iterator[tuple[str, list[_Step]]]:
             plan = [_step(child) for child in element if child.tag in _PLAN]
             if any(step.speed is not None or step.duration is not None for step in plan):
                 yield element.get("id", ""), plan
-        root.clear()  # a city's traffic need not stay in memory
+        root.clear()  # frees the memory of what has been read
 
 
 def _step(element: ET.Element) -> _Step:
@@ -109,6 +110,6 @@ def _step(element: ET.Element) -> _Step:
 def _positive(text: str | None) -> float | None:
     try:
         value = float(text or "")
-    except ValueError:  # SUMO also reads 0:01:30
+    except ValueError:  # SUMO also accepts 0:01:30
         return None
     return value if 0.0 < value < math.inf else None
