@@ -1,4 +1,4 @@
-"""The predictions that a controller may ask for: how people answer to a manoeuvre."""
+"""The predictions that a controller may ask for: how people react to a manoeuvre."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from controller._jit import Array
 
 @dataclass(frozen=True, slots=True)
 class Manoeuvre:
-    """The ego's motion at steps 0 ... N under forward Euler, as the vehicle's model has it.
+    """The ego's motion at steps 0 ... N, by forward Euler as in the vehicle's model.
 
     Attributes:
-        distance: (N + 1,) [m] driven from now on.
-        speed: (N + 1,) [m/s].
-        acceleration: (N + 1,) [m/s^2]; from each step to the next.
+        distance: Distances (N + 1,) [m] driven from now on.
+        speed: Speeds (N + 1,) [m/s].
+        acceleration: Accelerations (N + 1,) [m/s^2] from each step to the next.
     """
 
     distance: Array
@@ -26,18 +26,18 @@ class Manoeuvre:
 
     @classmethod
     def empty(cls, horizon: int) -> Manoeuvre:
-        """Room for a manoeuvre of N steps."""
+        """Arrays for a manoeuvre of N steps, filled with 0."""
         return cls(np.zeros(horizon + 1), np.zeros(horizon + 1), np.zeros(horizon + 1))
 
 
 class Trials(NamedTuple):
-    """Manoeuvres that are compared: a row for each, the last of them what was planned before.
+    """Manoeuvres that are compared, one per row; the last row holds the previous plan.
 
     Attributes:
-        distance: (k, N + 1) [m] driven from now on.
-        speed: (k, N + 1) [m/s].
-        acceleration: (k, N + 1) [m/s^2].
-        penalty: (k,) [s] that each pays in addition to what it costs.
+        distance: Distances (k, N + 1) [m] driven from now on.
+        speed: Speeds (k, N + 1) [m/s].
+        acceleration: Accelerations (k, N + 1) [m/s^2].
+        penalty: Fixed costs (k,) [s], added to the cost of each.
     """
 
     distance: Array
@@ -47,12 +47,12 @@ class Trials(NamedTuple):
 
     @classmethod
     def empty(cls, count: int, horizon: int, penalty: Array) -> Self:
-        """Room for ``count`` manoeuvres of N steps."""
+        """Arrays for ``count`` manoeuvres of N steps."""
         distance, speed, acceleration = np.zeros((3, count, horizon + 1))
         return cls(distance, speed, acceleration, penalty)
 
     def of(self, k: int) -> tuple[Array, Array, Array]:
-        """Distance, speed and acceleration of one of them."""
+        """Distance, speed and acceleration (N + 1,) of manoeuvre ``k``."""
         return self.distance[k], self.speed[k], self.acceleration[k]
 
 
@@ -60,13 +60,14 @@ class Prospect(NamedTuple):
     """The predicted outcome of a manoeuvre, over steps 1 ... N; the next one overwrites it.
 
     Attributes:
-        gap: (N,) [m] Distance to the closest person in front; inf without one.
-        conflicts: (N,) Number of persons less than the conflict time from a collision.
-        calm: (N,) [m/s] the speed up to which nobody could force an emergency stop, whatever
-            people did that they can; inf: the manoeuvre's is calm.
-        crossers: (n, 4) who will be on the ego's way beyond the horizon: how far ahead of its front
-            [m] at the horizon's end, how fast along the way [m/s], from when [s] after that end,
-            and until when; 0: never. A compiled search fills none.
+        gap: Distances (N,) [m] to the closest person in front; inf without one.
+        conflicts: Numbers (N,) of persons whose time to collision is below the conflict time.
+        calm: Threat-free speeds (N,) [m/s], up to which no person could force an emergency stop by
+            any motion they are capable of; inf if the manoeuvre's speed is threat-free.
+        crossers: Later crossings (n, 4), of people on the ego's path beyond the horizon: distance
+            [m] ahead of the front at the horizon's end, speed [m/s] along the path, and the times
+            [s] after the horizon's end at which they enter and leave the path; they leave at 0 if
+            they never enter it. A compiled search fills none.
     """
 
     gap: Array
@@ -82,16 +83,16 @@ class Foresight(Protocol):
         """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
 
     def prefer(self) -> None:
-        """Remember the outcome of the latest manoeuvre as that of the best so far."""
+        """Remember that the latest manoeuvre is the best so far, with its outcome."""
 
 
 class Batches(NamedTuple):
-    """The batches of a branch and bound: rows of candidates; the first of equals is the best.
+    """The batches of a branch and bound: rows of candidates, the first of equals being the best.
 
     Attributes:
-        first: Candidates that are compared with each other.
-        content: Candidates evaluated next if the best of these lacks no stopping distance.
-        wanting: Candidates evaluated next if it lacks some.
+        first: Candidates that are compared first.
+        content: Candidates compared next if the best of the first lacks no stopping distance.
+        wanting: Candidates compared next if the best of the first lacks stopping distance.
     """
 
     first: list[int]
@@ -104,7 +105,7 @@ class SearchResult(NamedTuple):
 
     Attributes:
         best: Row of the cheapest candidate; -1 if no cost is finite.
-        missing: Largest stopping distance that it lacks [m].
+        missing: Largest stopping distance [m] that the best candidate lacks.
         clear: Whether nobody is in the way of the first candidate, which then is the best.
         tried: Number of candidates compared.
         prospect: Predicted outcome of the best; the next search overwrites it.
@@ -118,7 +119,7 @@ class SearchResult(NamedTuple):
 
 
 class SearchingForesight(Foresight, Protocol):
-    """A foresight that compares manoeuvres itself, and looks no farther than it takes."""
+    """A foresight that compares manoeuvres itself, and predicts no more than that needs."""
 
     def cheapest(
         self,
@@ -129,13 +130,14 @@ class SearchingForesight(Foresight, Protocol):
         wanted: float,
         weights: tuple[Any, ...],
     ) -> SearchResult:
-        """Return the cheapest manoeuvre, the same as by asking for the prospect of each.
+        """Return the cheapest manoeuvre, the same one as if each were evaluated in full.
 
         Args:
-            trials: Manoeuvres, compared or not.
+            trials: Manoeuvres; `batches` says which of them are compared.
             batches: Rows of the manoeuvres that are compared.
-            probe: Whether the first one is evaluated alone first; it wins if nobody is in its way.
-            allowed: Distances [m] that may be driven until steps 1 ... N, (N,).
-            wanted: Speed [m/s] that time is lost against.
-            weights: Numbers of the cost.
+            probe: Whether the first one is evaluated alone first. It is accepted at once if other
+                road users cost it nothing.
+            allowed: Distances (N,) [m] that may be driven until steps 1 ... N.
+            wanted: Speed [m/s] that lost time refers to.
+            weights: Weights of the cost.
         """

@@ -1,31 +1,31 @@
-"""The cost of a manoeuvre beyond its horizon: time that the ego will yet lose to people.
+"""The cost of a manoeuvre beyond its horizon: time that the ego will lose to later crossings.
 
-A horizon of a few seconds sees that to stop costs some of them, not that a whole group has to pass
-before the way is free. Beyond it a base policy drives, one that can be told without predicting the
-crowd again: people go where they want to, the ego arrives where they cross when they have left.
-What it loses is added to the manoeuvre's cost (rollout, Bertsekas 2005).
+A horizon of a few seconds shows the cost of stopping, but not that a whole group has to pass before
+the path is free. Beyond the horizon a base policy drives, which needs no prediction of the crowd:
+people walk where they want to, and the ego arrives at a crossing point when they have left it. The
+time that this policy loses is added to the manoeuvre's cost (rollout, Bertsekas 2005).
 """
 
 import numpy as np
 
 from controller._jit import Array, inner
 
-_SPAN = 6.0  # [s] beyond the horizon that it drives
-_STEP = 0.25  # [s] of it
-_COMFORT = 2.0  # [m/s^2] of stopping behind somebody who stays
-_BRAKING = 3.0  # [m/s^2] at most
-_DRIVING_OFF = 2.5  # [m/s^2] at most
-_DISTANCE = 1.0  # [m] kept to people
+_SPAN = 6.0  # time [s] beyond the horizon for which the base policy drives
+_STEP = 0.25  # time step [s] of the base policy
+_COMFORT = 2.0  # deceleration [m/s^2] of a stop before a person who stays
+_BRAKING = 3.0  # largest deceleration [m/s^2] of the base policy
+_DRIVING_OFF = 2.5  # largest acceleration [m/s^2] of the base policy
+_DISTANCE = 1.0  # distance [m] that the base policy keeps to people
 
 
 @inner
 def time_to_go(crossers: Array, speed: float, wanted: float) -> float:
-    """Return the time that is lost beyond the horizon [s].
+    """Return the time [s] that is lost beyond the horizon.
 
     Args:
-        crossers: (n, 4) who crosses, as in :class:`controller.Prospect`.
+        crossers: Later crossings (n, 4), as in :class:`controller.Prospect`.
         speed: Speed at the horizon's end [m/s].
-        wanted: [m/s] where nobody is in the way, > 0.
+        wanted: Speed [m/s] with nobody in the way, > 0.
     """
     lost, at, v = 0.0, 0.0, speed
     for k in range(int(_SPAN / _STEP)):

@@ -8,14 +8,15 @@ from controller._jit import Array, inner, kernel
 from controller.planning.cost_to_go import time_to_go
 from controller.planning.parameters import Weights
 
-_BLOCKED = 2.0  # [s] beyond the horizon that a manoeuvre goes on blocking what it stands on then
-_SHARED = 4.0  # [m/s] v_r of Yang & Özgüner 2019; faster, a conflict weighs more with its cube
-_CLEAR = 0.3  # [m] before the end of what is to be kept free it is as good as left
+_BLOCKED = 2.0  # time [s] beyond the horizon for which a manoeuvre still blocks a keep-clear zone
+# Speed [m/s], v_r of Yang & Özgüner 2019, above which the weight of a conflict grows with the cube
+_SHARED = 4.0
+_CLEAR = 0.3  # tolerance [m]: a keep-clear zone counts as left this far before its end
 
 
 @inner
 def stopping_need(speed: float, w: Weights) -> float:
-    """The distance [m] to somebody in front from which a comfortable stop is possible."""
+    """The distance [m] to a person in front that is needed at this speed."""
     return w.minimum_distance + w.headway * speed
 
 
@@ -32,16 +33,16 @@ def cost(
 
     Args:
         manoeuvre: Distances [m], speeds [m/s] and accelerations [m/s^2], (N + 1,) each.
-        prospect: Gaps [m] to the closest person in front, persons in conflict, and calm speeds
-            [m/s] at steps 1 ... N, (N,) each, and who comes onto the way later, (n, 4).
-        allowed: (N,) distances [m] that may be driven until then: vehicles, lights.
-        wanted: Speed [m/s] that time is lost against.
+        prospect: Gaps [m] to the closest person in front, persons in conflict, and threat-free
+            speeds [m/s] at steps 1 ... N, (N,) each, and later crossings, (n, 4).
+        allowed: Distances (N,) [m] that may be driven until these steps, by vehicles and lights.
+        wanted: Speed [m/s] that lost time refers to.
         time_step: Control step [s].
-        weights: Numbers of :class:`Weights`.
+        weights: Fields of :class:`Weights`.
 
     Returns:
-        The whole cost; the part of it that other people and vehicles cause; the longest missing
-        stopping distance [m].
+        Whole cost [s]; part of it that people and vehicles cause [s]; largest missing stopping
+        distance [m].
     """
     (distance, speeds, accelerations), (gap, conflicts, calm, crossers) = manoeuvre, prospect
     own = own_cost(speeds, accelerations, wanted, time_step, weights)
@@ -63,7 +64,7 @@ def own_cost(
     time_step: float,
     weights: tuple[Any, ...],
 ) -> float:
-    """The part of a manoeuvre's cost [s] that is its own, whoever is about: time and comfort."""
+    """The part of a manoeuvre's cost [s] that does not depend on others: time and comfort."""
     w, own = Weights(*weights), 0.0
     for i in range(len(speeds) - 1):
         own += w.time * max(0.0, 1.0 - speeds[i + 1] / wanted)
@@ -81,11 +82,19 @@ def later_cost(
     time_step: float,
     weights: tuple[Any, ...],
 ) -> float:
-    """Return the cost beyond the horizon [s], see :func:`time_to_go`.
+    """Return the cost [s] beyond the horizon, see :func:`time_to_go`.
 
-    ``driven`` [m] is the manoeuvre's distance at the horizon's end, ``speed`` [m/s] its last one.
-    Of that counts as much as can be braked to what is ``allowed`` (N,) [m]: no plan gains by being
-    fast before the end of its way, but by being near it. When it goes on is not known.
+    The last speed counts up to the one from which the ego can brake for what is allowed. A plan
+    thus gains nothing by being fast shortly before the end of its way.
+
+    Args:
+        crossers: Later crossings (n, 4), as in :class:`controller.Prospect`.
+        driven: Distance [m] of the manoeuvre at the horizon's end.
+        speed: Last speed [m/s] of the manoeuvre.
+        wanted: Speed [m/s] that lost time refers to.
+        allowed: Distances (N,) [m] that may be driven until steps 1 ... N.
+        time_step: Control step [s].
+        weights: Fields of :class:`Weights`.
     """
     w, N = Weights(*weights), len(allowed)
     if allowed[N - 1] < np.inf:
@@ -105,18 +114,18 @@ def cost_of_blocking(
     time_step: float,
     costs: Array,
 ) -> None:
-    """Add to ``costs`` (k,) [s] what standing where the way is to be kept free costs manoeuvres.
+    """Add to ``costs`` (k,) [s] the cost of blocking a keep-clear zone.
 
-    Time that is lost there counts twice, and as much again as ``_BLOCKED`` seconds that are lost
-    beyond the horizon.
+    Time that is lost in a keep-clear zone is added once more. A manoeuvre that ends in the zone is
+    charged for ``_BLOCKED`` seconds beyond the horizon as well.
 
     Args:
-        distance: (k, N + 1) [m] of the manoeuvres.
-        speeds: (k, N + 1) [m/s].
-        wanted: the speed [m/s] that time is lost against.
-        to_clear: [m] until nothing is blocked.
-        time_step: [s].
-        costs: (k,) [s].
+        distance: Distances (k, N + 1) [m] of the manoeuvres.
+        speeds: Speeds (k, N + 1) [m/s] of the manoeuvres.
+        wanted: Speed [m/s] that lost time refers to.
+        to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
+        time_step: Control step [s].
+        costs: Costs (k,) [s], changed.
     """
     N = distance.shape[1] - 1
     for j in range(distance.shape[0]):
@@ -140,17 +149,17 @@ def add_cost_of_others(
     """Add the cost of people and vehicles at one step to that of the steps before.
 
     Args:
-        others: the sum so far.
-        missing: the longest missing stopping distance so far [m].
-        speed: Speed of the manoeuvre there [m/s].
+        others: Sum of the cost rate over the steps before.
+        missing: Largest missing stopping distance [m] of the steps before.
+        speed: Speed of the manoeuvre at this step [m/s].
         gap: Gap to the closest person in front [m].
-        conflicts: persons.
-        calm: [m/s].
-        beyond: [m] farther than may be driven.
-        weights: the numbers of :class:`Weights`.
+        conflicts: Number of persons in conflict.
+        calm: Threat-free speed [m/s].
+        beyond: Distance [m] beyond what may be driven; negative if less is driven.
+        weights: Fields of :class:`Weights`.
 
     Returns:
-        The sum and the longest missing stopping distance with this step.
+        Sum and largest missing stopping distance, both with this step.
     """
     w = Weights(*weights)
     share = speed / w.reference_speed
@@ -178,10 +187,10 @@ def corridor(
     weights: tuple[Any, ...],
     room: Array,
 ) -> None:
-    """Fill ``room`` (N,) [m]: how far a plan may have driven at steps 1 ... N.
+    """Fill ``room`` (N,) [m]: the distance that a plan may have driven at steps 1 ... N.
 
-    The plan stays behind everybody who is in front of the manoeuvre then, by the stopping distance
-    of the manoeuvre's speed; it may always drive as far as the manoeuvre itself.
+    The plan keeps the stopping distance of the manoeuvre's speed to people in front of the
+    manoeuvre. It may always drive as far as the manoeuvre itself.
     """
     w = Weights(*weights)
     for i in range(len(gap)):

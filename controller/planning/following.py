@@ -1,4 +1,4 @@
-"""The plan along the chosen manoeuvre, in one compiled call: corridor, QP, judgement."""
+"""The plan along the chosen manoeuvre, in one compiled call: corridor, QP, comparison."""
 
 from typing import Any
 
@@ -10,9 +10,9 @@ from controller.planning.parameters import Weights
 from controller.planning.smoothing import fill, set_target, unfold
 from controller.qp.exact_solver import solve_verified
 
-UNSOLVED = -1  # the exact methods did not end: OSQP has to
-_WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows
-_APPROACH = 0.8  # of the gentle braking, with which calm speeds are approached: the rest is spare
+UNSOLVED = -1  # result if the exact methods found no solution, so that OSQP has to
+_WORSE = 1e-6  # distance [m] by which a smoothed plan may come closer than its manoeuvre
+_APPROACH = 0.8  # share of the gentle braking with which threat-free speeds are approached
 
 Motion = tuple[Array, Array, Array]  # distance, speed, acceleration
 
@@ -33,23 +33,24 @@ def follow(
     """Set the QP of the smooth plan, solve it exactly, and fill the plan.
 
     Args:
-        state: the speed [m/s], the acceleration before [m/s^2], the force before [N], the speed
-            wanted [m/s].
-        best: the manoeuvre.
-        prospect: the arrays of what it would lead to; calm speeds become what is kept to.
-        missing: stopping distance that it lacks [m].
-        bounds: Distances [m] that may be driven, speeds [m/s] of the lanes (inf: any), and the
-            corridor [m], which is filled; (N,) each.
-        problem: nodes, intervals, limits, rows, lower, upper, target, speeds_of, gradients.
-        solver: multipliers and solution.
-        plan: filled, unless the QP is unsolved.
-        calmly: steps in which calm speeds are kept to, as far as braking with the second [m/s^2]
-            can help it.
+        state: Speed [m/s], acceleration before [m/s^2], force before [N] and wanted speed [m/s].
+        best: Chosen manoeuvre.
+        prospect: Arrays of its predicted outcome. The threat-free speeds are replaced by the speed
+            limits of the plan.
+        missing: Stopping distance [m] that the manoeuvre lacks.
+        bounds: Distances [m] that may be driven, speed limits [m/s] of the lanes (inf without),
+            and the corridor [m], which is filled; (N,) each.
+        problem: Arrays of `SmoothingProblem`: nodes, intervals, limits, rows, lower, upper,
+            target, speeds_of, gradients.
+        solver: Multipliers and solution of the solver.
+        plan: Plan, filled unless the QP is unsolved.
+        calmly: Number of steps in which the plan keeps threat-free speeds, and the largest
+            deceleration [m/s^2] that it spends on this.
         weights: Weights of the cost.
 
     Returns:
-        The corrections of the active set, or ``UNSOLVED``; whether the manoeuvre
-        itself is the plan; whether a stop stays possible beyond it if the last speed is kept.
+        Number of corrections of the active set, or ``UNSOLVED``; whether the manoeuvre itself is
+        the plan; whether a stop stays possible if the last speed is kept beyond the plan.
     """
     speed, before, force, fastest = state
     gap, _, calm = prospect
@@ -78,15 +79,15 @@ def follow(
 
 @inner
 def approach_calmly(distance: Array, gentle: float, calm: Array) -> None:
-    """Lower ``calm`` (N,) [m/s] so that braking with ``gentle`` [m/s^2] keeps to all that follows.
+    """Lower ``calm`` so that braking with ``gentle`` is enough to keep all later speeds in it.
 
-    Of somebody beside the way who could step on it, calm speeds tell where the hardest braking
-    would have to begin. A plan that is as fast as that everywhere would brake as hard.
+    For a person beside the path who could step on it, threat-free speeds fall as fast as the
+    hardest braking allows. A plan that follows them without this would brake that hard.
 
     Args:
-        distance: (N + 1,) [m] of the manoeuvre that they belong to.
-        gentle: [m/s^2].
-        calm: (N,) [m/s], changed.
+        distance: Distances (N + 1,) [m] of the manoeuvre that the speeds belong to.
+        gentle: Deceleration [m/s^2].
+        calm: Threat-free speeds (N,) [m/s], changed.
     """
     for i in range(len(calm) - 2, -1, -1):
         between = distance[i + 2] - distance[i + 1]
@@ -105,9 +106,9 @@ def unfold_and_judge(
     plan: Motion,
     weights: tuple[Any, ...],
 ) -> tuple[bool, bool]:
-    """Fill the plan from the QP's solution; the manoeuvre itself where that comes less close.
+    """Fill the plan from the QP's solution, or with the manoeuvre if that keeps more distance.
 
-    The arguments are those of :func:`follow`, as are the last two that it returns.
+    Arguments are as for :func:`follow`, and the results are its last two.
     """
     nodes, limits, speeds_of = problem[0], problem[2], problem[7]
     n = len(solution)
@@ -132,7 +133,7 @@ def take_over(
     time_step: float,
     weights: tuple[Any, ...],
 ) -> bool:
-    """Fill the plan with the manoeuvre; whether a stop stays possible beyond it."""
+    """Fill the plan with the manoeuvre, and return whether a stop stays possible beyond it."""
     for i in range(len(plan[0])):
         plan[0][i], plan[1][i] = best[0][i], best[1][i]
     for i in range(len(plan[2])):
@@ -148,7 +149,7 @@ def missing_of(
     allowed: Array,
     weights: tuple[Any, ...],
 ) -> float:
-    """The longest stopping distance [m] that a plan lacks, people doing as under the manoeuvre."""
+    """The largest stopping distance [m] that a plan lacks if people move as for the manoeuvre."""
     gap, conflicts, calm = prospect
     others, missing = 0.0, 0.0
     for i in range(len(gap)):
@@ -173,7 +174,7 @@ def may_hold(
     time_step: float,
     weights: tuple[Any, ...],
 ) -> bool:
-    """Return whether a stop stays possible if the plan's last speed is kept on."""
+    """Return whether a stop stays possible if the plan's last speed is kept for one more step."""
     v = plan[1][-1]
     gap = prospect[0][-1] + best[0][-1] - plan[0][-1]
     holds: bool = gap - time_step * v >= stopping_need(v, Weights(*weights))

@@ -1,15 +1,16 @@
-"""The motions of manoeuvres: an acceleration that is approached, or the last plan moved on."""
+"""The motions of manoeuvres: accelerations that are aimed at, or the last plan, shifted."""
 
 import numpy as np
 
 from controller._jit import Array, inner, kernel
 
-_EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
-_COMFORT = 1.5  # [m/s^2] of a stop that nobody forces
-_CREEPING = 0.6  # [s] the last of the way, so that the stop has no jolt
-_JERK = 8.0  # [m/s^3] of a branch
-_SLOWING = 3.0  # [m/s^2] with which a speed above the wanted one is given up: as adaptive cruise
-# control does at most (ISO 15622: 3.5 m/s^2 at speed); obstacles have harder manoeuvres
+_EASING = 0.4  # time constant [s] with which an acceleration ends at standstill or wanted speed
+_COMFORT = 1.5  # deceleration [m/s^2] of a stop at the end of the way
+_CREEPING = 0.6  # time constant [s] of the last metres before a stop, against a jolt
+_JERK = 8.0  # jerk [m/s^3] of a branch
+# Deceleration [m/s^2] from a speed above the wanted one: below the limit of adaptive cruise control
+# (ISO 15622: 3.5 m/s^2 at speed). Manoeuvres for obstacles brake harder.
+_SLOWING = 3.0
 
 
 @inner
@@ -24,20 +25,18 @@ def aim(
     speeds: Array,
     accelerations: Array,
 ) -> None:
-    """Fill manoeuvres that go over to the accelerations wanted, up to rest or ``fastest``.
-
-    All of them step by step: no step of one waits for another's, and the processor overlaps them.
+    """Fill manoeuvres that change to a wanted acceleration and end at rest or at ``fastest``.
 
     Args:
-        speed: now [m/s].
-        before: the acceleration before [m/s^2].
-        goals: (k, 2) the acceleration wanted [m/s^2], and the speed at which braking ends [m/s].
-        fastest: [m/s] not exceeded by driving on.
-        jerk: [m/s^3] of changes.
-        time_step: [s].
-        distance: (k or more, N + 1) [m] receives the manoeuvres.
-        speeds: [m/s] likewise.
-        accelerations: [m/s^2] likewise.
+        speed: Speed now [m/s].
+        before: Acceleration before [m/s^2].
+        goals: Wanted acceleration [m/s^2] and speed [m/s] at which braking ends, (k, 2).
+        fastest: Speed [m/s] at which speeding up ends.
+        jerk: Jerk [m/s^3] with which accelerations change.
+        time_step: Control step [s].
+        distance: Distances (k or more, N + 1) [m], filled.
+        speeds: Speeds (k or more, N + 1) [m/s], filled.
+        accelerations: Accelerations (k or more, N + 1) [m/s^2], filled.
     """
     most, count, last = jerk * time_step, goals.shape[0], speeds.shape[1] - 1
     asked_for = np.full(count, before)
@@ -72,25 +71,25 @@ def approach(
     speeds: Array,
     accelerations: Array,
 ) -> None:
-    """Fill a manoeuvre that drives up to where the way ends, and stops there in comfort.
+    """Fill a manoeuvre that drives up to the end of the way and stops there comfortably.
 
     Args:
-        speed: now [m/s].
-        before: the acceleration before [m/s^2].
-        wanted: [m/s^2] of speeding up, at most.
-        end: the distance [m] to where it is to stand.
-        fastest: [m/s] not exceeded.
-        jerk: [m/s^3] of changes.
-        time_step: [s].
-        distance: (N + 1,) [m] receives the manoeuvre.
-        speeds: (N + 1,) [m/s] likewise.
-        accelerations: (N + 1,) [m/s^2] likewise.
+        speed: Speed now [m/s].
+        before: Acceleration before [m/s^2].
+        wanted: Largest acceleration [m/s^2].
+        end: Distance [m] to the place of the stop.
+        fastest: Highest speed [m/s].
+        jerk: Jerk [m/s^3] with which accelerations change.
+        time_step: Control step [s].
+        distance: Distances (N + 1,) [m], filled.
+        speeds: Speeds (N + 1,) [m/s], filled.
+        accelerations: Accelerations (N + 1,) [m/s^2], filled.
     """
     s, v, a = 0.0, speed, before
     most = jerk * time_step
     for i in range(len(speeds)):
         distance[i], speeds[i] = s, v
-        # Until an acceleration has been eased off the car drives on: so much less is left to brake.
+        # The car drives on until its acceleration has changed. This distance is not left to brake.
         left = max(end - s - 0.75 * (_EASING + 2.0 * max(a, 0.0) / jerk) * v, 0.0)
         aimed_at = min(fastest, np.sqrt(2.0 * _COMFORT * left), left / _CREEPING)
         goal = min(max((aimed_at - v) / _EASING, -_SLOWING), wanted)
@@ -114,13 +113,13 @@ def branch_off(
     """Let a manoeuvre brake from a step on, in place.
 
     Args:
-        distance: (N + 1,) [m] of it.
-        speeds: (N + 1,) [m/s].
-        accelerations: (N + 1,) [m/s^2].
-        first: the step, > 0.
-        braking: [m/s^2] < 0, down to rest.
-        fastest: [m/s] not exceeded.
-        time_step: [s].
+        distance: Distances (N + 1,) [m] of the manoeuvre, changed.
+        speeds: Speeds (N + 1,) [m/s], changed.
+        accelerations: Accelerations (N + 1,) [m/s^2], changed.
+        first: Step from which on it brakes, > 0.
+        braking: Acceleration [m/s^2] of the braking, < 0, down to rest.
+        fastest: Highest speed [m/s].
+        time_step: Control step [s].
     """
     driven, before = distance[first], accelerations[first - 1]
     goals, alone = np.array([[braking, 0.0]]), (1, len(distance) - first)
@@ -141,16 +140,16 @@ def shift(
     speeds: Array,
     accelerations: Array,
 ) -> None:
-    """Move a plan on by one step, in place: what it had planned for then is now.
+    """Shift a plan by one step, in place: its step 1 becomes step 0.
 
     Args:
-        speed: now [m/s]; where it differs from what was planned, it counts.
-        holds: the last speed is kept beyond the former horizon; else it is braked.
-        deceleration: b [m/s^2] of that.
-        time_step: [s].
-        distance: (N + 1,) [m] of the plan.
-        speeds: (N + 1,) [m/s].
-        accelerations: (N + 1,) [m/s^2].
+        speed: Speed now [m/s], which replaces the planned one.
+        holds: Whether the last speed is kept in the added step. If not, the ego brakes in it.
+        deceleration: Deceleration b [m/s^2] of this braking.
+        time_step: Control step [s].
+        distance: Distances (N + 1,) [m] of the plan, changed.
+        speeds: Speeds (N + 1,) [m/s] of the plan, changed.
+        accelerations: Accelerations (N + 1,) [m/s^2] of the plan, changed.
     """
     N = len(speeds) - 1
     for i in range(N):

@@ -1,4 +1,4 @@
-"""The numbers of the planning MPC; docs/controllers.md says what each one gives."""
+"""The parameters of the planning MPC; docs/controllers.md says what each one does."""
 
 import math
 from collections.abc import Mapping
@@ -19,29 +19,31 @@ from controller.parameters import require, require_not_negative, require_positiv
 
 @dataclass(frozen=True, slots=True)
 class ManoeuvreParameters:
-    """The bounds and costs of manoeuvres; each cost is per second of the horizon.
+    """The bounds and weights of manoeuvres. Each cost is per second of the horizon.
 
     Raises:
         ParameterError: a value is not finite or out of range.
     """
 
-    accelerations: tuple[float, ...] = (2.5, 0.0, -1.5, -2.5, -2.5, -2.5, -5.0)  # [m/s^2] aimed at
-    slowest: tuple[float, ...] = (0.0, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)  # of v_r: braking ends
-    jerk: float = 8.0  # [m/s^3] with which they are approached
-    deceleration: float = 6.0  # b [m/s^2]: a stop is kept possible that is no harder
-    minimum_distance: float = 0.4  # [m] to a person in front at standstill
-    headway: float = 0.1  # [s] more of it the faster
-    time_weight: float = 1.0  # of the share of the reference speed that is not driven
-    acceleration_weight: float = 0.05  # of (m/s^2)^2
-    nearness_weight: float = 7.0  # of the share of d_safe that is missing, times v / v_r
-    closeness_weight: float = 100.0  # of a metre too little to stop in, times v / v_r
-    conflict_weight: float = 0.8  # of a person on a collision course, times sqrt(v / v_r)
-    conflict_growth: float = 0.5  # of that weight which each further such person counts
-    threat_weight: float = 1.5  # of the speed beyond the calm one, over v_r
-    final_weight: float = 1.3  # [s] of the missing speed at the horizon's end
-    later_weight: float = 0.8  # of the time that is lost beyond it
-    persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
-    calm_time: float = 0.5  # [s] of the plan in which the calm speed is kept to
+    # accelerations [m/s^2] that the manoeuvres aim at
+    accelerations: tuple[float, ...] = (2.5, 0.0, -1.5, -2.5, -2.5, -2.5, -5.0)
+    # shares of v_r at which the braking of these manoeuvres ends
+    slowest: tuple[float, ...] = (0.0, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)
+    jerk: float = 8.0  # jerk [m/s^3] with which accelerations change
+    deceleration: float = 6.0  # deceleration b [m/s^2] with which a stop stays possible
+    minimum_distance: float = 0.4  # distance [m] to a person in front at standstill
+    headway: float = 0.1  # additional distance per speed [s]
+    time_weight: float = 1.0  # weight of the share of the reference speed that is lost
+    acceleration_weight: float = 0.05  # weight of the squared acceleration [(m/s^2)^2]
+    nearness_weight: float = 7.0  # weight of the missing share of d_safe, times v / v_r
+    closeness_weight: float = 100.0  # weight of the missing stopping distance [m], times v / v_r
+    conflict_weight: float = 0.8  # weight of a person in conflict, times sqrt(v / v_r)
+    conflict_growth: float = 0.5  # share of this weight for each further person in conflict
+    threat_weight: float = 1.5  # weight of the speed above the threat-free one, over v_r
+    final_weight: float = 1.3  # weight [s] of the missing share of speed at the horizon's end
+    later_weight: float = 0.8  # weight of the time that is lost beyond the horizon
+    persistence: float = 0.02  # cost [s] by which another manoeuvre must beat the last plan
+    calm_time: float = 0.5  # time [s] for which a plan keeps threat-free speeds
 
     def __post_init__(self) -> None:
         known = all(math.isfinite(a) for a in self.accelerations)
@@ -63,8 +65,8 @@ class ManoeuvreParameters:
         require_not_negative("calm_time", self.calm_time, "s")
 
 
-_SLOW = 4.0  # [m/s] v_r of Yang & Özgüner 2019
-_GENTLE = 3.0  # [m/s^2] that passengers put up with
+_SLOW = 4.0  # reference speed [m/s] v_r of Yang & Özgüner 2019
+_GENTLE = 3.0  # largest deceleration [m/s^2] that passengers accept
 
 _WEIGHTS = (
     "time_weight",
@@ -82,8 +84,8 @@ _WEIGHTS = (
 
 StyleName = Literal["careful", "normal", "assertive"]
 
-#: What a driving style sets of :class:`ManoeuvreParameters`: points on the front of the ego's time
-#: against risk and people's delay, found by paired runs (docs/controllers.md).
+#: Parameters of :class:`ManoeuvreParameters` by driving style: points on the Pareto front of the
+#: ego's time against risk and people's delay, found by paired runs (docs/controllers.md).
 STYLES: Final[Mapping[StyleName, Mapping[str, float]]] = MappingProxyType(
     {
         "careful": {"conflict_weight": 1.6, "nearness_weight": 10.0, "minimum_distance": 0.8},
@@ -95,21 +97,21 @@ STYLES: Final[Mapping[StyleName, Mapping[str, float]]] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class PlannerParameters:
-    """The planning MPC: horizon, limits, and what its plan trades.
+    """The parameters of the planning MPC: horizon, limits and weights.
 
     Raises:
         ParameterError: a value is not finite or out of range.
     """
 
-    horizon: int = 50  # N [steps]
+    horizon: int = 50  # prediction horizon N [steps]
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     speed_max: float = SPEED_MAX  # v_max [m/s]
     force_limit: float = FORCE_LIMIT  # u_max [N]
     force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
-    effort_weight: float = 0.02  # of (m/s^2)^2 s, beside (m/s)^2 s of the speed error
-    jerk_weight: float = 0.02  # of (m/s^3)^2 s
-    iteration_limit: int = ITERATION_LIMIT  # of the QP solver
+    effort_weight: float = 0.02  # weight of squared accelerations; speed errors have weight 1
+    jerk_weight: float = 0.02  # weight of squared jerks
+    iteration_limit: int = ITERATION_LIMIT  # largest number of iterations of the QP solver
     manoeuvres: ManoeuvreParameters = ManoeuvreParameters()
 
     def __post_init__(self) -> None:
@@ -125,23 +127,22 @@ class PlannerParameters:
 
     @property
     def calm_time(self) -> float:
-        """The time [s] in which a plan keeps to calm speeds; it grows with the reference speed."""
+        """The time [s] for which a plan keeps threat-free speeds; it grows with v_r."""
         return self.manoeuvres.calm_time + max(0.0, self.reference_speed - _SLOW) / _GENTLE
 
     @property
     def calm_braking(self) -> float:
-        """The largest braking [m/s^2] of a plan for what people could do, but need not.
+        """The largest deceleration [m/s^2] of a plan for motions of people that are only possible.
 
-        At walking pace, up to v_r of the paper, as hard as it takes.
+        It is inf at low reference speeds, up to v_r of the paper.
         """
         return _GENTLE if self.reference_speed > _SLOW else math.inf
 
 
 class Weights(NamedTuple):
-    """The numbers of the cost.
+    """The weights of the cost, and the speeds and distances that it refers to.
 
-    What is called from outside gets them as a plain tuple: numba looks the class of a named one up
-    in each call, which takes 2 us.
+    Kernels that Python calls take them as a plain tuple.
     """
 
     reference_speed: float

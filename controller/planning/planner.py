@@ -1,4 +1,4 @@
-"""The planning MPC: choose a manoeuvre, smooth it by a QP, and keep what was planned."""
+"""The planning MPC: it chooses a manoeuvre, smooths it by a QP, and remembers the plan."""
 
 from math import inf, isfinite
 from typing import NamedTuple
@@ -24,25 +24,25 @@ from controller.protocol import Decision
 from controller.qp.exact_solver import ExactSolver
 from controller.qp.least_squares import Outcome
 
-_SOLVED = Outcome.SOLVED  # whose class is slow to tell it
+_SOLVED = Outcome.SOLVED
 
 
 class Plan(NamedTuple):
-    """The force for the next step, and how it came about."""
+    """The force for the next step, and how it was found."""
 
-    force: float  # u(k) [N]
-    status: str  # of the QP
-    iterations: int  # of the solver
-    manoeuvre: str  # which one: "clear", "drive on", "as planned", or the acceleration aimed at
-    tried: int  # manoeuvres
+    force: float  # force u(k) [N]
+    status: str  # outcome of the QP
+    iterations: int  # iterations of the solver
+    manoeuvre: str  # name of the manoeuvre: "clear", "drive on", "as planned", ...
+    tried: int  # number of manoeuvres that were compared
 
 
 class Planner:
-    """Plans speeds over some seconds, and knows what it planned before.
+    """Plans speeds over some seconds, and remembers its last plan.
 
     Args:
-        model: the vehicle.
-        parameters: horizon, limits, weights.
+        model: Longitudinal model of the vehicle.
+        parameters: Horizon, limits and weights, or None for the defaults.
 
     Raises:
         ParameterError: the time step leaves no horizon.
@@ -78,7 +78,7 @@ class Planner:
         self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
 
     def reset(self) -> None:
-        """Forget what was planned."""
+        """Forget the last plan."""
         self._solver.reset()
         self._search.reset()
 
@@ -93,19 +93,20 @@ class Planner:
         gap: float = inf,
         to_clear: float = 0.0,
     ) -> Plan:
-        """The force at t_k.
+        """Plan from the state at t_k, and return the force.
 
         Args:
-            speed: x_2(k) [m/s].
-            previous_force: u(k-1) [N]; 0 at standstill, where the brake holds without work.
-            fastest: [m/s] wanted where nobody is in the way.
-            allowed: (N,) [m] that may be driven until steps 1 ... N: vehicles, lights; inf: any.
+            speed: Speed x_2(k) [m/s].
+            previous_force: Force u(k-1) [N]; 0 at standstill, where the brake holds without work.
+            fastest: Speed [m/s] with nobody in the way.
+            allowed: Distances (N,) [m] that may be driven until steps 1 ... N, by vehicles and
+                lights; inf without a bound.
             foresight: Foresight of the crowd, or None if nobody can get in the way.
-            lane_speeds: (N,) [m/s] that the plan does not exceed at steps 1 ... N, as far as
-                braking can help it; None: any.
-            gap: [m] to the closest person in front now. Who stands drives up to d_safe of a
-                person who stays, as up to where the way ends.
-            to_clear: [m] to be driven on until nothing is blocked that has to be kept free.
+            lane_speeds: Speed limits (N,) [m/s] at steps 1 ... N, kept as far as braking allows,
+                or None.
+            gap: Distance [m] to the closest person in front now. At standstill this person bounds
+                the way: a trial manoeuvre may drive up to d_safe before them.
+            to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
 
         Raises:
             ParameterError: a value is not a number.
@@ -123,7 +124,7 @@ class Planner:
         return self._smooth(speed, previous_force, before, fastest, allowed, chosen, lane_speeds)
 
     def _acceleration(self, speed: float, force: float) -> float:
-        """The one that ``force`` [N] gave at this speed; at standstill none."""
+        """The acceleration [m/s^2] that ``force`` [N] causes at this speed; 0 at standstill."""
         if speed <= STANDSTILL:
             return 0.0
         return (force - self.model.friction * speed) / self.model.mass
@@ -138,7 +139,7 @@ class Planner:
         chosen: str,
         lane_speeds: Array | None,
     ) -> Plan:
-        """The QP within the manoeuvre's corridor; the manoeuvre itself where that is better."""
+        """Smooth the chosen manoeuvre by the QP, or keep the manoeuvre if that is better."""
         search, plan = self._search, self._plan
         best = search.best
         to = self._to
@@ -191,7 +192,7 @@ class Planner:
 
 
 class PlanningController:
-    """The planner as a controller: the distances give way, so that there always is a plan.
+    """The planner as a controller. Distances are soft constraints, so that a plan always exists.
 
     Args:
         planner: Planner of the speeds.
@@ -205,7 +206,7 @@ class PlanningController:
 
     @property
     def horizon(self) -> int:
-        """The steps that the plan looks ahead."""
+        """The prediction horizon [steps]."""
         return self.planner.parameters.horizon
 
     def reset(self) -> None:
@@ -214,7 +215,7 @@ class PlanningController:
         self.planner.reset()
 
     def control(self, observation: Observation) -> Decision:
-        """Decide on the force at t_k."""
+        """Decide on the force [N] at t_k."""
         ego, ahead, limits = observation.ego, observation.ahead, observation.limits
         speed = ego.speed
         previous = 0.0 if speed <= STANDSTILL else self._previous_force
@@ -237,5 +238,5 @@ class PlanningController:
         return Decision(force, "mpc", plan.manoeuvre, plan.status, plan.iterations, reference, None)
 
     def applied(self, force: float) -> None:
-        """Go on from the force [N] that acts instead of the last one asked for."""
+        """Continue from the force [N] that the safety layer applied instead of the last one."""
         self._previous_force = force

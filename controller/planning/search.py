@@ -1,10 +1,9 @@
-"""The search: which manoeuvre costs least, among driving on, the last plan, and a few others.
+"""The search for the manoeuvre of least cost, among driving on, the last plan and a few others.
 
-A manoeuvre is a path in the plane of time and station, in which everybody who crosses the ego's
-corridor occupies a region. To pass before somebody or behind is to pass that region on one side or
-the other, so a handful of manoeuvres stands for the choices there are (a small enumeration, as in
-Werling et al., ICRA 2010). Since people answer to the ego, each manoeuvre is judged by how the
-crowd would move under it.
+A manoeuvre is a curve in the plane of time and station. Each person who crosses the ego's corridor
+occupies a region of this plane, and the ego passes it on one side or the other. A few manoeuvres
+are therefore enough to cover the choices (a small enumeration, as in Werling et al., ICRA 2010).
+People react to the ego, so each manoeuvre is evaluated by how the crowd would move under it.
 """
 
 from bisect import bisect_left
@@ -19,25 +18,25 @@ from controller.planning.costs import cost, cost_of_blocking
 from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import PlannerParameters, Weights
 
-_DRIVE_ON = 0  # its place among the trials; what was planned is the last
+_DRIVE_ON = 0  # row of driving on among the trials; the last plan has the last row
 
 
 class Search:
-    """Tries manoeuvres, and remembers what was decided on the last time.
+    """Compares manoeuvres, and remembers the last plan.
 
     Args:
-        model: the vehicle.
-        parameters: the horizon, the manoeuvres and their weights.
+        model: Longitudinal model of the vehicle.
+        parameters: Horizon, manoeuvres and weights.
 
     Attributes:
-        weights: Weights of the cost, a plain tuple of :class:`Weights`.
-        best: distance, speed and acceleration of the manoeuvre of least cost, until the next
-            search, as is what follows.
-        gap: (N,) [m] what it would lead to, as in :class:`Prospect`.
-        conflicts: (N,) persons, likewise.
-        calm: (N,) [m/s], likewise.
-        missing: the longest stopping distance that it lacks [m].
-        tried: manoeuvres that were compared.
+        weights: Weights of the cost, a plain tuple of the fields of :class:`Weights`.
+        best: Distance, speed and acceleration of the manoeuvre of least cost. This and what
+            follows is valid until the next search.
+        gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Prospect`.
+        conflicts: Persons in conflict (N,), as in :class:`Prospect`.
+        calm: Threat-free speeds (N,) [m/s], as in :class:`Prospect`.
+        missing: Largest stopping distance [m] that it lacks.
+        tried: Number of manoeuvres that were compared.
     """
 
     def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
@@ -45,7 +44,7 @@ class Search:
         self._manoeuvres, self._time_step = m, model.time_step
         self._weights = Weights.of(parameters, m)
         self.weights = tuple(self._weights)
-        # Where a bend or a light allows little speed, time is lost against half of v_r.
+        # Lost time refers to at least half of v_r, also where a bend or a light allows less.
         self._slowest = 0.5 * v_r
         self._kinds = [
             (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
@@ -55,7 +54,8 @@ class Search:
         ]
         self._names += ["up to the end", "as planned"]
         self._goals = np.array(self._kinds)
-        # Who brakes to a speed is worth a try from a higher one: who is, by how many are lower.
+        # Braking to a speed is tried only from a higher one. The index of _others counts the
+        # target speeds below the present speed.
         self._slower = sorted({least for a, least in self._kinds if a < 0.0})
         self._others = [
             [k for k, (a, least) in enumerate(self._kinds) if k and (a >= 0.0 or least in lower)]
@@ -76,16 +76,16 @@ class Search:
         self.reset()
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Forget the last plan and the results."""
         self._planned, self._holds, self._drives_on = False, True, True
         self._turn, self.tried, self.missing = 0, 0, inf
 
     def keep(self, plan: Manoeuvre, holds: bool) -> None:
-        """Remember what was decided on: it is tried again at the next step.
+        """Remember a plan, which is tried again at the next step.
 
         Args:
-            plan: is read at the next step.
-            holds: a stop stays possible if its last speed is kept on.
+            plan: Plan; its arrays are read at the next step.
+            holds: Whether a stop stays possible if its last speed is kept.
         """
         self._last, self._planned, self._holds = plan, True, holds
 
@@ -99,14 +99,21 @@ class Search:
         end: float,
         to_clear: float = 0.0,
     ) -> str:
-        """Search: driving on, what was planned, and the others in turn or all at once.
+        """Choose the manoeuvre of least cost, and return its name.
 
-        Where the way ends within the horizon, ``end`` [m] from here, driving up to there is among
-        the first. To stand within the first ``to_clear`` [m] costs extra.
+        The last plan is tried at every step. Driving on and one of the others are tried by turns,
+        because the best manoeuvre changes slowly. All are tried if the best of them comes too
+        close to a person or a vehicle.
 
-        All are tried where the best so far comes too close to somebody. Else, what is best
-        changes slowly: besides the plan, driving on and one of the others are tried by turns, so
-        that the search stays as quick as the loop.
+        Args:
+            speed: Speed now [m/s].
+            before: Acceleration before [m/s^2].
+            fastest: Speed [m/s] with nobody in the way.
+            allowed: Distances (N,) [m] that may be driven until steps 1 ... N.
+            foresight: Foresight of the crowd, or None if nobody can get in the way.
+            end: Distance [m] to the end of the way. If it is within the horizon, driving up to it
+                is tried as well.
+            to_clear: Keep-clear distance [m]. To stand within it costs extra.
         """
         planned = self._planned
         others = self._others[bisect_left(self._slower, speed)]
@@ -133,7 +140,7 @@ class Search:
         return name
 
     def _lay_out(self, speed: float, before: float, fastest: float, end: float) -> None:
-        """Fill all trials; the way ends after ``end`` [m]."""
+        """Fill all trials, for a way that ends after ``end`` [m]."""
         m, last = self._manoeuvres, self._last
         lay_out(
             (speed, before, fastest, end, m.jerk, m.deceleration, self._time_step),
@@ -145,7 +152,7 @@ class Search:
         )
 
     def _charge(self, fastest: float, to_clear: float) -> None:
-        """Let each trial pay for standing within ``to_clear`` [m], which are to be kept free."""
+        """Add the cost of standing within the first ``to_clear`` [m] to each trial's penalty."""
         self._charged = to_clear > 0.0
         penalty = self._trials.penalty
         penalty[:] = self._penalty
@@ -162,17 +169,17 @@ class Search:
         allowed: Array,
         foresight: Foresight | None,
     ) -> bool:
-        """Find the cheapest of the trials, and keep it with what it would lead to.
+        """Find the cheapest of the trials, and keep it with its predicted outcome.
 
         Args:
             batches: Rows of the trials that are compared.
             probe: Whether the first one is evaluated alone first.
-            fastest: Speed [m/s] wanted where nobody is in the way.
-            allowed: Distances [m] that may be driven, (N,).
+            fastest: Speed [m/s] with nobody in the way.
+            allowed: Distances (N,) [m] that may be driven.
             foresight: Foresight of the crowd, or None.
 
         Returns:
-            Whether it was asked for and nobody is; then that one is the best.
+            Whether the first one was accepted at once, because nobody is in its way.
         """
         wanted = max(fastest, self._slowest)
         cheapest = getattr(foresight, "cheapest", None)
@@ -193,7 +200,7 @@ class Search:
         allowed: Array,
         foresight: Foresight | None,
     ) -> bool:
-        """Judge each of the trials to its end, whatever model people are believed to walk by."""
+        """Evaluate each of the trials in full, for pedestrian models without a compiled search."""
         self.tried, self.missing, lowest = 0, inf, inf
         for batch in (0, 1):
             if batch == 0:
@@ -226,7 +233,7 @@ class Search:
         return False
 
     def _take(self, trial: int) -> None:
-        """It is the best."""
+        """Keep a trial as the best one."""
         self._best, self.best = trial, self._each[trial]
 
 
@@ -239,17 +246,17 @@ def lay_out(
     last: tuple[Array, Array],
     motions: tuple[Array, Array, Array],
 ) -> None:
-    """Fill all trials: each kind of manoeuvre, driving up to the end, and what was planned.
+    """Fill all trials: each kind of manoeuvre, driving up to the end, and the last plan.
 
     Args:
-        state: the speed [m/s], the acceleration before [m/s^2], the speed wanted [m/s], where the
-            way ends [m] (inf: there is no such trial), the jerk [m/s^3], the deceleration b
-            [m/s^2], the time step [s].
-        goals: (k, 2) the acceleration aimed at [m/s^2] and the speed at which braking ends [m/s].
-        planned: whether there is a plan; else the last trial keeps the speed.
-        holds: whether its last speed is kept beyond its horizon.
-        last: its distance [m] and speed [m/s].
-        motions: (k + 2, N + 1) distance, speed, acceleration; filled.
+        state: Speed [m/s], acceleration before [m/s^2], wanted speed [m/s], distance to the end of
+            the way [m] (inf without this trial), jerk [m/s^3], deceleration b [m/s^2], and time
+            step [s].
+        goals: Wanted acceleration [m/s^2] and speed [m/s] at which braking ends, (k, 2).
+        planned: Whether there is a last plan. If not, the last trial keeps the speed.
+        holds: Whether the last speed of this plan is kept beyond its horizon.
+        last: Distances [m] and speeds [m/s] of this plan.
+        motions: Distances, speeds and accelerations, (k + 2, N + 1) each, filled.
     """
     speed, before, fastest, end, jerk, b, time_step = state
     distance, speeds, accelerations = motions

@@ -5,18 +5,18 @@ acceleration is constant between nodes. The cost, with intervals h_i, is
 
     sum h_i (v_i - v_i^m)^2 + q_a sum h_i a_i^2 + q_j sum h'_i j_i^2
 
-of speed errors to the manoeuvre, accelerations a_i and jerks j_i: the control-effort and comfort
-terms that Yang & Özgüner 2019, section 5, leave to the future. With H = L L' the unknowns
-z = L' v make it |z - z_m|^2, which every solver of this package takes.
+of speed errors to the manoeuvre, accelerations a_i and jerks j_i. Yang & Özgüner 2019, section 5,
+name the control-effort and comfort terms as future work. With H = L L' and z = L' v the cost is
+|z - z_m|^2, the form that every solver of this package takes.
 
-Rows: n speeds (limits; of the first also the force and its rate), n - 1 accelerations (force),
-n - 1 distances (the corridor).
+The rows are n speeds (limits; the first one also the force and its rate), n - 1 accelerations
+(force) and n - 1 distances (corridor).
 
-The corridor is soft by an exact penalty. Its minimal violation is known in closed form: of all
-plans the hardest braking is the slowest at every node, so what it violates is unavoidable, and
-what it does not can be kept. A linear penalty beyond the largest multiplier has exactly the plans
-that violate no more than that (Nocedal & Wright 2006, section 17.2), so the bounds are widened by
-the unavoidable amount: no slack variables, and always a solution.
+The corridor is a soft constraint by an exact penalty. Its least violation is known in closed form:
+the hardest braking is the slowest plan at every node, so its violation is unavoidable, and no
+larger one is needed. A linear penalty above the largest multiplier allows exactly the plans with
+this least violation (Nocedal & Wright 2006, section 17.2). The bounds are therefore widened by the
+unavoidable amount. This needs no slack variables, and a solution always exists.
 """
 
 from typing import NamedTuple
@@ -30,14 +30,14 @@ from controller.planning.parameters import PlannerParameters
 
 Indices = NDArray[np.int64]
 
-WIDER = 1e-7  # [m/s] [m] by which bounds are widened, so that rounding leaves no empty problem
+WIDER = 1e-7  # widening [m/s] or [m] of the bounds, so that rounding makes none infeasible
 
 
-_GROWTH = 0.25  # share of its own time by which an interval of the plan is longer; docs/planner.md
+_GROWTH = 0.25  # length of an interval of the plan as a share of its beginning; docs/planner.md
 
 
 def nodes_of(horizon: int, growth: float = _GROWTH) -> Indices:
-    """The steps of the nodes: 1, 2, ... with intervals that grow by ``growth``, up to N."""
+    """The steps of the nodes, from 1 to N, with intervals that grow by ``growth``."""
     nodes, at = [], 0
     while at < horizon:
         at = min(horizon, at + max(1, round(growth * at)))
@@ -46,29 +46,29 @@ def nodes_of(horizon: int, growth: float = _GROWTH) -> Indices:
 
 
 class Limits(NamedTuple):
-    """The vehicle and its actuator."""
+    """The limits of the vehicle and its actuator."""
 
-    time_step: float
-    decay: float
-    gain: float  # dt / M
-    force: float
-    force_rate: float
-    speed: float
+    time_step: float  # control step dt [s]
+    decay: float  # share of a speed that is left after a step without force
+    gain: float  # change of speed per force in a step, dt / M [s/kg]
+    force: float  # largest force [N]
+    force_rate: float  # largest change of the force [N per step]
+    speed: float  # highest speed [m/s]
 
 
 class SmoothingProblem:
     """min |z - target|^2 subject to lower <= rows z <= upper.
 
     Attributes:
-        nodes: (n,) their steps.
-        rows: (3 n - 2, n), constant.
-        target: (n,) z_m.
-        speeds_of: (n, n) v = L'^-1 z.
-        gradients: what :func:`set_target` takes.
-        intervals: (n,) h_i [s].
-        limits: the numbers of :class:`Limits`.
-        lower, upper: (3 n - 2,).
-        increments: a solver gets z itself.
+        nodes: Steps (n,) of the nodes.
+        rows: Matrix (3 n - 2, n) of the constraints, constant.
+        target: Target z_m (n,).
+        speeds_of: Matrix (n, n) of v = L'^-1 z.
+        gradients: Parts of the gradient, as :func:`set_target` takes them.
+        intervals: Intervals h_i (n,) [s] between the nodes.
+        limits: Fields of :class:`Limits`.
+        lower, upper: Bounds (3 n - 2,) of the constraints.
+        increments: False: solvers work on z itself.
     """
 
     increments = False
@@ -89,7 +89,7 @@ class SmoothingProblem:
         )
         h = np.diff(nodes, prepend=0) * dt
         self.intervals = h
-        accelerations = (np.eye(n) - np.eye(n, k=-1)) / h[:, None]  # but for v_0
+        accelerations = (np.eye(n) - np.eye(n, k=-1)) / h[:, None]  # without the term of v_0
         between = np.concatenate([[dt], (h[1:] + h[:-1]) / 2.0])
         jerks = (accelerations - np.eye(n, k=-1) @ accelerations) / between[:, None]
         H = np.diag(h)
@@ -97,7 +97,7 @@ class SmoothingProblem:
         H += p.jerk_weight * jerks.T @ np.diag(between) @ jerks
         L = np.linalg.cholesky(H)
         self.speeds_of = np.ascontiguousarray(np.linalg.inv(L.T))  # v = L'^-1 z
-        distances = np.zeros((n, n))  # driven from v_1 on: trapezia
+        distances = np.zeros((n, n))  # distances driven from node 1 on, by the trapezoidal rule
         for i in range(1, n):
             distances[i, :i] += h[1 : i + 1] / 2.0
             distances[i, 1 : i + 1] += h[1 : i + 1] / 2.0
@@ -117,15 +117,15 @@ class SmoothingProblem:
         )
 
     def speeds(self, z: Array) -> Array:
-        """(n,) the speeds [m/s] at the nodes."""
+        """Return the speeds (n,) [m/s] at the nodes."""
         return np.asarray(self.speeds_of @ z)
 
     def aim_at(self, speeds: Array, speed: float, acceleration: float) -> None:
         """Set the target.
 
         Args:
-            speeds: (n,) [m/s] of the manoeuvre at the nodes.
-            speed: now [m/s].
+            speeds: Speeds (n,) [m/s] of the manoeuvre at the nodes.
+            speed: Speed now [m/s].
             acceleration: Acceleration before now [m/s^2].
         """
         set_target(speeds, speed, acceleration, self.gradients, self.target)
@@ -141,11 +141,11 @@ class SmoothingProblem:
         """Set the bounds.
 
         Args:
-            speed: now [m/s].
-            previous_force: u(k-1) [N].
-            fastest: [m/s] not exceeded unless it is already.
-            corridor: (N,) [m] how far the plan may have driven at steps 1 ... N.
-            calm: (N,) [m/s] not exceeded as far as braking can help it.
+            speed: Speed now [m/s].
+            previous_force: Force u(k-1) [N].
+            fastest: Highest speed [m/s], unless the ego is faster already.
+            corridor: Distances (N,) [m] that the plan may have driven at steps 1 ... N.
+            calm: Speed limits (N,) [m/s], kept as far as braking allows.
         """
         fill(
             speed,
@@ -174,14 +174,14 @@ def fill(
     lower: Array,
     upper: Array,
 ) -> None:
-    """Fill the bounds of all rows; the corridor gives way where braking cannot keep it."""
+    """Fill the bounds of all rows. The corridor is widened where braking cannot keep it."""
     c, n = Limits(*limits), len(nodes)
     dt = c.time_step
     weakest = max(-c.force, previous_force - c.force_rate)
     strongest = min(c.force, previous_force + c.force_rate)
     least = max(0.0, c.decay * speed + c.gain * weakest)
     most = min(c.speed, max(fastest, speed), c.decay * speed + c.gain * strongest)
-    most = max(most, least)  # from a hard brake at walking speed: what it cannot help driving
+    most = max(most, least)  # after hard braking even the strongest force may give a speed below 0
     hardest = c.gain * c.force / dt
     lower[:n] = 0.0
     upper[:n] = min(c.speed, max(fastest, speed))
@@ -196,7 +196,7 @@ def fill(
         v = slower
         room, slow = corridor[nodes[i] - 1], calm[nodes[i] - 1]
         for k in range(nodes[i - 1], nodes[i] - 1):
-            room = min(room, corridor[k])  # nobody drives backwards: kept at the end, kept before
+            room = min(room, corridor[k])  # distances never fall: a bound at the end holds before
             slow = min(slow, calm[k])
         upper[i] = min(upper[i], max(v, slow))
         room = max(room, driven)

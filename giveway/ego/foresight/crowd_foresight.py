@@ -104,7 +104,6 @@ class CrowdForesight:
         every = round(predictor.time_step / time_step)
         self._predictor, self._every = predictor, every
         self._way = path.vertices, path.stations, path.headings
-
         self._view = tuple(
             View(shape.length, shape.width, half_width, conflict_time, time_step, every)
         )
