@@ -20,26 +20,37 @@ COINCIDENT_2 = 1e-6**2  # [m^2] closer centres have no direction of their own (o
 _STANDSTILL_2 = 1e-3**2  # [m^2/s^2] slower relative motion is not navigated round (ours)
 
 
+class Repulsion(NamedTuple):
+    """The repulsion flm(d; d0, M, s) As(phi; l).
+
+    flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2)).
+    """
+
+    d: float  # [m] d0
+    s_2: float  # [m^2] s^2
+    a: float  # As(phi; l) M/(2 d0) = a + b cos phi
+    b: float
+
+
+class Navigation(NamedTuple):
+    """The navigational force flm(d; d0, M, s) Ae(phi; l)."""
+
+    d: float  # [m] d0
+    s_2: float  # [m^2] s^2
+    decay: tuple[float, float, float, float]  # M/(2 d0) Ae at pi/8, 3 pi/8, 5 pi/8, 7 pi/8
+    cos_pi_8: float
+    sin_pi_8: float
+    g: tuple[float, ...]  # the polynomial for Ae around these angles
+
+
 class PairConstants(NamedTuple):
     """The constants of the pair loops, held in registers: loads could alias the loops' stores."""
 
     two_R: float  # noqa: N815
     r_max_2: float
-    # flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2))
-    d_rep: float
-    s_rep_2: float
-    a_rep: float  # As(phi; l) M_rep/(2 d_rep) = a + b cos phi
-    b_rep: float
     k_col: float
-    d_nav: float
-    s_nav_2: float
-    decay_0: float  # M_nav/(2 d_nav) Ae(phi) at phi = pi/8, 3 pi/8, 5 pi/8, 7 pi/8
-    decay_1: float
-    decay_2: float
-    decay_3: float
-    cos_pi_8: float
-    sin_pi_8: float
-    g: tuple[float, ...]  # the polynomial for Ae around these angles
+    repulsion: Repulsion
+    navigation: Navigation
 
 
 @inlined
@@ -47,13 +58,19 @@ def pair_constants(c: Any) -> PairConstants:
     """The constants of the pair loops out of the record of all constants."""
     g = c.g
     # fmt: off
-    return PairConstants(
-        c.two_R, c.r_max * c.r_max, c.d_rep, c.s_rep_2, c.a_rep, c.b_rep, c.k_col,
-        c.d_nav, c.s_nav_2, c.decay_0, c.decay_1, c.decay_2, c.decay_3, c.cos_pi_8, c.sin_pi_8,
-        (g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7],
-         g[8], g[9], g[10], g[11], g[12], g[13], g[14], g[15]),
+    polynomial = (
+        g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7],
+        g[8], g[9], g[10], g[11], g[12], g[13], g[14], g[15],
     )
     # fmt: on
+    decay = (c.decay_0, c.decay_1, c.decay_2, c.decay_3)
+    return PairConstants(
+        c.two_R,
+        c.r_max * c.r_max,
+        c.k_col,
+        Repulsion(c.d_rep, c.s_rep_2, c.a_rep, c.b_rep),
+        Navigation(c.d_nav, c.s_nav_2, decay, c.cos_pi_8, c.sin_pi_8, polynomial),
+    )
 
 
 @inlined
@@ -83,11 +100,12 @@ def pair(
     """
     (dx, dy), (length, d), (wx, wy) = offset, distances, relative_velocity
     (ux_i, uy_i), (ux_j, uy_j) = direction_i, direction_j
-    q_rep = c.d_rep - d
-    f_r = q_rep + math.sqrt(fma(q_rep, q_rep, c.s_rep_2))
+    repulsion, navigation = c.repulsion, c.navigation
+    q_rep = repulsion.d - d
+    f_r = q_rep + math.sqrt(fma(q_rep, q_rep, repulsion.s_2))
     f_c = c.k_col * max(0.0, -d)
-    q_nav = c.d_nav - d
-    f_n = q_nav + math.sqrt(fma(q_nav, q_nav, c.s_nav_2))
+    q_nav = navigation.d - d
+    f_n = q_nav + math.sqrt(fma(q_nav, q_nav, navigation.s_2))
     moving = fma(wx, wx, wy * wy) >= _STANDSTILL_2
     along = fma(wx, dx, wy * dy)
     across = fma(wx, dy, -(wy * dx))
@@ -95,22 +113,24 @@ def pair(
     obtuse = along < 0.0
     a = min(abs(across), abs(along))
     b = max(abs(across), abs(along))
-    below = fma(a, c.cos_pi_8, -(b * c.sin_pi_8))
-    above = fma(b, c.cos_pi_8, a * c.sin_pi_8)
+    cos_pi_8, sin_pi_8 = navigation.cos_pi_8, navigation.sin_pi_8
+    below = fma(a, cos_pi_8, -(b * sin_pi_8))
+    above = fma(b, cos_pi_8, a * sin_pi_8)
     above = above if moving else 1.0
     inverse = 1.0 / (length * above)  # one division serves both quotients
     t = below * (inverse * length)
     t = -t if steep != obtuse else t
     inverse = inverse * above if counts else 0.0
-    decay_steep = c.decay_2 if obtuse else c.decay_1
-    decay_flat = c.decay_3 if obtuse else c.decay_0
+    decay_0, decay_1, decay_2, decay_3 = navigation.decay
+    decay_steep = decay_2 if obtuse else decay_1
+    decay_flat = decay_3 if obtuse else decay_0
     decay = decay_steep if steep else decay_flat
     decay = -decay if across < 0.0 else decay  # sgn(0) = +1: keep right
-    f_n = f_n * (decay * angle_polynomial(t, c.g))
+    f_n = f_n * (decay * angle_polynomial(t, navigation.g))
     f_n = f_n if moving & counts else 0.0
     n_x, n_y = dx * inverse, dy * inverse
-    even = fma(f_r, c.a_rep, f_c)
-    odd = f_r * c.b_rep
+    even = fma(f_r, repulsion.a, f_c)
+    odd = f_r * repulsion.b
     on_i = fma(odd, fma(n_x, ux_i, n_y * uy_i), even)
     on_j = fma(-odd, fma(n_x, ux_j, n_y * uy_j), even)
     aside_x, aside_y = f_n * n_y, -f_n * n_x  # along t = (n_y, -n_x)
