@@ -63,13 +63,14 @@ def heading_for(
     last: int,
     routes: Any,
     closed: NDArray[np.bool_],
-    radius: float,
-    R: float,
+    radii: tuple[float, float],
 ) -> tuple[int, bool, float, float]:
     """Return the next way-point of a person at (x, y), whether to stop there, and its place.
 
     ``at`` was the next one so far, ``last`` ends the way; ``routes`` are the arrays of ``Routes``.
+    The ``radii`` [m] are those of a way-point and of a body.
     """
+    radius, R = radii
     w, q, signal = routes[0], routes[1], routes[2]
     stops = True
     p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])

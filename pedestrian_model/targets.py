@@ -17,16 +17,7 @@ def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
     do not count.
     """
     out = np.empty((len(rows), 2))
-    _fill_targets(
-        crowd.position,
-        crowd.waypoints,
-        crowd.waypoint_passage,
-        crowd.waypoint_signal,
-        crowd.waypoint_start,
-        crowd.waypoint_index,
-        rows,
-        out,
-    )
+    _fill_targets(crowd.position, crowd.waypoint_index, crowd.routes, rows, out)
     return out
 
 
@@ -69,16 +60,13 @@ def _fill_remaining(
 @kernel
 def _fill_targets(
     position: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    passage: NDArray[np.float64],
-    signal: NDArray[np.int64],
-    start: NDArray[np.int64],
     waypoint_index: NDArray[np.int64],
+    routes: Arrays,
     rows: NDArray[np.int64],
     out: NDArray[np.float64],
 ) -> None:
-    """The nearest points of the next way-points' lines."""
-    w, q = waypoints, passage
+    """Fill ``out`` (k, 2) [m] with the nearest points of the next way-points' lines."""
+    w, q, signal, start = Routes(*routes)
     for k in range(len(rows)):
         i = rows[k]
         x, y = position[i, 0], position[i, 1]

@@ -61,19 +61,14 @@ class _Wall(NamedTuple):
     t_x: float  # the unit vector along it
     t_y: float
     length: float  # [m]
-    N0_x: float  # the sum of the normals at its start
-    N0_y: float
-    N1_x: float  # and at its end
-    N1_y: float
+    N0: tuple[float, float]  # the sum of the normals at its start
+    N1: tuple[float, float]  # and at its end
 
 
 @inlined
 def _wall(line: NDArray[np.float64]) -> _Wall:
-    # fmt: off
-    return _Wall(
-        line[0], line[1], line[2], line[3], line[4], line[5], line[6], line[7], line[8]
-    )
-    # fmt: on
+    N0, N1 = (line[5], line[6]), (line[7], line[8])
+    return _Wall(line[0], line[1], line[2], line[3], line[4], N0, N1)
 
 
 @inlined
@@ -87,10 +82,10 @@ def _to_wall(x: float, y: float, w: _Wall) -> tuple[float, float, float, bool]:
     if 0.0 < along < w.length:
         across = w.t_x * dy - w.t_y * dx
         return -across * w.t_y, across * w.t_x, across * across, across >= 0.0
-    N_x, N_y = w.N0_x, w.N0_y
+    N_x, N_y = w.N0
     if along > 0.0:
         dx, dy = dx - w.length * w.t_x, dy - w.length * w.t_y
-        N_x, N_y = w.N1_x, w.N1_y
+        N_x, N_y = w.N1
     return dx, dy, dx * dx + dy * dy, N_x * dx + N_y * dy >= -_AT
 
 
@@ -101,15 +96,14 @@ def find_walls(
     n: int,
     walls: NDArray[np.float64],
     cells: NDArray[np.int64],
-    s: NDArray[np.float64],
-    n_x: NDArray[np.float64],
-    n_y: NDArray[np.float64],
+    nearest: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
 ) -> None:
-    """Fill the signed distance of each place from the nearest wall and the unit normal there.
+    """Fill ``nearest``: the signed distance of each place from a wall, and the unit normal x, y.
 
     The distance is negative behind the wall; the normal points into the walkable side. Out of
     reach of any wall they are inf and zero.
     """
+    s, n_x, n_y = nearest
     grid = _grid(walls)
     for k in range(n):
         best, best_x, best_y, inside, t_x, t_y = np.inf, 0.0, 0.0, True, 0.0, 0.0
@@ -214,4 +208,4 @@ def nearest_walls(
     out: NDArray[np.float64],
 ) -> None:
     """Fill ``out`` (3, n): signed distance and unit normal into the walkable side, x and y."""
-    find_walls(x, y, x.shape[0], walls, cells, out[0], out[1], out[2])
+    find_walls(x, y, x.shape[0], walls, cells, (out[0], out[1], out[2]))

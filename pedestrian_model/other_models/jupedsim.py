@@ -172,6 +172,6 @@ def _stop_before(
 ) -> None:
     """Lower each ``pace`` (n,) [m/s] to what stops before the strips of vehicles."""
     for i in range(len(pace)):
-        x, y, e_x, e_y = position[i, 0], position[i, 1], ahead[i, 0], ahead[i, 1]
-        slowest = speed_before(x, y, e_x, e_y, pace[i], vehicles, radius, 0.0)
+        place, direction = (position[i, 0], position[i, 1]), (ahead[i, 0], ahead[i, 1])
+        slowest = speed_before(place, direction, pace[i], vehicles, radius, 0.0)
         pace[i] = min(pace[i], slowest)

@@ -179,8 +179,7 @@ def _advance(
                 start[i + 1] - 1,
                 routes,
                 closed,
-                r_waypoint,
-                radius,
+                (r_waypoint, radius),
             )
             waypoint_index[i] = at - start[i]
             e_x, e_y = to_x - x, to_y - y
@@ -190,7 +189,8 @@ def _advance(
             if stops:
                 pace *= left / math.sqrt(left * left + _ARRIVES * _ARRIVES)
             if kind == _GAPS:
-                pace = min(pace, speed_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
+                before = speed_before((x, y), (e_x, e_y), pace, vehicles, radius, step * dt)
+                pace = min(pace, before)
             a_x = (pace * e_x - velocity[i, 0]) / RELAXATION
             a_y = (pace * e_y - velocity[i, 1]) / RELAXATION
             fastest = min(FASTER * desired_speed[i], v_max)
@@ -209,7 +209,7 @@ def _advance(
             elif kind != _STRAIGHT:
                 b_x, b_y = of_people(i, e_x, e_y, position, velocity)
                 a_x, a_y = a_x + b_x, a_y + b_y
-                b_x, b_y = of_vehicles(ahead, x, y, e_x, e_y, vehicles, radius, step * dt)
+                b_x, b_y = of_vehicles((x, y), (e_x, e_y), vehicles, radius, step * dt, ahead)
                 a_x, a_y = a_x + b_x, a_y + b_y
                 if walled and walls[0, i] < np.inf:
                     push = border(walls[0, i] - radius)
@@ -230,16 +230,24 @@ def _advance(
 
 @inlined
 def speed_before(
-    x: float,
-    y: float,
-    e_x: float,
-    e_y: float,
+    place: tuple[float, float],
+    direction: tuple[float, float],
     pace: float,
     vehicles: Array,
     radius: float,
     travelled: float,
 ) -> float:
-    """The speed [m/s] that stops somebody before the strips of vehicles that come too soon."""
+    """The speed [m/s] that stops somebody before the strips of vehicles that come too soon.
+
+    Args:
+        place: Position [m] of the person.
+        direction: Unit vector to the way-point.
+        pace: Speed [m/s] at which the person walks there.
+        vehicles: Vehicles (m, 7).
+        radius: Radius of a body [m].
+        travelled: Time [s] for which the vehicles have driven straight on.
+    """
+    (x, y), (e_x, e_y) = place, direction
     slowest = np.inf
     for k in range(vehicles.shape[0]):
         vehicle = vehicles[k]

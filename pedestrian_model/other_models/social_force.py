@@ -89,19 +89,24 @@ def in_frame(
 
 @inlined
 def of_vehicles(
-    ahead: float,
-    x: float,
-    y: float,
-    e_x: float,
-    e_y: float,
+    place: tuple[float, float],
+    direction: tuple[float, float],
     vehicles: Array,
     radius: float,
     travelled: float,
+    ahead: float,
 ) -> tuple[float, float]:
-    """The acceleration [m/s^2] that vehicles give somebody at (x, y).
+    """The acceleration [m/s^2] that vehicles give a person.
 
-    ``ahead`` [s]: of a vehicle's way that counts as its own; 0: it is a border.
+    Args:
+        place: Position [m] of the person.
+        direction: Unit vector to the way-point.
+        vehicles: Vehicles (m, 7).
+        radius: Radius of a body [m].
+        travelled: Time [s] for which the vehicles have driven straight on.
+        ahead: Time [s] of a vehicle's way that counts as its own; with 0 it is a border.
     """
+    (x, y), (e_x, e_y) = place, direction
     a_x, a_y = 0.0, 0.0
     for k in range(vehicles.shape[0]):
         vehicle = vehicles[k]

@@ -201,8 +201,7 @@ def _head(
             start[i + 1] - 1,
             routes,
             closed,
-            radii[0],
-            radii[1],
+            radii,
         )
         waypoint_index[i] = at - start[i]
         goal[i, 0], goal[i, 1], stops[i] = to_x, to_y, halts

@@ -25,28 +25,14 @@ def set_targets(
 ) -> None:
     """Pass the way-points reached (not the last, none that is closed); targets into the rows.
 
+    Row k is that of pedestrian ``order[k]``; further rows stay as they are.
+
     The destination force fades towards a way-point at which somebody stops: the last, or one
     whose signal is closed. Towards all others people walk at their desired speed (ours: with the
     fading everywhere, way-points 2 m apart cost a quarter of it, 5 m apart an eighth).
     """
-    n = desired_speed.shape[0]
-    set_targets_of(n, rows, order, desired_speed, routes, waypoint_index, closed, c)
-
-
-@inlined
-def set_targets_of(
-    n: int,
-    rows: NDArray[np.float64],
-    order: NDArray[np.int64],
-    desired_speed: NDArray[np.float64],
-    routes: Routes,
-    waypoint_index: NDArray[np.int64],
-    closed: NDArray[np.bool_],
-    c: Any,
-) -> None:
-    """Set the targets of the first n rows, as ``set_targets`` does."""
     start = routes.start
-    for k in range(n):
+    for k in range(order.shape[0]):
         i = order[k]
         at, stops, to_x, to_y = heading_for(
             rows[PX, k],
@@ -55,8 +41,7 @@ def set_targets_of(
             start[i + 1] - 1,
             routes,
             closed,
-            c.r_waypoint,
-            c.R,
+            (c.r_waypoint, c.R),
         )
         waypoint_index[i] = at - start[i]
         rows[TX, k], rows[TY, k] = to_x, to_y

@@ -5,7 +5,7 @@ and never gets round it: a local minimum of the force field. All of this file is
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +21,25 @@ _ENTRY, _CORNER_X, _CORNER_Y = NVX, NX, NY  # rows that are free until the step 
 _CLEAR = 2.0  # an entry parameter beyond the segment's end: no crossing
 
 
+class _Box(NamedTuple):
+    """A rectangle (low, high) x (-half, half) in a vehicle's frame [m]."""
+
+    low: float
+    high: float
+    half: float
+
+
 @inlined
-def _entry(x: float, y: float, dx: float, dy: float, low: float, high: float, h: float) -> float:
-    """Return where in [0, 1] the segment enters the open box (low, high) x (-h, h), or 2."""
+def _grown(box: _Box, by: float) -> _Box:
+    """Return the box with ``by`` [m] more on each side."""
+    return _Box(box.low - by, box.high + by, box.half + by)
+
+
+@inlined
+def _entry(x: float, y: float, dx: float, dy: float, box: _Box) -> float:
+    """Return where in [0, 1] the segment enters the open box, or 2."""
     enter, leave = 0.0, 1.0
+    low, high, h = box
     for axis in range(2):
         p, d, a, b = (x, dx, low, high) if axis == 0 else (y, dy, -h, h)
         if d == 0.0:
@@ -38,9 +53,9 @@ def _entry(x: float, y: float, dx: float, dy: float, low: float, high: float, h:
 
 
 @inlined
-def _outside(x: float, y: float, low: float, high: float, h: float) -> float:
+def _outside(x: float, y: float, box: _Box) -> float:
     """Return the distance (maximum norm) of a point from the box; it is negative inside."""
-    return max(max(low - x, x - high), abs(y) - h)
+    return max(max(box.low - x, x - box.high), abs(y) - box.half)
 
 
 @inlined
@@ -50,49 +65,41 @@ def _length(dx: float, dy: float) -> float:
 
 
 @inlined
-def _corner(k: int, low: float, high: float, h: float) -> tuple[float, float]:
-    """The corners 0 ... 3 of a box, counter-clockwise from (high, h)."""
-    return (high if k == 0 or k == 3 else low), (h if k < 2 else -h)
+def _corner(k: int, box: _Box) -> tuple[float, float]:
+    """The corners 0 ... 3 of a box, counter-clockwise from (high, half)."""
+    return (box.high if k == 0 or k == 3 else box.low), (box.half if k < 2 else -box.half)
 
 
 @inner
 def _way_round(
-    x: float,
-    y: float,
-    x_p: float,
-    y_p: float,
-    low: float,
-    high: float,
-    h: float,
-    margin: float,
-    radius: float,
+    place: tuple[float, float], target: tuple[float, float], box: _Box, margin: float, radius: float
 ) -> tuple[float, float]:
-    """The first corner of the shortest way round a box from (x, y) to (x_p, y_p), all local.
+    """The first corner of the shortest way round a box from a place to a target, all local.
 
     The corners are those of the box grown by ``margin``; whoever stands or wants to go closer than
     that sees a box grown by less. A corner within ``radius`` is passed already.
     """
-    closest = min(_outside(x, y, low, high, h), _outside(x_p, y_p, low, high, h))
-    grown = min(margin, closest) - _TOUCH
-    a, b, w = low - grown, high + grown, h + grown
+    (x, y), (x_p, y_p) = place, target
+    closest = min(_outside(x, y, box), _outside(x_p, y_p, box))
+    seen, corners = _grown(box, min(margin, closest) - _TOUCH), _grown(box, margin)
     best, best_x, best_y = math.inf, x_p, y_p
     for turn in (1, 3):  # counter-clockwise, clockwise
         for first in range(4):
-            c_x, c_y = _corner(first, low - margin, high + margin, h + margin)
-            if _entry(x, y, c_x - x, c_y - y, a, b, w) < _CLEAR:
+            c_x, c_y = _corner(first, corners)
+            if _entry(x, y, c_x - x, c_y - y, seen) < _CLEAR:
                 continue
             length = _length(c_x - x, c_y - y)
             near = length < radius
             next_x, next_y = c_x, c_y
             corner = first
             for legs in range(4):
-                if _entry(c_x, c_y, x_p - c_x, y_p - c_y, a, b, w) == _CLEAR:
+                if _entry(c_x, c_y, x_p - c_x, y_p - c_y, seen) == _CLEAR:
                     length += _length(x_p - c_x, y_p - c_y)
                     if near and legs == 0:
                         next_x, next_y = x_p, y_p
                     break
                 corner = (corner + turn) % 4
-                d_x, d_y = _corner(corner, low - margin, high + margin, h + margin)
+                d_x, d_y = _corner(corner, corners)
                 length += _length(d_x - c_x, d_y - c_y)
                 c_x, c_y = d_x, d_y
                 if near and legs == 0:
@@ -110,7 +117,7 @@ def _look_ahead(
     reach = vehicle[FRONT] + vehicle[REAR] + vehicle[WIDTH] + 2.0 * c.detour
     v_x, v_y = vehicle[X], vehicle[Y]
     cos, sin = cosine_sine(vehicle[HEADING])
-    low, high, h = -vehicle[REAR], vehicle[FRONT], vehicle[WIDTH] / 2.0
+    box = _Box(-vehicle[REAR], vehicle[FRONT], vehicle[WIDTH] / 2.0)
     for k in range(start, stop):
         x, y, x_p, y_p = rows[PX, k], rows[PY, k], rows[TX, k], rows[TY, k]
         if min(x, x_p) > v_x + reach or max(x, x_p) < v_x - reach:
@@ -120,13 +127,13 @@ def _look_ahead(
         at_x, at_y = cos * (x - v_x) + sin * (y - v_y), cos * (y - v_y) - sin * (x - v_x)
         to_x = cos * (x_p - v_x) + sin * (y_p - v_y)
         to_y = cos * (y_p - v_y) - sin * (x_p - v_x)
-        room = min(_outside(at_x, at_y, low, high, h), _outside(to_x, to_y, low, high, h))
+        room = min(_outside(at_x, at_y, box), _outside(to_x, to_y, box))
         if room <= 0.0:
             continue  # inside the car, or bound for its inside: no way round
-        g = min(room, c.detour) - _TOUCH
-        entry = _entry(at_x, at_y, to_x - at_x, to_y - at_y, low - g, high + g, h + g)
+        seen = _grown(box, min(room, c.detour) - _TOUCH)
+        entry = _entry(at_x, at_y, to_x - at_x, to_y - at_y, seen)
         if entry < rows[_ENTRY, k]:
-            q_x, q_y = _way_round(at_x, at_y, to_x, to_y, low, high, h, c.detour, c.r_waypoint)
+            q_x, q_y = _way_round((at_x, at_y), (to_x, to_y), box, c.detour, c.r_waypoint)
             rows[_ENTRY, k] = entry
             rows[_CORNER_X, k] = v_x + cos * q_x - sin * q_y
             rows[_CORNER_Y, k] = v_y + sin * q_x + cos * q_y

@@ -152,7 +152,7 @@ class CrowdModel:
             )
         else:
             law = (self._constants, *time, self.cell_list_from, 0.0)
-            bad = roll_out(people, vehicles.array[None], *law, _NOWHERE)
+            bad = roll_out(people, vehicles.array[None], law, _NOWHERE)
         if bad != FINE:
             raise divergence(bad, crowd, vehicles)
 

@@ -110,7 +110,7 @@ class Predictor:
         if not flags.c_contiguous or vehicles_trajectory.dtype != np.float64:
             raise VehicleError("vehicles_trajectory is expected to be C-contiguous float64")
         people = self.arrays(crowd, surroundings)
-        bad = roll_out(people, vehicles_trajectory, *self.law, self._out)
+        bad = roll_out(people, vehicles_trajectory, self.law, self._out)
         if bad != FINE:
             raise self.divergence(crowd, bad)
         return self._out

@@ -45,11 +45,7 @@ def rollout_step(
     scene: Scene,
     vehicles: NDArray[np.float64],
     scratch: Scratch,
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-    lead: float,
+    law: tuple[NDArray[Any], float, int, int, float],
 ) -> int:
     """Step as :func:`step_n` does, also by steps that stand for several of the crowd's own.
 
@@ -63,22 +59,20 @@ def rollout_step(
         scene: what the crowd walks among.
         vehicles: (m, 7) at that mean instant.
         scratch: memory.
-        constants: Constants of the model.
-        dt: [s] of a step.
-        substeps: how many.
-        cell_list_from: the crowd size from which neighbours are found by a cell list.
-        lead: [s].
+        law: ``law`` of :func:`step_n`, and the lead [s].
 
     Returns:
         ``FINE`` or the first bad index.
     """
     (x, v, at), before = ahead
+    constants, dt, substeps, cell_list_from, lead = law
     n = x.shape[0] if lead > 0.0 else 0
     for i in range(n):
         before[i, 0], before[i, 1] = v[i, 0], v[i, 1]
         x[i, 0], x[i, 1] = x[i, 0] + lead * v[i, 0], x[i, 1] + lead * v[i, 1]
     state = State(x, v, at)
-    insane = step_n(state, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
+    steps = (constants, dt, substeps, cell_list_from)
+    insane = step_n(state, scene, vehicles, scratch, steps)
     for i in range(n):
         x[i, 0], x[i, 1] = x[i, 0] - lead * before[i, 0], x[i, 1] - lead * before[i, 1]
     return insane
@@ -88,11 +82,7 @@ def rollout_step(
 def roll_out(
     arrays: Arrays,
     vehicles: NDArray[np.float64],
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-    lead: float,
+    law: tuple[NDArray[Any], float, int, int, float],
     out: NDArray[np.float64],
 ) -> int:
     """Fill ``out`` (N, n, 2) with the positions of the next N steps.
@@ -103,9 +93,8 @@ def roll_out(
     """
     ahead, scene, scratch = start(arrays)
     x = ahead.state.position
-    law = (constants, dt, substeps, cell_list_from, lead)
     for k in range(out.shape[0]):
-        insane = rollout_step(ahead, scene, vehicles[k], scratch, *law)
+        insane = rollout_step(ahead, scene, vehicles[k], scratch, law)
         if insane != FINE:
             return insane
         for i in range(out.shape[1]):

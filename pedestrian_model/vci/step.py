@@ -36,7 +36,7 @@ from pedestrian_model.vci.destination import set_targets
 from pedestrian_model.vci.detour import detour
 from pedestrian_model.vci.pairs.all_pairs import add_all_pairs
 from pedestrian_model.vci.pairs.cell_list import add_near_pairs
-from pedestrian_model.vci.vehicle_force import add_near_vehicles, add_vehicles
+from pedestrian_model.vci.vehicle_force import Traffic, add_near_vehicles, add_vehicles
 from pedestrian_model.vci.wall_force import add_walls
 
 
@@ -82,8 +82,7 @@ def gather_forces(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     priority: NDArray[np.float64],
-    vehicles: NDArray[np.float64],
-    travelled: float,
+    traffic: Traffic,
     scratch: Scratch,
     constants: NDArray[Any],
     cell_list_from: int,
@@ -91,17 +90,16 @@ def gather_forces(
     """Fill the rows and their pair and vehicle forces from the state."""
     n = position.shape[0]
     rows, index, buffer = scratch
-    relied_on = any_priority(priority)
     if n >= cell_list_from or n > LARGEST_RING:
         grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
-        if relied_on:
+        if traffic.relied_on:
             _fill_priority(rows, index[0], priority)
-        add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, relied_on, constants)
+        add_near_vehicles(rows, index[2], grid, n, traffic, constants)
     else:
         add_all_pairs(rows, index, buffer, position, velocity, constants)
-        if relied_on:
+        if traffic.relied_on:
             _fill_priority(rows, index[0], priority)
-        add_vehicles(rows, n, vehicles, travelled, relied_on, constants[0])
+        add_vehicles(rows, n, traffic, constants[0])
 
 
 @inlined
@@ -148,12 +146,19 @@ def step_n(
     scene: Scene,
     vehicles: NDArray[np.float64],
     scratch: Scratch,
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
+    law: tuple[NDArray[Any], float, int, int],
 ) -> int:
-    """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index."""
+    """Advance the state in place by some steps; ``FINE`` or the first bad index.
+
+    Args:
+        state: State of the crowd, which is changed.
+        scene: Surroundings and wishes of the crowd.
+        vehicles: Vehicles (m, 7).
+        scratch: Memory of a step.
+        law: Constants of the model, length dt [s] of a step, number of steps, and the crowd size
+            from which neighbours are found by a cell list.
+    """
+    constants, dt, substeps, cell_list_from = law
     c = constants[0]
     position, velocity, waypoint_index = state
     desired_speed, priority, routes, closed, walls, wall_cells = scene
@@ -162,14 +167,12 @@ def step_n(
     insane = first_insane(position, velocity)
     if n == 0 or insane != FINE:
         return insane
+    relied_on, order = any_priority(priority), index[0]
     for step in range(substeps):
-        time = step * dt
-        gather_forces(
-            position, velocity, priority, vehicles, time, scratch, constants, cell_list_from
-        )
-        order = index[0]
+        traffic = Traffic(vehicles, step * dt, relied_on)
+        gather_forces(position, velocity, priority, traffic, scratch, constants, cell_list_from)
         add_walls(rows, n, FX, FY, walls, wall_cells, c)
-        set_targets(rows, order, desired_speed, routes, waypoint_index, closed, c)
+        set_targets(rows, order[:n], desired_speed, routes, waypoint_index, closed, c)
         detour(rows, n, vehicles, c)
         _integrate(rows, (n + BLOCK - 1) // BLOCK * BLOCK, dt, c)
         for k in range(n):

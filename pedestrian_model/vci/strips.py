@@ -34,11 +34,12 @@ from pedestrian_model.vci.buffers import (
     aligned,
     fill_some,
 )
-from pedestrian_model.vci.destination import set_targets_of
+from pedestrian_model.vci.destination import set_targets
 from pedestrian_model.vci.detour import detour
 from pedestrian_model.vci.pairs.cell_list import (
     _TILE,
     Grid,
+    Strips,
     _find_segments,
     _lay_grid,
     _meet_candidates,
@@ -46,7 +47,7 @@ from pedestrian_model.vci.pairs.cell_list import (
 )
 from pedestrian_model.vci.pairs.pair_force import add_coincident, pair_constants
 from pedestrian_model.vci.step import _integrate, any_priority, parts
-from pedestrian_model.vci.vehicle_force import add_vehicles_to_strips
+from pedestrian_model.vci.vehicle_force import Traffic, add_vehicles_to_strips
 from pedestrian_model.vci.wall_force import add_walls
 
 #: Where ``lay_out`` leaves the grid and the strips at which domains begin.
@@ -132,30 +133,25 @@ def lay_out(
 def _add_pairs(
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
-    buffer: NDArray[np.float64],
-    segments: NDArray[np.int64],
-    grid: Grid,
-    begin_strip: int,
-    end_strip: int,
+    memory: tuple[NDArray[np.float64], NDArray[np.int64]],
+    strips: Strips,
     filled: int,
     constants: NDArray[Any],
 ) -> None:
-    """The forces of all pairs on the rows of the strips begin_strip ... end_strip - 1.
+    """The forces of all pairs on the rows of the domain's strips.
 
     A function of its own in machine code, as ``add_near_pairs``.
 
     Args:
         rows: Rows of the domain, filled as far as its tiles and those of its ghosts reach.
         index: order and cells.
-        buffer: Buffer of the domain.
-        segments: Segments of the domain.
-        grid: Grid of the cells.
-        begin_strip: the domain's first strip.
-        end_strip: its last plus one.
+        memory: Buffer and segments of the domain.
+        strips: Strips of the domain.
         filled: the last row that is filled, plus one.
         constants: Constants of the model.
     """
     c = pair_constants(constants[0])
+    (buffer, segments), (grid, begin_strip, end_strip) = memory, strips
     order, first = index[0], index[2]
     own = first[begin_strip * grid.columns]
     for strip in range(max(0, begin_strip - _halo(grid)), end_strip):
@@ -197,10 +193,8 @@ def step_domain(
     layout: NDArray[np.float64],
     domain: int,
     after: NDArray[np.float64],
-    vehicles: NDArray[np.float64],
-    travelled: float,
-    constants: NDArray[Any],
-    dt: float,
+    traffic: tuple[NDArray[np.float64], float],
+    law: tuple[NDArray[Any], float],
 ) -> None:
     """The next state of one domain's pedestrians, and the way-points that they have passed.
 
@@ -211,11 +205,10 @@ def step_domain(
         layout: Layout, filled by ``lay_out``.
         domain: which.
         after: (n, 4) the next positions and velocities; filled.
-        vehicles: (m, 7).
-        travelled: [s] for which the vehicles have driven straight on since.
-        constants: Constants of the model.
-        dt: [s].
+        traffic: Vehicles (m, 7), and the time [s] for which they have driven straight on.
+        law: Constants of the model, and the length dt [s] of the step.
     """
+    (vehicles, travelled), (constants, dt) = traffic, law
     state, scene, scratch = parts(arrays)
     rows, buffer, segments = memory
     begin_strip, end_strip = int(layout[_GRID + domain]), int(layout[_GRID + domain + 1])
@@ -237,26 +230,18 @@ def step_domain(
     begin = first[max(0, begin_strip - halo) * grid.columns]
     filled = first[min(grid.strips, end_strip + halo) * grid.columns]
     fill_some(rows, order, state.position, state.velocity, begin, filled)
-    _add_pairs(rows, index, buffer, segments, grid, begin_strip, end_strip, filled, constants)
+    strips = Strips(grid, begin_strip, end_strip)
+    _add_pairs(rows, index, (buffer, segments), strips, filled, constants)
     mine, who, n = _shifted(rows, start), order[start:stop], stop - start
     relied_on = any_priority(scene.priority)
     if relied_on:
         for k in range(n):
             mine[PRIORITY, k] = scene.priority[who[k]]
-    add_vehicles_to_strips(
-        rows, first, grid, begin_strip, end_strip, vehicles, travelled, relied_on, constants
-    )
+    among = Traffic(vehicles, travelled, relied_on)
+    add_vehicles_to_strips(rows, first, strips, among, constants)
     add_walls(mine, n, FX, FY, scene.walls, scene.wall_cells, c)
-    set_targets_of(
-        n,
-        mine,
-        who,
-        scene.desired_speed,
-        scene.routes,
-        state.waypoint_index,
-        scene.closed,
-        c,
-    )
+    at = state.waypoint_index
+    set_targets(mine, who, scene.desired_speed, scene.routes, at, scene.closed, c)
     detour(mine, n, vehicles, c)
     _integrate(mine, n, dt, c)
     for k in range(n):

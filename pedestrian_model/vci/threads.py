@@ -88,7 +88,7 @@ class CrowdThreads:
         dt: float,
     ) -> None:
         """All domains, each in its thread; returns or raises only when every one has ended."""
-        rest = (self._after, vehicles, travelled, constants, dt)
+        rest = (self._after, (vehicles, travelled), (constants, dt))
         futures: list[Future[None]] = []
         pool = self._pool()
         try:

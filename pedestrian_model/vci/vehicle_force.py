@@ -16,7 +16,7 @@ from pedestrian_model._jit import fma, inlined, inner
 from pedestrian_model._mathematics import cosine_sine, exponential
 from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 from pedestrian_model.vci.buffers import BLOCK, PRIORITY, PX, PY, VFX, VFY, VX, VY, S
-from pedestrian_model.vci.pairs.cell_list import Grid
+from pedestrian_model.vci.pairs.cell_list import Grid, Strips
 from pedestrian_model.vci.priority import felt, place_of_full_force
 
 #: A vehicle's force is left out where it is less than this, if there are many vehicles.
@@ -83,15 +83,19 @@ def _influence(X: float, lateral: float, q: Contour) -> tuple[float, float, floa
 class _Vehicle(NamedTuple):
     """A vehicle at an instant, as it acts on people: scalars, so that no loop reads them again."""
 
-    x: float  # [m] the reference point
-    y: float
-    cos: float  # of the heading
-    sin: float
-    nose_x: float  # the direction of the nose: in reverse it points backwards
-    nose_y: float
-    u_x: float  # [m/s] the velocity that the angle of its force takes it to have
-    u_y: float
+    place: tuple[float, float]  # [m] the reference point
+    heading: tuple[float, float]  # cosine and sine
+    nose: tuple[float, float]  # the direction of the nose: in reverse it points backwards
+    velocity: tuple[float, float]  # [m/s] that the angle of its force takes it to have
     contour: Contour
+
+
+class Traffic(NamedTuple):
+    """The vehicles among the people in one step."""
+
+    vehicles: NDArray[np.float64]  # (m, 7)
+    travelled: float  # [s] for which they have driven straight on since
+    relied_on: bool  # whether anybody has priority; else the row of it need not be filled
 
 
 class _Law(NamedTuple):
@@ -110,13 +114,14 @@ def _force(
     x: float, y: float, vx: float, vy: float, v: _Vehicle, law: _Law
 ) -> tuple[float, float, float, float]:
     """f_v [N] on one person, the signed distance to the contour, and X along the nose [m]."""
-    dx, dy = x - v.x, y - v.y
-    across = fma(v.cos, dy, -(v.sin * dx))
-    X = fma(v.nose_x, dx, v.nose_y * dy)
+    (x_v, y_v), (cos, sin), (nose_x, nose_y), (u_x, u_y) = v.place, v.heading, v.nose, v.velocity
+    dx, dy = x - x_v, y - y_v
+    across = fma(cos, dy, -(sin * dx))
+    X = fma(nose_x, dx, nose_y * dy)
     s, e_x, e_y = _influence(X, abs(across), v.contour)
     e_y = e_y if across >= 0.0 else -e_y
     # As(phi_v; l_v) between the direction to the vehicle and the velocity relative to it
-    w_x, w_y = vx - v.u_x, vy - v.u_y
+    w_x, w_y = vx - u_x, vy - u_y
     lengths = math.sqrt(fma(dx, dx, dy * dy) * fma(w_x, w_x, w_y * w_y))
     cosine = -fma(dx, w_x, dy * w_y) / lengths
     cosine = min(1.0, max(-1.0, cosine)) if lengths > 0.0 else 1.0  # at rest: seen
@@ -124,8 +129,8 @@ def _force(
     # fexp(s - R; A, b) As(phi_v; l_v) e
     exponent = max(min(-law.b * (s - law.R), law.cap), _LEAST_EXPONENT)
     f = law.A * exponential(exponent) * anisotropy
-    f_x = f * fma(e_x, v.nose_x, -(e_y * v.sin))
-    return f_x, f * fma(e_x, v.nose_y, e_y * v.cos), s, X
+    f_x = f * fma(e_x, nose_x, -(e_y * sin))
+    return f_x, f * fma(e_x, nose_y, e_y * cos), s, X
 
 
 @inlined
@@ -156,8 +161,8 @@ def add_vehicle(
     if abs(u) < c.u_angle:
         u_x, u_y = 0.0, 0.0
     # In reverse the contour is mirrored: its nose points backwards.
-    nose_x, nose_y = (-cos, -sin) if u < 0.0 else (cos, sin)
-    v = _Vehicle(x_v, y_v, cos, sin, nose_x, nose_y, u_x, u_y, _contour(vehicle, c))
+    nose = (-cos, -sin) if u < 0.0 else (cos, sin)
+    v = _Vehicle((x_v, y_v), (cos, sin), nose, (u_x, u_y), _contour(vehicle, c))
     law = _Law(c.R, c.A, c.b, c.a_v, c.b_v, c.cap)
     # Sliced and counted from 0: of an index that could be negative no vector loop is made.
     x, y, vx, vy = (
@@ -185,15 +190,9 @@ def add_vehicle(
 
 
 @inlined
-def add_vehicles(
-    rows: NDArray[np.float64],
-    n: int,
-    vehicles: NDArray[np.float64],
-    travelled: float,
-    relied_on: bool,
-    c: Any,
-) -> None:
+def add_vehicles(rows: NDArray[np.float64], n: int, traffic: Traffic, c: Any) -> None:
     """Add the forces of all vehicles to the first n rows, padded to whole blocks."""
+    vehicles, travelled, relied_on = traffic
     padded = (n + BLOCK - 1) // BLOCK * BLOCK
     for v in range(vehicles.shape[0]):
         add_vehicle(rows, 0, padded, vehicles[v], travelled, relied_on, c)
@@ -205,9 +204,7 @@ def add_near_vehicles(
     first: NDArray[np.int64],
     grid: Grid,
     n: int,
-    vehicles: NDArray[np.float64],
-    travelled: float,
-    relied_on: bool,
+    traffic: Traffic,
     constants: NDArray[Any],
 ) -> None:
     """Add the forces of vehicles to rows sorted by the cells of ``grid``, where a vehicle reaches.
@@ -215,57 +212,43 @@ def add_near_vehicles(
     Whom it does not reach is left out strip by strip, by a box round its contour; with few
     vehicles nobody is, so that a crowd's size does not show in the last bits of their force.
     """
-    if vehicles.shape[0] < _MANY:
-        add_vehicles(rows, n, vehicles, travelled, relied_on, constants[0])
+    if traffic.vehicles.shape[0] < _MANY:
+        add_vehicles(rows, n, traffic, constants[0])
     else:
-        _add_to_strips(rows, first, grid, 0, grid.strips, vehicles, travelled, relied_on, constants)
+        _add_to_strips(rows, first, Strips(grid, 0, grid.strips), traffic, constants)
 
 
 @inlined
 def add_vehicles_to_strips(
     rows: NDArray[np.float64],
     first: NDArray[np.int64],
-    grid: Grid,
-    begin_strip: int,
-    end_strip: int,
-    vehicles: NDArray[np.float64],
-    travelled: float,
-    relied_on: bool,
+    strips: Strips,
+    traffic: Traffic,
     constants: NDArray[Any],
 ) -> None:
-    """Add them as ``add_near_vehicles`` does, to the strips begin_strip ... end_strip - 1 only."""
+    """Add them as ``add_near_vehicles`` does, to some strips only."""
+    vehicles, travelled, relied_on = traffic
     if vehicles.shape[0] < _MANY:
-        start, stop = first[begin_strip * grid.columns], first[end_strip * grid.columns]
+        columns = strips.grid.columns
+        start, stop = first[strips.begin * columns], first[strips.end * columns]
         for v in range(vehicles.shape[0]):
             add_vehicle(rows, start, stop, vehicles[v], travelled, relied_on, constants[0])
     else:
-        _add_to_strips(
-            rows,
-            first,
-            grid,
-            begin_strip,
-            end_strip,
-            vehicles,
-            travelled,
-            relied_on,
-            constants,
-        )
+        _add_to_strips(rows, first, strips, traffic, constants)
 
 
 @inlined
 def _add_to_strips(
     rows: NDArray[np.float64],
     first: NDArray[np.int64],
-    grid: Grid,
-    begin_strip: int,
-    end_strip: int,
-    vehicles: NDArray[np.float64],
-    travelled: float,
-    relied_on: bool,
+    strips: Strips,
+    traffic: Traffic,
     constants: NDArray[Any],
 ) -> None:
     """Add the forces of vehicles to those rows of some strips that they reach."""
     c = constants[0]
+    grid, begin_strip, end_strip = strips
+    vehicles, travelled, relied_on = traffic
     for v in range(vehicles.shape[0]):
         cos, sin = cosine_sine(vehicles[v, HEADING])
         u = vehicles[v, SPEED]

@@ -32,7 +32,7 @@ def add_walls(
     if walls.shape[0] == 1:
         return
     distance, n_x, n_y = rows[WS], rows[WX], rows[WY]
-    find_walls(rows[PX], rows[PY], n, walls, cells, distance, n_x, n_y)
+    find_walls(rows[PX], rows[PY], n, walls, cells, (distance, n_x, n_y))
     R, A_w, b_w, k_col, cap = c.R, c.A_w, c.b_w, c.k_col, c.cap
     f_x, f_y = rows[row_x], rows[row_y]
     for k in range(n):

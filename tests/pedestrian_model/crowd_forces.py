@@ -19,7 +19,8 @@ from pedestrian_model.vci.buffers import FX, FY, PX, PY, SOFT, TX, TY, VFX, VFY,
 from pedestrian_model.vci.constants import pack
 from pedestrian_model.vci.destination import set_targets
 from pedestrian_model.vci.detour import detour
-from pedestrian_model.vci.step import gather_forces
+from pedestrian_model.vci.step import any_priority, gather_forces
+from pedestrian_model.vci.vehicle_force import Traffic
 from pedestrian_model.vci.wall_force import add_walls
 
 cosine_sine = kernel(cosine_sine)
@@ -158,7 +159,8 @@ def _fill_forces(
     if n == 0 or insane != FINE:
         return insane
     memory = Scratch(*scratch)
-    gather_forces(position, velocity, priority, vehicles, 0.0, memory, constants, cell_list_from)
+    traffic = Traffic(vehicles, 0.0, any_priority(priority))
+    gather_forces(position, velocity, priority, traffic, memory, constants, cell_list_from)
     rows, order = memory.rows, memory.sorting[0]
     for k in range(n):
         i = order[k]
@@ -191,7 +193,7 @@ def _fill_targets(
         rows[PX, i], rows[PY, i] = position[i, 0], position[i, 1]
         rows[FX, i], rows[FY, i] = 0.0, 0.0
     add_walls(rows, n, FX, FY, walls, wall_cells, c)
-    set_targets(rows, index[0], desired_speed, Routes(*routes), waypoint_index, closed, c)
+    set_targets(rows, index[0, :n], desired_speed, Routes(*routes), waypoint_index, closed, c)
     detour(rows, n, vehicles, c)
     for i in range(n):
         out[i, 0], out[i, 1], out[i, 2] = rows[TX, i], rows[TY, i], rows[SOFT, i]

@@ -220,7 +220,7 @@ def advance(
         station = front + 0.5 * (distance[k, step] + distance[k, late])
         pace = 0.5 * (speed[k, step] + speed[k, late])
         set_pose(vertices, stations, headings, station, pace, View(*view).length, poses[j, row])
-        bad = rollout_step(ahead, scene, poses[j], scratch, *law[:-1])
+        bad = rollout_step(ahead, scene, poses[j], scratch, law[:-1])
         if bad != _FINE:
             return bad
         if j > 0:  # step 0 is the walking model's: intent estimation compares people with it

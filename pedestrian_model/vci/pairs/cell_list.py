@@ -66,6 +66,14 @@ class Grid(NamedTuple):
     slack: float  # [m] so that rounding loses nobody
 
 
+class Strips(NamedTuple):
+    """Some strips of a grid, one above the other."""
+
+    grid: Grid
+    begin: int  # the first strip
+    end: int  # the last one plus one
+
+
 @inlined
 def _lay_grid(position: NDArray[np.float64], reach: float, most: int) -> Grid:
     """The grid over a crowd, coarser than planned where it would have more than ``most`` cells."""
