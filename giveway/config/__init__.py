@@ -1,4 +1,4 @@
-"""Options declared once, settings from layers, and one validated configuration of a run."""
+"""The configuration of a run: options declared once, settings merged from layers and validated."""
 
 from giveway.config.run_config import EgoRunConfig, RunConfig
 

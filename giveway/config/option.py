@@ -1,4 +1,4 @@
-"""The declaration of an option: unit, bounds, and values taken from files and flags."""
+"""The declaration of an option: unit, bounds, and the conversion of values from files and flags."""
 
 import math
 import shlex
@@ -33,23 +33,23 @@ def option(
     because: str | None = None,
     **bounds: Any,
 ) -> Any:
-    """A documented option.
+    """Declare an option with its documentation.
 
     Args:
-        default: Its value where nobody sets it.
+        default: Value if it is not set.
         unit: Unit of a quantity.
-        description: what it means.
-        flag: Its name on the command line, where the derived one is clumsy.
-        least: The smallest value above 0 that makes sense; a bound says whether 0 does.
-        because: why other values than those within ``least`` and ``bounds`` make no sense.
-        bounds: Bounds as of a pydantic field.
+        description: Meaning of the option.
+        flag: Name on the command line, if the derived one is clumsy.
+        least: Smallest positive value that makes sense; a bound says whether 0 is allowed.
+        because: Reason why values outside of ``least`` and ``bounds`` make no sense.
+        bounds: Bounds as for a pydantic field.
     """
     extra: dict[str, JsonValue] = {"unit": unit, "flag": flag, "least": least, "because": because}
     return Field(default, description=description, json_schema_extra=extra, **bounds)
 
 
 def declared(field: FieldInfo) -> dict[str, Any]:
-    """Return what :func:`option` keeps beside the field: unit, flag, least, because."""
+    """Return the declarations of :func:`option` beside the field: unit, flag, least, because."""
     extra = field.json_schema_extra
     return dict(extra) if isinstance(extra, dict) else {}
 
@@ -58,12 +58,12 @@ def expectation(error: Any, field: FieldInfo) -> str:
     """Return what was expected instead of a refused value: range, unit, reason, meaning.
 
     Args:
-        error: One of those of a ``ValidationError``.
-        field: The option's.
+        error: One error of a ``ValidationError``.
+        field: Field of the option.
     """
     extra = declared(field)
     expected = str(error["msg"]).removeprefix("Input ")
-    if error["type"] in {"missing", "too_long"}:  # of a tuple's values
+    if error["type"] in {"missing", "too_long"}:  # errors of a tuple's values
         expected = f"expected {len(get_args(field.annotation))} values"
     unit = f" [{extra['unit']}]" if extra.get("unit") else ""
     out_of_range = error["type"] in _OUT_OF_RANGE and extra.get("because")
@@ -78,12 +78,12 @@ def is_number(value: object) -> bool:
 
 
 def _split(value: Any) -> Any:
-    """A comma-separated flag value as the list that a TOML file would hold."""
+    """Return a comma-separated flag value as the list that a TOML file would hold."""
     return [part.strip() for part in value.split(",")] if isinstance(value, str) else value
 
 
 def _words(value: Any) -> Any:
-    """Options for SUMO, written as in a shell."""
+    """Return options for SUMO that are written as in a shell."""
     if not isinstance(value, str):
         return value
     try:
@@ -94,13 +94,13 @@ def _words(value: Any) -> Any:
 
 
 def _text(value: Any) -> Any:
-    """A number where text is expected, like a radius in a TOML file."""
+    """Return a number as the text that is expected, such as a radius in a TOML file."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return f"{value:.12g}" if is_number else value
 
 
 def _preset(value: str) -> str:
-    """A name or a file of the model's parameters; the file itself is read when it is needed."""
+    """Return a name or file of the model's parameters; the file is read when it is needed."""
     if value in {"", "SIM", "TABLE2"} or value.endswith(".toml"):
         return value
     msg = "expected SIM, TABLE2 or a preset file (.toml; giveway calibrate writes one)"
@@ -112,7 +112,7 @@ def _seed(value: Any) -> Any:
 
 
 def _speed_or_lane(value: Any) -> Any:
-    """A number, or the word; anything else is named here, where both are known."""
+    """Return a number or the word "lane"; any other value is an error that names both."""
     try:
         return value if value == LANE or isinstance(value, bool) else float(value)
     except (TypeError, ValueError):
@@ -121,7 +121,7 @@ def _speed_or_lane(value: Any) -> Any:
 
 
 def _time_or_window(value: Any) -> Any:
-    """A time, or the earliest and the latest one; anything else is named here."""
+    """Return a time, or the earliest and the latest time; any other value is an error."""
     times = value.split(",") if isinstance(value, str) else value
     is_window = isinstance(times, list | tuple) and len(times) != 1
     try:
@@ -135,10 +135,10 @@ def _time_or_window(value: Any) -> Any:
     return tuple(read) if is_window else read[0]
 
 
-_LATEST = 1e7  # [s] beyond it a millisecond is lost in rounding
+_LATEST = 1e7  # Largest time [s]; beyond it a millisecond is lost in rounding
 
 LANE: Literal["lane"] = "lane"
-"""In place of a speed: what the ego's lane permits."""
+"""Word in place of a speed: the limit of the ego's lane."""
 
 
 SpeedOrLane = Annotated[
@@ -173,7 +173,7 @@ SumoSeed = Annotated[
 
 
 class Section(BaseModel):
-    """A table of the configuration: frozen, finite numbers only, unknown keys refused."""
+    """A table of the configuration: frozen, with finite numbers only; unknown keys are refused."""
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True

@@ -1,4 +1,4 @@
-"""Names of controllers, pedestrian models and sensors: ours, a package's, or module:Class."""
+"""The names of controllers, pedestrian models and sensors: giveway's, a package's, module:Class."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BUNDLED_SENSORS: frozenset[str] = frozenset(get_args(BundledSensor))
 
 
 def _controller(value: Any) -> Any:
-    """``pid`` was the paper's before there was another one."""
+    """Return a controller's name; ``pid`` is the former name of the paper's PID."""
     if isinstance(value, str) and is_fmu(value):
         return value
     return _known("pid-paper" if value == "pid" else value, get_args(BundledController), CONTROLLER)
@@ -43,8 +43,9 @@ def _sensor(value: Any) -> Any:
 
 
 def _known(name: Any, bundled: tuple[str, ...], socket: Socket) -> Any:
-    """A name that there is."""
-    ours = isinstance(name, str) and name.startswith(_JUPEDSIM)  # no module of somebody's
+    """Return a name after a check that it is known."""
+    # a variant of JuPedSim's model, not a module
+    ours = isinstance(name, str) and name.startswith(_JUPEDSIM)
     if isinstance(name, str) and (name in bundled or (is_reference(name) and not ours)):
         return name
     declared = declared_names(socket)

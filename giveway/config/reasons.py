@@ -1,7 +1,7 @@
 """The reasons for bounds that several options share."""
 
 MILLIMETRE = 0.001
-"""[m] No gap between bodies is meant to be smaller."""
+"""Smallest gap [m] between bodies that makes sense."""
 
 GAP = "a gap between bodies is between a millimetre and what a street holds"
 TYRES = "tyres hold 10 m/s^2; below 0.1 m/s^2 nobody notices"

@@ -60,7 +60,7 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("planner", "terminal"): "leave it out: it is always off",
     ("planner", "block_growth"): "leave it out: it is always 0.25",
 }
-"""A key that is refused: the key to write instead, or a sentence that says what to do."""
+"""Each refused key: the key to write instead, or a sentence that says what to do."""
 
 FLAGS: Final[Mapping[str, Location]] = {
     "attitude": ("planner", "attitude"),
@@ -69,14 +69,14 @@ FLAGS: Final[Mapping[str, Location]] = {
     "priority": ("regulation", "priority"),
     "signal-plans": ("perception", "signal_plans"),
 }
-"""Flags, without dashes, of keys in ``RENAMED`` that were not derived from the key."""
+"""Removed flags, without dashes, that were not derived from their keys in ``RENAMED``."""
 
 
 _OWN_FLAGS: Final[Mapping[Location, str]] = {("planner", "style"): "--style"}
 
 
 def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location | str]]:
-    """The keys of one origin's settings, or of its table of one ego, that no longer exist."""
+    """Yield the keys that no longer exist in one origin's settings or in its table of one ego."""
     egos = values.get("egos")
     for old, new in RENAMED.items():
         for table in (values, *(egos if isinstance(egos, list | tuple) else ())):
@@ -85,7 +85,7 @@ def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location |
 
 
 def advice(new: Location | str, *, as_flag: bool) -> str:
-    """Return what to write instead of a key that no longer exists, in a file or as a flag."""
+    """Return what to write instead of a key that no longer exists, for a file or as a flag."""
     if isinstance(new, str):
         return new
     if new[0].endswith("_options"):

@@ -1,6 +1,6 @@
-"""The configuration of a run: everything that shapes it, and what each of its egos gets of it.
+"""The configuration of a run: all its settings, and the settings of each of its egos.
 
-The TOML file, the command line's flags and the Python API are all derived from these classes.
+The TOML file, the flags of the command line and the Python API are derived from these classes.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from controller import Defaults
 
 PAPER_STEP = 0.05
-"""[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
+"""Default control step [s] (Yang & Özgüner 2019, table 1)."""
 
 EGO_TABLES = (
     "controller",
@@ -64,11 +64,11 @@ EGO_TABLES = (
     "perception",
     "sensor_options",
 )
-"""What may differ from ego to ego."""
+"""The settings that may differ from ego to ego."""
 
 
 def _field_at(location: tuple[int | str, ...]) -> FieldInfo | None:
-    """The option at ``location``, which may end within its value; None where there is none."""
+    """Return the option at ``location``, which may end inside its value, or None."""
     model: type[Section] = RunConfig
     for part in location:
         field = model.model_fields.get(str(part))
@@ -171,7 +171,7 @@ class RunConfig(Section):
         return self
 
     def each_ego(self) -> tuple[EgoRunConfig, ...]:
-        """The configuration of each ego, complete and without ``egos``.
+        """Return the configuration of each ego, complete and without ``egos``.
 
         Raises:
             ValueError: an entry of ``egos`` holds an unknown key or a value out of range.
@@ -182,7 +182,7 @@ class RunConfig(Section):
         return tuple(own for entry in entries for own in entry._one_per_vehicle())
 
     def _with(self, number: int, entry: dict[str, Any]) -> RunConfig:
-        """This configuration with the keys of one entry of ``egos``, and without ``egos``."""
+        """Return this configuration with the keys of one entry of ``egos``, without ``egos``."""
         unknown = sorted(set(entry) - set(EGO_TABLES))
         if unknown:
             expected = ", ".join(EGO_TABLES)
@@ -191,7 +191,8 @@ class RunConfig(Section):
             )
         values = self.model_dump(exclude={"egos"})
         if entry.get("controller", self.controller) != self.controller:
-            values["controller_options"], values["controller_profile"] = {}, ""  # of another one
+            # these belong to another controller
+            values["controller_options"], values["controller_profile"] = {}, ""
         own = entry.get("perception")
         if isinstance(own, dict) and own.get("sensor", self.perception.sensor) != (
             self.perception.sensor
@@ -203,28 +204,30 @@ class RunConfig(Section):
             return RunConfig.model_validate(values)
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-            if not first["loc"]:  # settings that do not fit each other
+            if not first["loc"]:  # the settings do not fit each other
                 said = first["msg"].removeprefix("Value error, ")
                 raise ValueError(f"egos[{number}]: {said}") from None
-            key = ".".join(map(str, first["loc"][:2]))  # beyond: which part of the value
+            # the rest says which part of the value is wrong
+            key = ".".join(map(str, first["loc"][:2]))
             field = _field_at(first["loc"])
             expected = expectation(first, field) if field is not None else first["msg"]
             raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
 
     @property
     def defaults(self) -> Defaults:
-        """The declaration of the controller.
+        """The declaration of one of giveway's controllers.
 
-        What somebody else's declares stands in the configuration already, see
-        :func:`giveway.config.loading.load`: to read a configuration imports nobody's code.
+        The declaration of a plug-in is in the configuration already, see
+        :func:`giveway.config.files.loading.load`: no code of another package is imported to read a
+        configuration.
         """
-        from controller import DECLARED, Defaults  # here: numba comes with it
+        from controller import DECLARED, Defaults  # imported here, since numba comes with it
 
         return DECLARED.get(self.controller, Defaults())
 
     @property
     def reference_speed(self) -> float | Literal["lane"]:
-        """The speed [m/s] of an ego with nothing in its way, or "lane": as its lanes say."""
+        """The speed [m/s] on a free road, or "lane" for the lanes' speed limits."""
         wanted = self.regulation.reference_speed
         if wanted is not None:
             return wanted
@@ -235,7 +238,7 @@ class RunConfig(Section):
         """Return whether an ego heeds one of giveway's rules.
 
         Args:
-            rule: Its key in ``[rules]``, like "crossings".
+            rule: Key of the rule in ``[rules]``, like "crossings".
         """
         said: bool | None = getattr(self.rules, rule)
         if said is not None:
@@ -246,23 +249,23 @@ class RunConfig(Section):
 
     @property
     def tracks_people(self) -> bool:
-        """Return whether the controllers are shown tracked positions where perception is noisy."""
+        """True if controllers are shown tracked positions where perception is noisy."""
         tracker = self.perception.tracker
         return self.defaults.tracker if tracker is None else tracker
 
     @property
     def driver(self) -> str:
-        """The controller as titles name it: "MPC", and somebody else's as it is written."""
+        """The controller's name for titles: "MPC", or a plug-in's name as it is written."""
         name = self.controller_name
         return name.upper() if name in BUNDLED else name
 
     @property
     def controller_name(self) -> str:
-        """The controller as tables name it: of an FMU the file's name."""
+        """The controller's name for tables; for an FMU it is the file's name."""
         return shown(self.controller)
 
     def _one_per_vehicle(self) -> list[EgoRunConfig]:
-        """One for each vehicle that is taken over, or the one of an inserted ego."""
+        """Return one configuration per vehicle that is taken over, or that of the inserted ego."""
         taken = [{"take_over": (name,)} for name in self.ego.take_over] or [{}]
         return [
             EgoRunConfig.model_construct(
@@ -285,7 +288,7 @@ class EgoRunConfig(RunConfig):
         """Make sure that the settings fit each other.
 
         Raises:
-            ValueError: they do not.
+            ValueError: they do not fit.
         """
         self.require_speeds_in_reach()
         self.require_rolling()
@@ -301,7 +304,7 @@ class EgoRunConfig(RunConfig):
                 f"[sensor_options] {key}: '{self.perception.sensor}' has no options there; name a "
                 "sensor that has it as [perception] sensor, or leave it out"
             )
-        self.own_options  # noqa: B018 - they are read, and refused if they cannot be used
+        self.own_options  # reading them raises an error if they cannot be used  # noqa: B018
         if self.controller_profile and not is_fmu(self.controller):
             raise ValueError(
                 f"controller_profile = '{self.controller_profile}': '{self.controller}' is no "
@@ -310,20 +313,20 @@ class EgoRunConfig(RunConfig):
 
     @property
     def ego_id(self) -> str:
-        """SUMO's id of the ego."""
+        """The id of the ego in SUMO."""
         return self.ego.take_over[0] if self.ego.take_over else self.ego.id
 
     @property
     def plugged_in(self) -> bool:
-        """Return whether the controller is somebody else's."""
+        """True if the controller is a plug-in."""
         return self.controller not in BUNDLED
 
     @property
     def own_options(self) -> Section:
-        """The options of one of our own controllers; those of others are read by their sockets.
+        """The options of one of giveway's own controllers; sockets read those of plug-ins.
 
         Raises:
-            ConfigError: One is unknown, or its value cannot be used.
+            ConfigError: an option is unknown, or its value cannot be used.
         """
         if self.plugged_in:
             return NoOptions()
@@ -333,12 +336,12 @@ class EgoRunConfig(RunConfig):
 
     @property
     def optimises(self) -> bool:
-        """Return whether a model predictive controller drives: it has a model and a horizon."""
+        """True if the controller is a model predictive one, which has a model and a horizon."""
         return self.defaults.optimises
 
     @property
     def safety_layer(self) -> bool:
-        """Return whether the safety layer watches over the controller."""
+        """True if the safety layer watches over the controller."""
         enabled = self.safety.enabled
         return self.defaults.safety_layer if enabled is None else enabled
 
@@ -353,7 +356,7 @@ class EgoRunConfig(RunConfig):
         return 0.0
 
     def require_speeds_in_reach(self) -> None:
-        """Make sure that the MPC may drive at the speeds asked for.
+        """Make sure that the MPC may drive at the configured speeds.
 
         Raises:
             ValueError: it may not.
@@ -371,12 +374,12 @@ class EgoRunConfig(RunConfig):
                 raise ValueError(msg)
 
     def require_known_belief(self) -> None:
-        """Make sure that somebody else's model is believed in only where it moves people.
+        """Make sure that a plug-in is the predicting model only if it also moves the people.
 
-        Its options, and the leave to import it, are those of the crowd.
+        Its options, and the permission to import it, are those of the crowd's model.
 
         Raises:
-            ValueError: it does not move them.
+            ValueError: it does not move the people.
         """
         believed, moving = self.perception.model, self.crowd.model
         if self.perception.plugged_in and believed != moving:
@@ -388,11 +391,11 @@ class EgoRunConfig(RunConfig):
     def require_rolling(self) -> None:
         """Make sure that friction slows the vehicle down and does not reverse it within a step.
 
-        Forward Euler of M s'' + alpha s' = u, the model of the paper's plant and controllers,
-        multiplies the speed by 1 - alpha h / M in each step h.
+        The forward Euler step h of M s'' + alpha s' = u, the model of the paper's plant and
+        controllers, multiplies the speed by 1 - alpha h / M.
 
         Raises:
-            ValueError: it would.
+            ValueError: it would reverse the vehicle.
         """
         step = self.time_step or PAPER_STEP
         share = self.vehicle.friction * step / self.vehicle.mass

@@ -1,1 +1,1 @@
-"""Rows gathered step by step, and kept where they outlive a crash."""
+"""The recording of a run's rows, step by step, in a file that survives a crash."""

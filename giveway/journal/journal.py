@@ -1,19 +1,18 @@
 """The rows of a run in a file that outlives its process.
 
-Native code (SUMO, the FMU, a solver) can end the process at any instruction. What has been handed
-to the operating system by then outlives it. So the run's tables live in memory, and once per
-control step everything new is appended to one file by one write:
+Native code (SUMO, the FMU, a solver) can end the process at any instruction. Rows that have been
+handed to the operating system by then are kept. Therefore the run's tables live in memory, and once
+per control step all new rows are appended to one file by one write:
 
     magic | record | record | ... ;  record = kind, table, bytes | payload
 
 A ``COMMIT`` record closes each write: a reader takes whole steps or nothing, whatever the end of
-the file looks like. The file is written and not memory-mapped, for four reasons: a wild pointer,
-which is how native code dies, cannot reach rows that have been written; a full disk is an error
-number instead of a SIGBUS; it works on every disk and system; and rows are filled at the speed of
-plain memory. A mapped window was tried: it was as fast for small crowds, and slower for large ones.
+the file looks like. The file is written and not memory-mapped, for four reasons. A wild pointer of
+native code cannot reach rows that have been written. A full disk is an error number instead of a
+SIGBUS. It works on every disk and system. And rows are filled at the speed of plain memory.
 
-A journal is a safety net and never ends a run itself: when it cannot be written it says so in
-:attr:`Journal.failure`, and the run goes on from memory.
+A failing journal never ends a run: if it cannot be written, it gives the reason in
+:attr:`Journal.failure`, and the run goes on in memory.
 """
 
 import contextlib
@@ -32,7 +31,7 @@ from giveway.processes.heartbeat import Heartbeat
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.void]
-"""(n,) rows of float64 whose columns have names: ``rows["speed"]`` is one of them."""
+"""Rows (n,) of float64 whose columns have names: ``rows["speed"]`` is one of them."""
 
 ROWS_FILE = "rows"
 META_FILE = "meta.json"
@@ -60,7 +59,7 @@ def row_type(columns: Sequence[str]) -> np.dtype[np.void]:
 
 
 class JournalRows:
-    """A table of float64 that grows by doubling.
+    """A table of float64 whose memory doubles when it is full.
 
     Args:
         columns: Names of the columns, in order.
@@ -81,14 +80,14 @@ class JournalRows:
         self._bytes = buffer.data.cast("B")
 
     def block(self, rows: int) -> Array:
-        """A view of the next ``rows`` rows, to be filled before the next block or commit."""
+        """Return a view of the next ``rows`` rows, to be filled before the next block or commit."""
         start, self._count = self._count, self._count + rows
         if self._count > self._room:
             self._grow(start)
         return self._buffer[start : self._count]
 
     def add(self, *values: float) -> None:
-        """Fill the next row: three times as fast as by a block of one."""
+        """Fill the next row."""
         start = self._count
         self._count = start + 1
         if start >= self._room:
@@ -96,9 +95,9 @@ class JournalRows:
         self._fill(self._bytes, start * self._row_bytes, *values)
 
     def _grow(self, filled: int) -> None:
-        """Make room for all that is counted, and keep the rows that have been ``filled``."""
+        """Make room for all counted rows, and keep the rows that have been ``filled``."""
         more = np.empty((max(self._count, 2 * self._room), self._buffer.shape[1]))
-        more[:filled] = self._buffer[:filled]  # the system gives the rest when it is filled
+        more[:filled] = self._buffer[:filled]  # the system allocates the rest when it is filled
         self._hold(more)
 
     def give_back(self, rows: int) -> None:
@@ -111,7 +110,7 @@ class JournalRows:
         return self._buffer[: self._count].view(self._type)[:, 0]
 
     def append_new(self, records: list[bytes | memoryview]) -> None:
-        """Append what the journal does not have yet."""
+        """Append the rows that the journal does not have yet."""
         start, end = self._journalled * self._row_bytes, self._count * self._row_bytes
         if end > start:
             records.append(RECORD.pack(Kind.ROWS, self._number, end - start))
@@ -120,7 +119,7 @@ class JournalRows:
 
 
 class NameTable:
-    """Strings as row entries: each gets the index of its first appearance.
+    """Names as row entries: each has the index of its first appearance.
 
     Args:
         number: Number of the table in its journal.
@@ -132,7 +131,7 @@ class NameTable:
         self._new: list[str] = []
 
     def index(self, name: str) -> int:
-        """The index of ``name``, a new one if it has none."""
+        """Return the index of ``name``, which is a new one if the name is new."""
         known = self._indices.get(name)
         if known is not None:
             return known
@@ -145,7 +144,7 @@ class NameTable:
         return tuple(self._indices)
 
     def append_new(self, records: list[bytes | memoryview]) -> None:
-        """Append what the journal does not have yet."""
+        """Append the names that the journal does not have yet."""
         if self._new:
             records += _json_record(Kind.NAMES, self._number, self._new)
             self._new.clear()
@@ -155,8 +154,8 @@ class Journal:
     """The tables of one run.
 
     Args:
-        folder: where the journal is kept; with None nothing is kept.
-        heartbeat: Heartbeat in use; None makes one in the folder.
+        folder: Folder in which the journal is kept, or None to keep nothing.
+        heartbeat: Heartbeat of the run, or None to make one in the folder.
 
     Attributes:
         heartbeat: Progress of the run.
@@ -187,14 +186,14 @@ class Journal:
         return rows
 
     def names(self, name: str) -> NameTable:
-        """A new table of names."""
+        """Add a table of names."""
         names = NameTable(len(self._names))
         self._records += _json_record(Kind.NAME_TABLE, len(self._names), name)
         self._names.append(names)
         return names
 
     def write_meta(self, meta: dict[str, Any]) -> None:
-        """Keep what the rows belong to, as JSON; a later call replaces it whole."""
+        """Keep the facts about the run as JSON; a later call replaces them."""
         if self._folder is None:
             return
         new = self._folder / f"{META_FILE}.new"
@@ -205,11 +204,11 @@ class Journal:
             self._give_up(error)
 
     def commit(self) -> None:
-        """Hand everything new to the operating system; once per control step."""
+        """Hand all new rows to the operating system; called once per control step."""
         if self._file is None:
             return
         records = self._records
-        for names in self._names:  # before the rows that refer to them
+        for names in self._names:  # names come before the rows that refer to them
             names.append_new(records)
         for rows in self._rows:
             rows.append_new(records)
@@ -223,7 +222,7 @@ class Journal:
         records.clear()
 
     def close(self) -> None:
-        """Commit, and let go of the file."""
+        """Commit, and close the file."""
         self.commit()
         if self._file is not None:
             self._file.close()
@@ -246,7 +245,7 @@ def _json_record(kind: Kind, table: int, content: object) -> list[bytes]:
 
 
 def _write(file: FileIO, content: bytes) -> None:
-    """Write all of it: the system may take less at a time."""
+    """Write all of it, since the system may take less at a time."""
     written = file.write(content)
     while written < len(content):
         content = content[written:]

@@ -1,4 +1,4 @@
-"""A journal read back, whatever became of the process that wrote it."""
+"""The reading of a journal, however the process that wrote it ended."""
 
 import json
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ class JournalContents:
 
     Attributes:
         meta: Facts about the run; empty if the run ended before they were written.
-        tables: (n,) Rows of each table, by its name.
+        tables: Rows (n,) of each table, by its name.
         names: Strings of each name table, by its name and in the order of their indices.
         commits: Number of whole steps found.
         pulse: Progress of the run when it last reported.
@@ -33,11 +33,11 @@ class JournalContents:
 
 
 def read_journal(folder: Path) -> JournalContents:
-    """Read a journal up to its last whole step, whatever became of its writer.
+    """Read a journal up to its last whole step, however its process ended.
 
     Raises:
         ResultsError: the folder holds something else.
-        OSError: it cannot be read.
+        OSError: the file cannot be read.
     """
     meta_file, rows_file = folder / META_FILE, folder / ROWS_FILE
     try:
@@ -50,7 +50,8 @@ def read_journal(folder: Path) -> JournalContents:
     if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)
     content = np.memmap(rows_file, np.uint8, mode="r").data
-    begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")  # the process may have died within it
+    # the process may have died while writing this
+    begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")
     if not MAGIC.startswith(begun):
         raise ResultsError(
             f"{rows_file}: is not a journal of giveway, or another version's ({MAGIC.decode()} "
@@ -75,7 +76,7 @@ _Record = tuple[Kind, int, memoryview]
 
 
 def _steps(content: memoryview) -> Iterator[list[_Record]]:
-    """The records of each whole step; a torn end is not one."""
+    """Yield the records of each whole step; a torn end is left out."""
     at, step = len(MAGIC), list[_Record]()
     while at + RECORD.size <= len(content):
         kind, table, size = RECORD.unpack_from(content, at)
@@ -91,7 +92,7 @@ def _steps(content: memoryview) -> Iterator[list[_Record]]:
 
 
 class _Reader:
-    """Puts the tables together again."""
+    """Puts the tables together from the records."""
 
     def __init__(self) -> None:
         self._columns: list[tuple[str, list[str]]] = []

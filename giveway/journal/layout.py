@@ -14,11 +14,11 @@ from giveway.run_data.tracks import (
 
 _EGO = quantities_of(EgoRow)
 EGO_TEXTS = tuple(name for name, (kind, _) in _EGO.items() if kind == "string")
-"""The columns of an ego's row that are texts: a row holds their indices among the words."""
+"""Columns of an ego's row that are texts: a row holds their indices in the table of words."""
 EGO_NUMBERS = tuple(name for name, (kind, _) in _EGO.items() if kind != "string")
 """All other columns of an ego's row."""
 EGO_COUNTS = frozenset(name for name, (kind, _) in _EGO.items() if kind == "integer")
-"""Those of them that are whole numbers."""
+"""The columns among them that are whole numbers."""
 
 
 def _names(track: type) -> tuple[str, ...]:
@@ -39,6 +39,6 @@ ROWS: dict[str, tuple[str, ...]] = {
     "hasty": ("ego", "pedestrian"),
     "outputs": ("step", "output", "value"),
 }
-"""The columns of each table of rows; a text stands there as its index in a table of names."""
+"""Columns of each table of rows; a text is given by its index in a table of names."""
 NAMES = ("ways", "outputs", "words", "egos", "pedestrians", "traits", "vehicles")
 """The tables of names. Ways, outputs and traits are JSON texts."""

@@ -1,4 +1,4 @@
-"""The rows of a run, as a recorder or a journal hands them over, and as tracks."""
+"""The recorded rows of a run, from a recorder or a journal, and as tracks."""
 
 import json
 from collections.abc import Iterator
@@ -24,20 +24,20 @@ from giveway.run_data.tracks import (
 from giveway.run_data.way import EgoWay
 
 _NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
-_MOST = 2.0**53  # beyond it a number of 64 bits has no exact integers
+_MOST = 2.0**53  # Largest number whose float64 is an exact integer
 
 
 class RecordedEgo(NamedTuple):
-    """One ego's rows."""
+    """The rows of one ego."""
 
     id: str
     shape: VehicleShape
-    goal: float  # [m]
-    first: int  # the control instant at which it departed
+    goal: float  # [m] distance that it is to drive
+    first: int  # control instant at which it departed
     track: EgoTrack
     predictions: PredictionTrack
     outputs: tuple[Output, ...] = ()
-    hasty: NDArray[np.int64] = _NOBODY  # indices of people whose start broke the assumption
+    hasty: NDArray[np.int64] = _NOBODY  # indices of people whose sudden start broke the assumption
 
 
 class RecordedRows:
@@ -51,19 +51,19 @@ class RecordedRows:
     def __init__(self, rows: dict[str, Rows], names: dict[str, tuple[str, ...]]) -> None:
         self._rows = rows
         self._names = names
-        instants = len(rows["clock"])  # rows of an instant without a row here are left out
-        self.time = np.ascontiguousarray(rows["clock"]["time"])  # (T,) [s]
+        instants = len(rows["clock"])  # the last instant may lack rows, which are left out
+        self.time = np.ascontiguousarray(rows["clock"]["time"])  # (T,) [s] control instants
         self._ego = rows["ego"][rows["ego"]["step"] < instants]
         self._background: BackgroundTrack | None = None
 
     @property
     def ledger(self) -> dict[str, int]:
-        """The ledger of pedestrians at the latest of SUMO's instants."""
+        """Return the ledger of pedestrians at SUMO's latest instant."""
         rows = self._rows["ledger"]
         return {name: int(rows[name][-1]) for name in LEDGER} if len(rows) else {}
 
     def egos(self) -> Iterator[RecordedEgo]:
-        """Every ego that has rows, in the order of departure."""
+        """Yield every ego that has rows, in the order of departure."""
         for number, length, width, goal in self._rows["drives"]:
             rows = self._ego[self._ego["ego"] == number]
             if len(rows):
@@ -100,7 +100,7 @@ class RecordedRows:
         )
 
     def _outputs_of(self, ego: str, rows: Rows) -> tuple[Output, ...]:
-        """Return the outputs that the profile of an ego's FMU has recorded, per control instant."""
+        """Return the values (T,) of the outputs that the profile of an ego's FMU lists."""
         recorded, found = self._rows["outputs"], list[Output]()
         for key, text in enumerate(self._names["outputs"]):
             whose, name, unit, description = json.loads(text)
@@ -121,9 +121,10 @@ class RecordedRows:
         return np.array(self._names["words"], dtype=np.str_)[_indices(indices)]
 
     def crowd_track(self) -> CrowdTrack:
-        """The crowd's rows as arrays."""
+        """Return the crowd's rows as arrays."""
         rows = self._rows["crowd"]
-        rows = rows[: np.searchsorted(rows["step"], len(self.time))]  # no copy: RAM
+        # a view, which needs no memory
+        rows = rows[: np.searchsorted(rows["step"], len(self.time))]
         told = {name: about for name, *about in map(json.loads, self._names.get("traits", ()))}
         traits = [told.get(name, ("", "")) for name in self._names["pedestrians"]]
         return CrowdTrack(
@@ -136,7 +137,7 @@ class RecordedRows:
         )
 
     def background_track(self) -> BackgroundTrack:
-        """The background vehicles' rows as arrays, the same for the run and each ego."""
+        """Return the background vehicles' rows as arrays, the same for the run and each ego."""
         if self._background is None:
             rows, names = self._rows["background"], np.array(self._names["vehicles"], dtype=np.str_)
             columns: dict[str, Any] = {
@@ -147,18 +148,18 @@ class RecordedRows:
         return self._background
 
     def ways(self) -> dict[str, EgoWay]:
-        """The ways of those egos on whose way the law of the road has a say, by their ids."""
+        """Return the path of each ego on which the law rules anything, by the ego's id."""
         ways = (EgoWay.from_dict(json.loads(text)) for text in self._names["ways"])
         return {way.ego: way for way in ways}
 
     def signal_track(self) -> SignalTrack:
-        """The rows of traffic lights as arrays."""
+        """Return the rows of traffic lights as arrays."""
         rows = self._rows["signals"]
         system, state = self._words(rows["system"]), self._words(rows["state"])
         return SignalTrack(time=rows["time"].copy(), system=system, state=state)
 
     def people_track(self) -> PeopleTrack:
-        """The rows of where people mean to walk as arrays."""
+        """Return the rows of people's planned routes as arrays."""
         rows = self._rows["people"]
         rows = rows[rows["step"] < len(self.time)]
         return PeopleTrack(
@@ -168,17 +169,17 @@ class RecordedRows:
         )
 
     def timings(self) -> Timings:
-        """The computing times as an array."""
+        """Return the computing times as an array."""
         rows = self._rows["timing"]
         return Timings(np.column_stack([rows[name] for name in Timings.NAMES]))
 
 
 def _indices(numbers: Array) -> NDArray[np.int64]:
-    """Numbers that stand for indices or counts.
+    """Return numbers as indices or counts.
 
     Raises:
-        ValueError: one does not; a broken journal holds anything.
+        ValueError: a number is no index or count, since a broken journal may hold anything.
     """
-    if not (np.abs(numbers) < _MOST).all():  # nor is nan
+    if not (np.abs(numbers) < _MOST).all():  # false for nan, too
         raise ValueError("no index")
     return numbers.astype(np.int64)

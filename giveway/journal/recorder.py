@@ -1,4 +1,4 @@
-"""The rows of a run, gathered step by step, from our own state and not SUMO's mirror of it."""
+"""The recorder of a run's rows, from giveway's own state and not from SUMO's."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -18,14 +18,15 @@ from giveway.run_data.way import EgoWay
 from giveway.sumo.background import BackgroundVehicles
 
 Indices = NDArray[np.int64]
-_numbers, _texts = attrgetter(*EGO_NUMBERS), attrgetter(*EGO_TEXTS)  # of a row, by name
+# Functions that return the numbers and texts of a row
+_numbers, _texts = attrgetter(*EGO_NUMBERS), attrgetter(*EGO_TEXTS)
 
 
 class Recorder:
-    """Collects what the loop knows at each control instant.
+    """Records the state of the run at each control instant.
 
     Args:
-        journal: Journal that keeps the rows beyond this process.
+        journal: Journal that keeps the rows if this process dies.
     """
 
     def __init__(self, journal: Journal | None = None) -> None:
@@ -50,7 +51,7 @@ class Recorder:
 
         Args:
             ids: Ids of the pedestrians.
-            traits: Kind and group of those who have any.
+            traits: Kind and group of the people who have any.
         """
         for name in ids:
             self._names["pedestrians"].index(name)
@@ -58,13 +59,13 @@ class Recorder:
                 self._names["traits"].index(json.dumps([name, *traits[name]]))
 
     def drive(self, ego_id: str, shape: VehicleShape, goal: float) -> None:
-        """Note an ego that departs: its body and the distance [m] it is to drive."""
+        """Note an ego that departs: its body and the distance [m] that it is to drive."""
         self._rows["drives"].add(self._names["egos"].index(ego_id), shape.length, shape.width, goal)
 
     def outputs(
         self, ego_id: str, record: Sequence[tuple[str, str, str]], values: Sequence[float]
     ) -> None:
-        """Record what an FMU's profile wants to have recorded at the present control instant.
+        """Record the variables that an FMU's profile lists, at the present control instant.
 
         Args:
             ego_id: Id of the ego that the FMU drives.
@@ -80,7 +81,7 @@ class Recorder:
             block[row] = self._steps - 1, key, value
 
     def way(self, way: EgoWay) -> None:
-        """Note what the law of the road speaks of on the way of an ego that departs."""
+        """Note the path of an ego that departs, with what the law of the road rules on it."""
         self._names["ways"].index(way.to_json())
 
     def signal(self, time: float, system: str, state: str) -> None:
@@ -88,12 +89,12 @@ class Recorder:
         self._rows["signals"].add(time, self._word(system), self._word(state))
 
     def walk(self, pedestrian: int, desired_speed: float, places: Array) -> None:
-        """Record where a pedestrian means to walk from the present instant on.
+        """Record the route on which a pedestrian plans to walk from the present instant on.
 
         Args:
             pedestrian: Index of the pedestrian.
-            desired_speed: [m/s].
-            places: (k, 2) [m] Its position and its way-points.
+            desired_speed: Desired speed [m/s].
+            places: Position of the pedestrian and its way-points (k, 2) [m].
         """
         block = self._rows["people"].block(len(places))
         block[:, 0] = self._steps - 1
@@ -102,7 +103,7 @@ class Recorder:
         block[:, 3:] = places
 
     def ledger(self, counts: Mapping[str, int]) -> None:
-        """Note how many pedestrians are where, if that has changed: the latest row counts."""
+        """Note the counts of pedestrians, if they have changed; the latest row counts."""
         if counts != self._counts:
             self._counts = counts
             self._rows["ledger"].add(*(counts[name] for name in LEDGER))
@@ -117,7 +118,7 @@ class Recorder:
         )
 
     def hasty(self, ego_id: str, pedestrians: Indices) -> None:
-        """Note who set out for the road more suddenly than an ego's safety layer assumes."""
+        """Note the people who started more suddenly than the safety layer assumes."""
         block = self._rows["hasty"].block(len(pedestrians))
         block[:, 0], block[:, 1] = self._names["egos"].index(ego_id), pedestrians
 
@@ -127,11 +128,11 @@ class Recorder:
         """Record the crowd at the present control instant.
 
         Args:
-            person_ids: (n,) Index of each pedestrian.
-            position: (n, 2) [m] Positions.
-            velocity: (n, 2) [m/s] Velocities.
-            egos: (e, 2) [m] Positions of the egos.
-            within: [m] from an ego; pedestrians farther from every ego are left out.
+            person_ids: Index (n,) of each pedestrian.
+            position: Positions (n, 2) [m].
+            velocity: Velocities (n, 2) [m/s].
+            egos: Positions (e, 2) [m] of the egos.
+            within: Distance [m] from an ego; pedestrians farther from every ego are left out.
         """
         block = self._crowd.block(len(person_ids))
         filled = fill_near(self._steps - 1, person_ids, position, velocity, egos, within, block)
@@ -140,13 +141,13 @@ class Recorder:
     def predictions(
         self, ego_id: str, pedestrians: Indices, look_ahead: Array, positions: Array
     ) -> None:
-        """Record what an ego's controller expects of the crowd from the present instant on.
+        """Record the positions of people that an ego's controller expects from now on.
 
         Args:
-            ego_id: Id of the ego whose controller it is.
-            pedestrians: (n,) Indices of the predicted pedestrians.
-            look_ahead: (m,) [s] Prediction times ahead.
-            positions: (m, n, 2) [m] Predicted positions.
+            ego_id: Id of the ego.
+            pedestrians: Indices (n,) of the predicted pedestrians.
+            look_ahead: Prediction times ahead (m,) [s].
+            positions: Predicted positions (m, n, 2) [m].
         """
         block = self._rows["predictions"].block(look_ahead.size * pedestrians.size)
         block[:, 0] = self._steps - 1
@@ -158,7 +159,7 @@ class Recorder:
     def background(
         self, time: float, vehicles: BackgroundVehicles, egos: Array, within: float
     ) -> None:
-        """Record SUMO's own vehicles at ``time`` [s], ``egos`` and ``within`` as for the crowd."""
+        """Record SUMO's vehicles at ``time`` [s]; for ``egos``, ``within`` see :meth:`crowd`."""
         near = np.full(len(vehicles.ids), np.isinf(within))
         for x, y in egos:
             near |= np.hypot(vehicles.x - x, vehicles.y - y) <= within
@@ -178,7 +179,7 @@ class Recorder:
         self._rows["timing"].add(*seconds)
 
     def rows(self) -> RecordedRows:
-        """Everything recorded so far."""
+        """Return all rows recorded so far."""
         return RecordedRows(
             {name: rows.filled for name, rows in self._rows.items()},
             {name: names.names for name, names in self._names.items()},
@@ -195,7 +196,7 @@ def fill_near(
     within: float,
     block: Array,
 ) -> int:
-    """Fill the crowd's rows of one step with the pedestrians near an ego; returns how many."""
+    """Fill the crowd's rows of one step with the pedestrians near an ego; return their number."""
     count = 0
     for i in range(len(person_ids)):
         near = np.isinf(within)

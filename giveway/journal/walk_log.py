@@ -1,7 +1,7 @@
-"""The log of how people progress on their ways, kept in this process's memory.
+"""The log of how people progress on their routes, kept in this process's memory.
 
-The rows of a run outlive a crash in its journal. These need not: they only serve the comparison
-with the counterfactual run (twin) that follows.
+Unlike the rows of a run, it does not have to survive a crash: it only serves the comparison with
+the counterfactual run that follows.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,7 +16,7 @@ from giveway.run_data.walks import WalkTrack
 from pedestrian_model import Crowd, remaining_distance
 
 REACH = 30.0
-"""[m] from an ego's way: who comes no closer is not looked at."""
+"""Largest distance [m] from an ego's path of the people who are noted."""
 _LOOKS = 0.5  # Interval [s] between two searches for people who come close
 _SWAY = 0.1  # Smallest distance [m] that counts as walked; standing people sway by less
 _NUMBERS = ("x", "y", "vx", "vy", "remaining", "walked")
@@ -24,12 +24,13 @@ _COLUMNS = ("step", "pedestrian", *_NUMBERS)  # as the kernel fills them
 
 
 class WalkLog:
-    """Notes where people are on their ways.
+    """Notes the positions of people on their routes.
 
     Args:
-        time_step: [s] between two control instants.
-        counts: whether somebody of that name is noted from the beginning; None: whoever comes
-            close to a way given to :meth:`add_way`, from then on.
+        time_step: Time [s] between two control instants.
+        counts: Function that returns whether the person of a name is noted from the beginning. With
+            None, a person is noted from the instant on at which they come close to a path given to
+            :meth:`add_way`.
     """
 
     def __init__(self, time_step: float, counts: Callable[[str], bool] | None = None) -> None:
@@ -41,17 +42,18 @@ class WalkLog:
         self._arrivals: list[tuple[int, int]] = []
         self._ids: list[str] = []
         self._near = np.zeros(0, dtype=np.bool_)
-        self._memory = np.zeros((0, 4))  # x, y, walked till there [m], desired speed [m/s]; or nan
+        # x, y, distance walked [m], desired speed [m/s]; nan if not known
+        self._memory = np.zeros((0, 4))
         self._last = -1
 
     def add_way(self, way: Array) -> None:
-        """Look from now on at who comes close to an ego's way, (k, 2) [m]."""
+        """Note from now on who comes close to an ego's path, (k, 2) [m]."""
         line = shapely.LineString(way)
         shapely.prepare(line)
         self._ways.append(line)
 
     def stop_looking(self) -> None:
-        """The egos have gone: who comes close from now on was not in their way."""
+        """End the search: who comes close after the egos have gone was not in their way."""
         self._ways.clear()
 
     def note(
@@ -61,8 +63,8 @@ class WalkLog:
 
         Args:
             step: Index of the control instant.
-            ids: Ids of all that ever were in the crowd.
-            person_ids: (n,) Index into ``ids`` of those in the crowd.
+            ids: Ids of all people who ever were in the crowd.
+            person_ids: Index (n,) into ``ids`` of each person in the crowd.
             crowd: Crowd of n pedestrians.
         """
         if step <= self._last:
@@ -113,12 +115,12 @@ class WalkLog:
 
     @property
     def near(self) -> frozenset[str]:
-        """The names of those who count."""
+        """The names of the people who count."""
         return frozenset(self._ids[i] for i in np.flatnonzero(self._near))
 
     @property
     def track(self) -> WalkTrack:
-        """Everything noted so far."""
+        """Return all records so far."""
         rows = self._rows.filled
         arrivals = np.array(self._arrivals, dtype=np.int64).reshape(-1, 2)
         return WalkTrack(
@@ -147,7 +149,7 @@ def _fill(
     memory: Array,
     block: Array,
 ) -> int:
-    """Fill the rows of one instant with those who count, note the others; returns how many."""
+    """Fill the rows of an instant with the people who count, note the others; return the count."""
     count = 0
     for i in range(len(person_ids)):
         p, x, y = person_ids[i], position[i, 0], position[i, 1]

@@ -1,4 +1,4 @@
-"""The cost of a run's egos to people, from the run and its counterfactual run (twin)."""
+"""The effect of a run's egos on people, from the run and its counterfactual run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,16 +14,16 @@ from giveway.run_data.walks import WalkTrack
 
 @dataclass(frozen=True)
 class Effect:
-    """A run's people beside those of its twin.
+    """The people of a run compared with those of its counterfactual run.
 
     Attributes:
         run: Walks of the people, until after the last ego's arrival.
-        twin: Walks of the same people where they did not feel the egos.
+        twin: Walks of the same people in the counterfactual run.
         delays: Delay of each person by all egos, in the order of the run's ids.
-        yielded: (n,) Whether each person gave way ("yes", "no" or ""), by the ego's id.
-        traffic_differs: Whether lights or background vehicles differ in the twin.
-        traffic_delay: Delay of the background vehicles [s]; nan if it is not known.
-        seconds: Computing time [s] of the log, the twin and the comparison.
+        yielded: Whether each person (n,) gave way ("yes", "no" or ""), by the ego's id.
+        traffic_differs: True if lights or background vehicles differ in the counterfactual run.
+        traffic_delay: Delay [s] of the background vehicles, or nan if it is not known.
+        seconds: Computing time [s] of the log, the counterfactual run and the comparison.
     """
 
     run: WalkTrack
@@ -35,7 +35,7 @@ class Effect:
     seconds: float
 
     def summary(self, ego: str) -> DelaySummary:
-        """The delays in one row, with those who gave way to the ego of this id."""
+        """Return the delays in one row, with the people who gave way to the ego of this id."""
         return summarise_delays(
             self.delays.delay,
             self.yielded[ego],
@@ -52,11 +52,11 @@ def who_gave_way(
     shape: VehicleShape,
     body_radius: float,
 ) -> NDArray[np.str_]:
-    """Return (n,) whether each person of the run gave way to an ego: "yes", "no" or "".
+    """Return whether each person of the run gave way to an ego (n,): "yes", "no" or "".
 
     Args:
         run: Walks of the people.
-        twin: Walks of the same people where they did not feel the egos.
+        twin: Walks of the same people in the counterfactual run.
         ego: Rows of the ego.
         first: Control instant at which the ego departed.
         shape: Body of the ego.
@@ -79,7 +79,7 @@ def _first(
     shape: VehicleShape,
     body_radius: float,
 ) -> NDArray[np.str_]:
-    """Return (n,) who was first of the people ``asked`` (n,), also after the ego's arrival."""
+    """Return who was first (n,) for the people ``asked`` (n,), also after the ego's arrival."""
     beside = shape.length + shape.width + body_radius
     x, y = ego.front_x, ego.front_y
     rows = (walks.step >= first) & asked[walks.pedestrian]

@@ -42,7 +42,7 @@ class EgoResult:
     """The result of one ego.
 
     Attributes:
-            config: Configuration of the ego.
+        config: Configuration of the ego.
         id: Id of the ego in SUMO.
         shape: Body of the ego.
         goal: Distance [m] after which its drive is complete.
@@ -52,9 +52,9 @@ class EgoResult:
         crowd: Records of the crowd at these instants, counted from ``first``.
         predictions: Positions of the crowd that its controller expected, if recorded.
         background: Background vehicles of the run.
-        law: Rows by which its drive is judged; None if no rule of the road applies to it.
+        law: Rows by which its drive is judged, or None if no rule of the road applies to it.
         outputs: Outputs that the profile of its FMU has recorded.
-        effect: Comparison of the people with those of the twin; None without a twin.
+        effect: Comparison of the people with those of the counterfactual run, or None without one.
         measured: Columns that metrics of other packages measured; empty if the run was recovered.
         hasty: Indices of people whose sudden start broke its safety layer's assumption.
     """
@@ -77,12 +77,12 @@ class EgoResult:
 
     @property
     def body_radius(self) -> float:
-        """The pedestrians' body radius [m]."""
+        """The body radius [m] of the pedestrians."""
         return float(parameters_of(self.config.crowd.preset).body_radius)
 
     @cached_property
     def pedestrians(self) -> "pd.DataFrame":
-        """One row per pedestrian: closest approach to this ego, TTC, PET; delay."""
+        """The table with one row per pedestrian: closest approach to this ego, TTC, PET; delay."""
         import pandas as pd
 
         table = table_of(self._columns)
@@ -97,23 +97,23 @@ class EgoResult:
 
     @cached_property
     def _columns(self) -> dict[str, Any]:
-        """The columns of :attr:`pedestrians` but for the delay's."""
+        """The columns of :attr:`pedestrians` without the delays."""
         return pedestrian_columns(self.track, self.crowd, self.shape, self.body_radius)
 
     @cached_property
     def conflicts(self) -> "pd.DataFrame":
-        """One row per pedestrian: how severe its conflict was, when, how fast and where."""
+        """The table with one row per pedestrian: severity, time, speed and place of conflict."""
         body = self.shape, self.body_radius, self.config.record.stop_speed
         return severities(self.track, self.crowd, *body, self.pedestrians)
 
     @cached_property
     def vehicle_contacts(self) -> tuple[VehicleContact, ...]:
-        """The background vehicles that it came into contact with."""
+        """The background vehicles with which it had contact."""
         return vehicle_contacts(self.track, self.background, self.shape)
 
     @cached_property
     def ledger(self) -> Ledger | None:
-        """The ego's compliance with the law of the road; None if no rule applies on its way."""
+        """The judgement by the law of the road, or None if no rule applies on its path."""
         if self.law is None:
             return None
         drive = Drive(
@@ -134,7 +134,7 @@ class EgoResult:
 
     @property
     def _undisturbed(self) -> Undisturbed | None:
-        """The twin's people by their places in the run's crowd."""
+        """Return the people of the counterfactual run, with their indices in the run's crowd."""
         if self.effect is None:
             return None
         twin, places = self.effect.twin, {name: k for k, name in enumerate(self.crowd.ids)}
@@ -146,7 +146,7 @@ class EgoResult:
 
     @property
     def people_at_worst(self) -> WorstMotion | None:
-        """The worst motion of people that its safety layer assumes; None without a layer."""
+        """The worst motion of people that its safety layer assumes, or None without a layer."""
         config = self.config
         if not config.safety_layer:
             return None
@@ -154,7 +154,7 @@ class EgoResult:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The drive in one row."""
+        """The summary of the drive in one row."""
         config = self.config
         body = self.shape, self.body_radius
         set_speed = config.reference_speed
@@ -197,7 +197,7 @@ def results_of_egos(
         config: Configuration of the run.
         rows: Recorded rows of the run.
         ending: Reason why the run ended.
-        endings: Reasons for those egos whose drive ended by itself.
+        endings: Reason of each ego whose drive ended before the run.
     """
     crowd, background = rows.crowd_track(), rows.background_track()
     configs = {own.ego_id: own for own in config.each_ego()}

@@ -25,7 +25,7 @@ _RUNNING = '{"ending": "running"}\n'
 
 
 class Wording(NamedTuple):
-    """The words by which a caller follows the advice of a message."""
+    """The words that a message uses to advise its reader: flags or arguments."""
 
     force: str
     folder: str
@@ -43,18 +43,18 @@ def check_folder(
     writer: str = "giveway",
     wording: Wording = FLAGS,
 ) -> None:
-    """Make sure that the results may go to ``folder``; nothing is changed.
+    """Make sure that the results may go to ``folder``, without a change to it.
 
     Args:
-        folder: Folder to which they would go.
-        force: Whether former results may be replaced.
+        folder: Folder for the results.
+        force: True if former results may be replaced.
         ours: Names of the files that may be there.
         writer: Program that writes them, for messages.
         wording: Words of the caller, for messages.
 
     Raises:
-        ResultsError: it exists and ``force`` is not given, it is a file, or it holds files that
-            the writer did not write.
+        ResultsError: the folder exists and ``force`` is not given, it is a file, or it holds files
+            that the writer did not write.
     """
     try:
         folder.stat()
@@ -88,10 +88,10 @@ def check_folder(
 
 
 def is_marked_only(folder: Path) -> bool:
-    """Return whether a run has taken ``folder`` without writing its results (yet).
+    """Return whether a run has taken ``folder`` without having written its results.
 
     Raises:
-        OSError: it cannot be read.
+        OSError: the folder cannot be read.
     """
     if not folder.is_dir() or [path.name for path in folder.iterdir()] != ["manifest.json"]:
         return False
@@ -100,13 +100,13 @@ def is_marked_only(folder: Path) -> bool:
 
 @contextlib.contextmanager
 def taken_folder(folder: Path, *, force: bool, wording: Wording = FLAGS) -> Iterator[bool]:
-    """Have ``folder`` for one run; former results stay until the new ones are written.
+    """Take ``folder`` for one run; former results stay until the new ones are written.
 
     Returns:
-        Whether the folder was taken empty, so that ``release_folder`` may undo it.
+        True if the folder was taken empty, so that ``release_folder`` may undo it.
 
     Raises:
-        ResultsError: as ``check_folder``, or it cannot be written, or another run has taken it.
+        ResultsError: as for ``check_folder``, or it cannot be written, or another run has taken it.
     """
     with contextlib.ExitStack() as stack:
         try:
@@ -141,10 +141,10 @@ def release_folder(folder: Path) -> None:
 
 
 def write_results(result: RunTables, folder: Path, *, parquet: bool = False) -> None:
-    """Write everything but the pictures into ``folder``.
+    """Write everything except the pictures into ``folder``.
 
     Raises:
-        ResultsError: the disk is full or the folder has become unwritable.
+        ResultsError: the disk is full, or the folder is no longer writable.
     """
     frames = {
         name: _rounded(result.summary_table if name == "summary" else getattr(result, name))
@@ -160,12 +160,12 @@ def write_results(result: RunTables, folder: Path, *, parquet: bool = False) -> 
     contents[SCENE_FILE] = _text(scene_of(result).to_json())
     if result.sumo_messages:
         contents["sumo.log"] = _text(result.sumo_messages)
-    contents["manifest.json"] = _json(result.manifest)  # the last: with it the results are whole
+    contents["manifest.json"] = _json(result.manifest)  # written last: it marks complete results
     path = folder
     try:
         for name in FILES - {SUMO_FOLDER}:
             path = folder / name
-            path.unlink(missing_ok=True)  # results are never mixed
+            path.unlink(missing_ok=True)  # files of two runs are never mixed
         for name, write in contents.items():
             path = folder / name
             write(path)
@@ -176,26 +176,26 @@ def write_results(result: RunTables, folder: Path, *, parquet: bool = False) -> 
 
 
 def _leave_incomplete(torn: Path, manifest: dict[str, Any]) -> None:
-    """Leave no half of a file, and a manifest that says what is missing, if there is the space."""
+    """Remove a partly written file, and write a manifest that says what is missing, if possible."""
     with contextlib.suppress(OSError):
         torn.unlink(missing_ok=True)
         _json(manifest)(torn.with_name("manifest.json"))
 
 
 def _summary(result: RunTables) -> dict[str, Any]:
-    """The first ego's row, the other egos' rows, and the computing times."""
+    """Return the first ego's row, the other egos' rows, and the computing times."""
     rows = [_plain(row) for row in result.summary_rows]
     more = {"egos": rows} if len(rows) > 1 else {}
     return result.summary | more | {"timing": result.timing_summary}
 
 
 def _plain(row: dict[Any, Any]) -> dict[str, Any]:
-    """The row in Python's own types, which JSON knows."""
+    """Return the row in Python's own types, which JSON knows."""
     return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in row.items()}
 
 
 def rounded_row(row: dict[Any, Any]) -> dict[str, Any]:
-    """One row of a table as it is written: Python's own types, floats to six decimals."""
+    """Return a row of a table as it is written: Python's own types, floats with six decimals."""
     return {
         key: round(value, DECIMALS) + 0.0 if isinstance(value, float) else value
         for key, value in _plain(row).items()
@@ -203,10 +203,10 @@ def rounded_row(row: dict[Any, Any]) -> dict[str, Any]:
 
 
 def sumo_folder(folder: Path) -> Path:
-    """The folder for SUMO's own outputs; those of a former run are removed.
+    """Return the folder for SUMO's own outputs, after removing those of a former run.
 
     Raises:
-        ResultsError: they cannot be removed.
+        ResultsError: those files cannot be removed.
     """
     try:
         shutil.rmtree(folder / SUMO_FOLDER, ignore_errors=False)
@@ -220,7 +220,7 @@ def sumo_folder(folder: Path) -> Path:
 
 
 def require_parquet() -> None:
-    """Make sure that Parquet can be written before anything is computed.
+    """Make sure, before anything is computed, that Parquet can be written.
 
     Raises:
         ResultsError: pyarrow is missing.
@@ -234,14 +234,14 @@ def require_parquet() -> None:
 
 
 def data_package(result: RunTables) -> dict[str, Any]:
-    """The Frictionless description of a run's CSV files."""
+    """Return the Frictionless description of a run's CSV files."""
     name = f"giveway-{result.scenario.name}-{result.config.seed}"
     title = f"giveway run of {result.scenario.name}, seed {result.config.seed}"
     return package_of(name, title, result.schemas)
 
 
 def package_of(name: str, title: str, schemas: Mapping[str, Sequence[Column]]) -> dict[str, Any]:
-    """The Frictionless description of CSV files: each column's type, unit and meaning.
+    """Return the Frictionless description of CSV files: each column's type, unit and meaning.
 
     Args:
         name: Name of the package.
@@ -268,7 +268,7 @@ def package_of(name: str, title: str, schemas: Mapping[str, Sequence[Column]]) -
 
 
 def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
-    """The columns as the schema of a data package has them."""
+    """Return the columns as in the schema of a data package."""
     fields = []
     for column in columns:
         field = {"name": column.name, "type": column.type}
@@ -279,7 +279,7 @@ def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
 
 
 def _rounded(frame: "pd.DataFrame") -> "pd.DataFrame":
-    """Floats to six decimals, without negative zeros: short, and the same bytes on every system."""
+    """Return the frame with floats of six decimals and no negative zeros: equal on every system."""
     frame = frame.copy()
     for name in frame.columns:
         if frame[name].dtype == np.float64:

@@ -5,11 +5,11 @@ import math
 from typing import Any, Final
 
 DECIMALS: Final = 6
-"""Of every number: micrometres, microseconds, finer than anything that is compared."""
+"""Decimals of every number: micrometres and microseconds, finer than any comparison."""
 
 
 def json_text(content: dict[str, Any]) -> str:
-    """The content as JSON, which has neither NaN nor infinity: they become null."""
+    """Return the content as JSON, in which NaN and infinity become null."""
     return json.dumps(_ready(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 

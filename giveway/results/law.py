@@ -1,4 +1,4 @@
-"""The law of the road over a run's rows: what each ego's drive is judged by, and in words."""
+"""The rows of a run by which the law of the road judges each ego's drive, and remarks on them."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -22,11 +22,11 @@ class LawRows(NamedTuple):
     way: EgoWay
     signals: SignalTrack
     people: PeopleTrack  # counted from the ego's first instant
-    vehicles: BackgroundTrack  # all others, egos among them
+    vehicles: BackgroundTrack  # all other vehicles, egos among them
 
 
 def people_from(people: PeopleTrack, first: int) -> PeopleTrack:
-    """The records counted from the control instant ``first`` on."""
+    """Return the records, counted from the control instant ``first`` on."""
     return PeopleTrack(
         people.step - first, people.pedestrian, people.desired_speed, people.x, people.y
     )
@@ -35,7 +35,7 @@ def people_from(people: PeopleTrack, first: int) -> PeopleTrack:
 def others_of(
     ego: RecordedEgo, egos: Sequence[RecordedEgo], background: BackgroundTrack
 ) -> BackgroundTrack:
-    """All vehicles but one ego, in order of time."""
+    """Return all vehicles except one ego, in order of time."""
     more = [_as_background(other) for other in egos if other.id != ego.id]
     if not more:
         return background
@@ -64,7 +64,7 @@ def _as_background(ego: RecordedEgo) -> BackgroundTrack:
 
 
 def ledger_table(events: Sequence[tuple[str, Event]]) -> "pd.DataFrame":
-    """``ledger.csv``: one row per event.
+    """Return ``ledger.csv``: one row per event.
 
     Args:
         events: Events, each with the id of its ego.
@@ -77,7 +77,7 @@ def ledger_table(events: Sequence[tuple[str, Event]]) -> "pd.DataFrame":
 
 
 def signal_table(track: SignalTrack) -> "pd.DataFrame":
-    """``signals.csv``: the traffic lights' changes."""
+    """Return ``signals.csv``: the changes of traffic lights."""
     import pandas as pd
 
     names = [column.name for column in SIGNAL_COLUMNS]
@@ -86,7 +86,7 @@ def signal_table(track: SignalTrack) -> "pd.DataFrame":
 
 
 def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> "pd.DataFrame":
-    """``people.csv``: where people mean to walk, and how fast."""
+    """Return ``people.csv``: the planned routes and desired speeds of people."""
     import pandas as pd
 
     names = [column.name for column in PEOPLE_COLUMNS]
@@ -101,7 +101,7 @@ def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> "pd.Dat
 
 
 def remark(ego_id: str, violations: Sequence[Event]) -> str:
-    """Return the remark on an ego that broke the law of the road; empty if it did not."""
+    """Return the remark on an ego that broke the law of the road, or "" if it did not."""
     if not violations:
         return ""
     kinds = [f"{number} x {kind}" for kind, number in count(violations).items()]

@@ -1,4 +1,4 @@
-"""The check whether a vehicle answered as its controller's model predicts."""
+"""The check whether a vehicle behaved as its controller's model predicts."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
     """
     config = ego.config
     if not config.optimises or not len(ego.track.time):
-        return ""  # the PID has no model
+        return ""  # only an optimising controller has a model
     mass, friction = config.vehicle.mass, config.vehicle.friction
     trace = _trace(ego.track, time_step)
     errors = position_errors(trace, mass, friction, config.mpc.horizon)
@@ -36,7 +36,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         f"{friction:g} N.s/m predict: off by up to {error:.2g} m in "
         f"{config.mpc.horizon * time_step:.3g} s"
     )
-    if margin > 0.0:  # the vehicle has been identified; doing so again would find the same
+    if margin > 0.0:  # the vehicle has been identified already
         return (
             f"{missed}, {margin:.2g} m as identified: at forces that do not arrive, or too late; "
             f"see its limits with: giveway fmu check {fmu}{named}, and keep to them by "
@@ -49,10 +49,10 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
 
 
 def _trace(track: EgoTrack, time_step: float) -> Trace:
-    """A run's drive, with the distance that its speeds add up to by the model's forward Euler rule.
+    """Return the trace of a run's drive, with the distance from its speeds by forward Euler.
 
-    An FMU may add them up otherwise (the exact distance of a step is half a change of speed more);
-    M and alpha are right all the same.
+    The model adds the speeds up by forward Euler. An FMU may do it otherwise (the exact distance of
+    a step has half a change of speed more). M and alpha do not depend on it.
     """
     steps = len(track.speed) - 1
     distance = np.concatenate(([0.0], np.cumsum(time_step * track.speed[:-1])))
@@ -69,7 +69,7 @@ def _trace(track: EgoTrack, time_step: float) -> Trace:
 
 
 def _fitting(trace: Trace) -> str:
-    """The M and alpha that fit better, in brackets; empty if the drive does not show them."""
+    """Return the M and alpha that fit better, in brackets, or "" if they cannot be told."""
     found = fit([prepare(trace)], actuator=False)
     if found is None or not found.intervals[0] <= _SURE * found.mass:
         return ""

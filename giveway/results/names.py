@@ -4,7 +4,7 @@ from giveway.run_data.scene import SCENE_FILE
 
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))
-"""Ends of the names of pictures, of the first ego, the second one and so on."""
+"""Suffixes of the names of pictures: of the first ego, the second one and so on."""
 TABLES = (
     "ego",
     "trajectories",
@@ -17,7 +17,7 @@ TABLES = (
     "signals",
     "measures",
 )
-"""All tables that a run can have; its ``schemas`` say which of them it has."""
+"""All tables that a run can have; its ``schemas`` list the tables that it has."""
 FILES = frozenset(
     {
         *(f"{name}{suffix}" for name in TABLES for suffix in (".csv", ".parquet")),

@@ -1,4 +1,4 @@
-"""The views of a result: a line at a prompt, a table in a notebook, pictures, a replay."""
+"""The views of a result in a notebook or at a prompt: one line, a table, pictures, a replay."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ _LINES = (  # label, column, unit of the table in a notebook
     ("Smallest post-encroachment time", "minimum_pet", "s"),
     ("People's delay, all together", "people_delay", "s"),
 )
-_HEIGHT = 720  # [px] of a replay in a notebook
+_HEIGHT = 720  # Height [px] of a replay in a notebook
 
 
 @dataclass(frozen=True, repr=False)
 class Replay:
-    """A page that plays a run: shown where a notebook displays it, or saved.
+    """A page that plays a run; a notebook displays it, and it can be saved.
 
     Attributes:
-        html: Whole page, which needs no network.
+        html: The whole page, which needs no network.
     """
 
     html: str
@@ -44,7 +44,7 @@ class Replay:
     def save(self, path: str | Path) -> Path:
         """Write the page to a file.
 
-        Raises:
+        ResultsError: the file cannot be written.
             ResultsError: it cannot be written.
         """
         target = Path(path)
@@ -78,7 +78,7 @@ def one_line(result: RunTables) -> str:
 
 
 def html_table(result: RunTables) -> str:
-    """The most asked-for numbers, and the picture from above, for a notebook."""
+    """Return the most important numbers and the picture from above, for a notebook."""
     rows = []
     for label, name, unit in _LINES:
         values = [_number(ego.summary.get(name)) for ego in result.egos]
@@ -90,7 +90,7 @@ def html_table(result: RunTables) -> str:
 
 
 def plotted(result: RunTables, kind: Picture, ego: int) -> Figure:
-    """One of the pictures of a results folder.
+    """Return one of the pictures of a results folder.
 
     Raises:
         ResultsError: there is no such picture, or no such ego.
@@ -108,7 +108,7 @@ def plotted(result: RunTables, kind: Picture, ego: int) -> Figure:
 
 
 def replayed(result: RunTables) -> Replay:
-    """The page that plays the run, as ``giveway replay`` makes it.
+    """Return the page that plays the run, as ``giveway replay`` makes it.
 
     Raises:
         ResultsError: the run has no rows, or the disk for temporary files is full.

@@ -1,4 +1,4 @@
-"""The two pictures of a run, and the one of the vehicle's influence."""
+"""The pictures of a run, and the one of the vehicle's influence."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -27,9 +27,10 @@ from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 
 def write_pictures(result: RunTables, folder: Path) -> None:
-    """Write the pictures of every ego; without one, the trajectories alone.
+    """Write the pictures of every ego, or only the trajectories in a run without an ego.
 
-    The first ego's are ``state.png`` and ``top_view.png``, the second one's ``state_2.png`` ...
+    The pictures of the first ego are ``state.png`` and ``top_view.png``, of the second
+    ``state_2.png`` ...
 
     Raises:
         ResultsError: a file cannot be written.
@@ -53,7 +54,7 @@ def _write_pictures(result: RunTables, folder: Path) -> None:
 
 
 def state_picture(result: RunTables, ego: EgoResult) -> Figure:
-    """Speed, force and gap over time, MPC and PID phases marked (the paper's state figure)."""
+    """Draw speed, force and gap over time, with the phases of MPC and PID (the paper's figure)."""
     return state_figure(
         ego.track,
         safe_distance=ego.config.regulation.safe_distance,
@@ -64,7 +65,7 @@ def state_picture(result: RunTables, ego: EgoResult) -> Figure:
 
 
 def _stop_lines(ego: EgoResult) -> list[float]:
-    """Positions [m] of an ego's track at which traffic lights hold it, as far as it came."""
+    """Return the positions [m] on an ego's track at which traffic lights held it."""
     if ego.law is None or not ego.track.position.size:
         return []
     way, last = ego.law.way, ego.track.position[-1] + FARTHEST_SHOWN
@@ -73,7 +74,7 @@ def _stop_lines(ego: EgoResult) -> list[float]:
 
 
 def top_view_picture(result: RunTables, ego: EgoResult) -> Figure:
-    """Trajectories and snapshots from above (the paper's screenshots figure)."""
+    """Draw trajectories and snapshots from above (the paper's screenshots figure)."""
     return top_view_figure(
         ego.track,
         ego.crowd,
@@ -89,14 +90,14 @@ def top_view_picture(result: RunTables, ego: EgoResult) -> Figure:
 
 
 def _conflicts(ego: EgoResult) -> list[Conflict]:
-    """Severity and place of each of an ego's conflicts."""
+    """Return severity and place of each of an ego's conflicts."""
     found = ego.conflicts[ego.conflicts["severity"] != ""]
     columns = ("severity", "conflict_x", "conflict_y")
     return list(zip(*(found[name] for name in columns), strict=True))
 
 
 def density_picture(result: RunTables) -> Figure:
-    """Mean density of the people over the run, and where the conflicts were."""
+    """Draw the mean density of the people over the run, and the places of conflicts."""
     people = len(result.crowd_track.ids)
     return density_figure(
         density_map(result.crowd_track, len(result.time)),
@@ -107,7 +108,7 @@ def density_picture(result: RunTables) -> Figure:
 
 
 def crowd_picture(result: RunTables) -> Figure:
-    """The trajectories of a run without an ego."""
+    """Draw the trajectories of a run without an ego."""
     people = len(result.crowd_track.ids)
     return crowd_view_figure(
         result.time,
@@ -128,7 +129,7 @@ def _title(result: RunTables, ego: EgoResult) -> str:
 def influence_picture(
     speeds: Sequence[float], shape: VehicleShape, parameters: VciParameters
 ) -> Figure:
-    """The vehicle's influence on a standing pedestrian (the paper's figure 2)."""
+    """Draw the vehicle's influence on a standing pedestrian (the paper's figure 2)."""
 
     def influence(points: Array, speed: float) -> Array:
         half = shape.length / 2

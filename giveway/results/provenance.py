@@ -1,4 +1,4 @@
-"""The provenance of a run, so that it can be repeated: versions, hashes, seeds, command."""
+"""The provenance of a run, with which it can be repeated: versions, hashes, seeds, command."""
 
 import functools
 import hashlib
@@ -20,13 +20,13 @@ _PACKAGES = ("fmpy", "jupedsim", "libsumo", "numba", "numpy", "osqp", "pandas", 
 
 
 def sha256(content: bytes) -> str:
-    """The hexadecimal SHA-256 of ``content``."""
+    """Return the hexadecimal SHA-256 of ``content``."""
     return hashlib.sha256(content).hexdigest()
 
 
 @functools.cache
 def software_versions() -> Mapping[str, str]:
-    """The versions of all software that can change a number; looked up once in a process."""
+    """Return the versions of all software that can change a number."""
     versions = {"giveway": __version__, "python": platform.python_version()}
     for name in _PACKAGES:
         try:
@@ -38,7 +38,7 @@ def software_versions() -> Mapping[str, str]:
 
 
 def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
-    """The scenario's configuration, settings and every input file, by path from its folder.
+    """Return the scenario's configuration, settings and input files, by path from its folder.
 
     Files that input files include are among them.
     """
@@ -51,7 +51,7 @@ def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
 
 
 def scenario_hashes(scenario: Scenario) -> dict[str, str]:
-    """SHA-256 of each of the :func:`scenario_inputs`."""
+    """Return the SHA-256 of each of the :func:`scenario_inputs`."""
     inputs = scenario_inputs(scenario)
     return {name: sha256(file.read_bytes()) for name, file in inputs.items()}
 
@@ -59,7 +59,7 @@ def scenario_hashes(scenario: Scenario) -> dict[str, str]:
 def _seen_from(folder: Path, file: Path) -> str:
     try:
         return Path(os.path.relpath(file, folder)).as_posix()
-    except ValueError:  # on another drive
+    except ValueError:  # the file is on another drive
         return file.name
 
 
@@ -78,20 +78,21 @@ def manifest(
     error: str | None,
     code: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
 ) -> dict[str, Any]:
-    """The contents of ``manifest.json``; nothing in it depends on when the run was made.
+    """Return the contents of ``manifest.json``, which do not depend on when the run was made.
 
     Args:
         config: Configuration of the run.
         scenario: Scenario of the run.
-        config_text: Configuration as it is written; None if its hash is filled in later.
+        config_text: Configuration as it is written, or None if its hash is filled in later.
         vehicles: FMU of each ego.
         pedestrians: Ledger of the pedestrians that giveway moved.
         traffic: Counts of the yield layer.
         sumo: Seed and step length in effect.
-        time_step: Time step of the co-simulation [s]; None if the process died before it was known.
+        time_step: Time step of the co-simulation [s], or None if the process died before it was
+            known.
         remarks: Remarks for the user.
         ending: Reason why the run ended.
-        error: what ended it, if it failed.
+        error: Error that ended the run, or None.
         code: Provenance of plug-ins from other packages, under the keys of their sockets.
     """
     return {

@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class RunResult(RunTables):
-    """Everything that a run left behind, at a prompt or in a notebook."""
+    """All data that a run left behind, with its views for a prompt or a notebook."""
 
     def plot(self, kind: Picture = "top_view", ego: int = 0) -> "Figure":
-        """A picture of the run: from above, or speed, force and gap over time.
+        """Return a picture of the run: from above, or speed, force and gap over time.
 
         Args:
             kind: ``"top_view"`` or ``"state"``.
@@ -27,7 +27,7 @@ class RunResult(RunTables):
         return plotted(self, kind, ego)
 
     def replay(self) -> Replay:
-        """The page that plays the run: displayed by notebooks, saved by ``replay().save(path)``.
+        """Return the page that plays the run, which a notebook displays and ``save`` keeps.
 
         Raises:
             ResultsError: the run has no rows, or the disk for temporary files is full.

@@ -60,24 +60,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class RunTables:
-    """Everything that a run left behind; the frames hold the columns of docs/results.md.
+    """All data that a run left behind; the frames hold the columns of docs/results.md.
 
     Attributes:
         config: Configuration in effect.
         scenario: Files of the scenario.
         ending: Reason why the run ended.
-        error: what ended it, if it failed.
-        time: (T,) [s] Control instants.
+        error: Error that ended the run, or None.
+        time: Control instants (T,) [s].
         egos: Egos that were on the road, in the order of their departure.
         crowd_track, background_track: Rows as arrays, in SI units.
-        signal_track: Changes of the traffic lights that govern something on an ego's way.
-        people_track: where people mean to walk, if the law of the road has a say on an ego's way.
+        signal_track: Changes of the traffic lights that govern something on an ego's path.
+        people_track: Planned routes of people, if the law of the road rules anything on an ego's
+            path.
         elapsed: Wall clock time of the loop [s].
-        facts: Manifest, perhaps without the hash of the configuration.
+        facts: Manifest, which may lack the hash of the configuration.
         sumo_messages: Messages that SUMO printed.
         road: Outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
-        remarks: Differences from the scenario or from what the user may expect.
-        effect: Comparison of the people with those of the twin; None without a twin.
+        remarks: Remarks on differences from the scenario or from what the user may expect.
+        effect: Comparison of the people with those of the counterfactual run, or None without one.
         marks: Crossings and stop lines of the network.
     """
 
@@ -102,7 +103,7 @@ class RunTables:
 
     @property
     def completed(self) -> bool:
-        """Return whether every ego has driven its distance."""
+        """True if every ego has driven its distance."""
         return self.ending is Ending.COMPLETED
 
     @cached_property
@@ -112,7 +113,7 @@ class RunTables:
 
     @cached_property
     def manifest(self) -> dict[str, Any]:
-        """Versions, hashes, seeds, the pedestrians' ledger: the contents of ``manifest.json``."""
+        """The contents of ``manifest.json``: versions, hashes, seeds, the ledger of pedestrians."""
         if self.facts[CONFIGURATION] is not None:
             return self.facts
         return self.facts | {CONFIGURATION: sha256(self.config_text.encode())}
@@ -142,20 +143,20 @@ class RunTables:
 
     @cached_property
     def ego(self) -> "pd.DataFrame":
-        """One row per control instant and ego."""
+        """The table with one row per control instant and ego."""
         names = [column.name for column in self.schemas["ego"]]
         tables = [ego_table(ego.track, ego.id, ego.outputs) for ego in self.egos]
         return _stacked([table.reindex(columns=names) for table in tables], names, by="time")
 
     @cached_property
     def trajectories(self) -> "pd.DataFrame":
-        """Everybody's position and velocity, SUMO's FCD names."""
+        """The table of all positions and velocities, with the names of SUMO's FCD."""
         egos = [(ego.id, ego.track) for ego in self.egos]
         return trajectory_table(self.time, egos, self.crowd_track, self.background_track)
 
     @cached_property
     def pedestrians(self) -> "pd.DataFrame":
-        """One row per ego and pedestrian: closest approach, TTC, PET; delay, if there is a twin."""
+        """The table with one row per ego and pedestrian: closest approach, TTC, PET, delay."""
         import pandas as pd
 
         names = [column.name for column in self.schemas["pedestrians"]]
@@ -169,14 +170,14 @@ class RunTables:
 
     @cached_property
     def walks(self) -> "pd.DataFrame | None":
-        """The walks in a run without an ego; None if there was an ego or nobody walked."""
+        """The table of walks in a run without an ego, or None if it had an ego or no people."""
         if self.egos or not self.crowd_track.ids:
             return None
         return walks_without_ego(self.time, self.crowd_track)
 
     @cached_property
     def predictions(self) -> "pd.DataFrame":
-        """One row per control instant, ego, pedestrian and look-ahead, if it was asked for."""
+        """The table with one row per control instant, ego, pedestrian and look-ahead."""
         names = [column.name for column in PREDICTION_COLUMNS]
         ids = self.crowd_track.ids
         tables = [prediction_table(ego.predictions, ego.id, ids) for ego in self.egos]
@@ -184,28 +185,28 @@ class RunTables:
 
     @cached_property
     def ledger(self) -> "pd.DataFrame":
-        """One row per encounter and violation of the law of the road."""
+        """The table with one row per encounter and violation of the law of the road."""
         judged = [(ego.id, ego.ledger) for ego in self.egos if ego.ledger is not None]
         return ledger_table([(name, event) for name, found in judged for event in found.events])
 
     @cached_property
     def signals(self) -> "pd.DataFrame":
-        """The changes of the traffic lights on the egos' ways."""
+        """The table of changes of the traffic lights on the egos' paths."""
         return signal_table(self.signal_track)
 
     @cached_property
     def people(self) -> "pd.DataFrame":
-        """The planned ways and desired speeds of people."""
+        """The table of planned routes and desired speeds of people."""
         return people_table(self.time, self.people_track, self.crowd_track.ids)
 
     @cached_property
     def measures(self) -> "pd.DataFrame":
-        """Density, speed and flow on each ``[[measure]]``, interval by interval, by PedPy."""
+        """The table of density, speed and flow on each ``[[measure]]``, by interval, from PedPy."""
         return measure_table(self.config.measure, self.time, self.crowd_track)
 
     @cached_property
     def timing(self) -> "pd.DataFrame":
-        """Computing times per control step; the only table that differs between equal runs."""
+        """The table of computing times per control step, which differ between equal runs."""
         return timing_table(self.time, self.timings)
 
     @property
@@ -221,7 +222,7 @@ class RunTables:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The run in one row: that of its first ego, or how people walked without one."""
+        """The summary in one row: of the first ego, or of the walks in a run without an ego."""
         if self.walks is not None:
             return self.head | summarise_walks(self.walks).as_dict()
         return self.head | (self._row(self.egos[0]) if self.egos else {})
@@ -232,17 +233,18 @@ class RunTables:
 
     @property
     def summary_rows(self) -> list[dict[str, Any]]:
-        """One row per ego; of a run without one, how people walked."""
+        """The summary of each ego, or of the walks in a run without an ego."""
         if len(self.egos) == 1 and self.walks is None:
             names = [column.name for column in self.schemas["summary"]]
             row = self._row(self.egos[0])
             return [{name: row.get(name, math.nan) for name in names}]
-        rows = self.summary_table.to_dict("records")  # where a column has one type for all
+        # in the table, a column has one type for all rows
+        rows = self.summary_table.to_dict("records")
         return [{str(name): value for name, value in row.items()} for row in rows]
 
     @property
     def summary_table(self) -> "pd.DataFrame":
-        """The same as a table."""
+        """The rows of the summary as a table."""
         import pandas as pd
 
         names = [column.name for column in self.schemas["summary"]]
@@ -253,7 +255,7 @@ class RunTables:
 
     @property
     def timing_summary(self) -> dict[str, Any]:
-        """Wall clock, real-time factor and each part's share of the loop."""
+        """The wall clock time, the real-time factor and each part's share of the loop."""
         simulated = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
         whole = self.timings.total("total")
         shares = {name: self.timings.total(name) / whole for name in Timings.NAMES[:-1] if whole}
@@ -305,7 +307,7 @@ PEDESTRIAN_TABLE = (
 def _stacked(
     tables: "list[pd.DataFrame]", names: list[str], by: str | None = None
 ) -> "pd.DataFrame":
-    """The tables one below the other, with the columns ``names``, perhaps ordered."""
+    """Return the tables one below the other, with the columns ``names``, sorted by ``by``."""
     import pandas as pd
 
     if not tables:

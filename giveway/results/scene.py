@@ -1,4 +1,4 @@
-"""The scene that a run leaves for replays: the outlines near anybody, and all bodies."""
+"""The scene that a run keeps for replays: the outlines near its road users, and all bodies."""
 
 import numpy as np
 
@@ -6,12 +6,12 @@ from giveway.geometry.kernel import Array
 from giveway.results.run_tables import RunTables
 from giveway.run_data.scene import Scene
 
-_AROUND = 60.0  # [m] of road kept beyond the places where somebody was
-_DECIMALS = 2  # centimetres
+_AROUND = 60.0  # Distance [m] beyond the places of road users up to which the road is kept
+_DECIMALS = 2  # Decimals of lengths [m]: centimetres
 
 
 def scene_of(result: RunTables) -> Scene:
-    """The part of a run's surroundings that a replay shows."""
+    """Return the part of a run's surroundings that a replay shows."""
     background = result.background_track
     _, first = np.unique(background.id, return_index=True)
     bodies = {
@@ -36,7 +36,7 @@ def _rounded(outline: Array) -> list[list[float]]:
 
 
 def _extent(result: RunTables) -> tuple[Array, Array]:
-    """The corners of the area in which anybody was, with some room around it."""
+    """Return the corners of the area in which road users were, with some room around it."""
     tracks = [(result.crowd_track.x, result.crowd_track.y)]
     tracks += [(result.background_track.x, result.background_track.y)]
     tracks += [(ego.track.front_x, ego.track.front_y) for ego in result.egos]

@@ -26,11 +26,11 @@ from giveway.run_data.tracks import (
 if TYPE_CHECKING:
     import pandas as pd
 
-_STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
+_STANDING = 1e-6  # Speed [m/s] below which a pedestrian keeps the last angle
 
 
 def ego_table(track: EgoTrack, ego_id: str, outputs: Sequence[Output] = ()) -> "pd.DataFrame":
-    """``ego.csv``: one row per control instant."""
+    """Return ``ego.csv``: one row per control instant."""
     import pandas as pd
 
     columns = {"id": ego_id} | {
@@ -43,7 +43,7 @@ def ego_table(track: EgoTrack, ego_id: str, outputs: Sequence[Output] = ()) -> "
 
 
 def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) -> "pd.DataFrame":
-    """``predictions.csv``: one row per control instant, pedestrian and look-ahead."""
+    """Return ``predictions.csv``: one row per control instant, pedestrian and look-ahead."""
     import pandas as pd
 
     columns = {
@@ -64,7 +64,7 @@ def trajectory_table(
     crowd: CrowdTrack,
     background: BackgroundTrack,
 ) -> "pd.DataFrame":
-    """``trajectories.csv``: at each instant the egos, SUMO's own vehicles, the pedestrians."""
+    """Return ``trajectories.csv``: all egos, SUMO's vehicles and pedestrians by instant."""
     import pandas as pd
 
     driven = [
@@ -89,7 +89,7 @@ def trajectory_table(
     if not frames:
         return pd.DataFrame(columns=names)
     table = pd.concat(frames, ignore_index=True)
-    table["time"] = table["time"].round(6)  # SUMO's clock and ours differ in the last digit
+    table["time"] = table["time"].round(6)  # SUMO's clock and giveway's differ in the last digit
     return table.sort_values("time", kind="stable", ignore_index=True)[names]
 
 
@@ -124,7 +124,7 @@ def _walking(time: Array, crowd: CrowdTrack) -> "pd.DataFrame":
 
 
 def timing_table(time: Array, timings: Timings) -> "pd.DataFrame":
-    """``timing.csv``: computing times [us]; the only table that differs between equal runs."""
+    """Return ``timing.csv``: computing times [us], which differ between equal runs."""
     import pandas as pd
 
     microseconds = pd.DataFrame(np.round(timings.seconds * 1e6, 1), columns=list(Timings.NAMES))

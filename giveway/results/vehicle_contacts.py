@@ -1,4 +1,4 @@
-"""Contact with background vehicles, in words."""
+"""The remark on contacts with background vehicles."""
 
 from giveway.results.ego_result import EgoResult
 
@@ -6,7 +6,7 @@ _NAMED = 3
 
 
 def remark(ego: EgoResult) -> str:
-    """Return the remark on an ego's contacts with background vehicles; empty without any."""
+    """Return the remark on an ego's contacts with background vehicles, or "" without contacts."""
     contacts = ego.vehicle_contacts
     if not contacts:
         return ""

@@ -1,6 +1,6 @@
-"""The columns of every table that giveway writes: name, type, unit and meaning, once.
+"""The columns of every table that giveway writes: name, type, unit and meaning.
 
-Recorder, CSV writer and data package all read from here. ``trajectories.csv`` keeps the names,
+Recorder, CSV writer and data package all read them from here. ``trajectories.csv`` has the names,
 the reference point and the angle convention of SUMO's floating car data (FCD).
 """
 
@@ -10,11 +10,11 @@ from typing import Any, Literal, TypeVar, get_args, get_type_hints
 
 ColumnType = Literal["number", "integer", "string", "boolean"]
 Number = TypeVar("Number")
-"""Type of a number in a class that is both one row and a whole table: float, or an array."""
+"""Type of a number in a class that describes one row or a whole table: float, or an array."""
 Text = TypeVar("Text")
-"""Type of a text there: str, or an array."""
+"""Type of a text in such a class: str, or an array."""
 Count = TypeVar("Count")
-"""Type of a whole number there: int, or an array."""
+"""Type of a whole number in such a class: int, or an array."""
 _TYPES: dict[Any, ColumnType] = {
     bool: "boolean",
     int: "integer",
@@ -28,7 +28,7 @@ _TYPES: dict[Any, ColumnType] = {
 
 @dataclass(frozen=True)
 class Column:
-    """One column: Frictionless type, unit (None where there is none) and meaning."""
+    """One column: Frictionless type, unit (None if it has none) and meaning."""
 
     name: str
     type: ColumnType
@@ -42,12 +42,12 @@ def _unchanged(values: Any) -> Any:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Unit and meaning of a column, as the annotation of the attribute that holds its values.
+    """The unit and meaning of a column; it annotates the attribute that holds the values.
 
     Attributes:
         unit: Unit in the CSV file, or None.
         meaning: Meaning of the values.
-        column: Name in the CSV file. The attribute's own name if it is empty.
+        column: Name in the CSV file, or an empty text if it is the attribute's name.
         written: Conversion of the attribute's array into what the CSV file holds.
     """
 
@@ -58,7 +58,7 @@ class Quantity:
 
 
 def quantities_of(table: type) -> dict[str, tuple[ColumnType, Quantity]]:
-    """Return type and quantity of each attribute of a class that is annotated throughout."""
+    """Return the type and quantity of each attribute of a class whose attributes are annotated."""
     found = {}
     for name, hint in get_type_hints(table, include_extras=True).items():
         python_type, quantity = get_args(hint)

@@ -1,4 +1,4 @@
-"""The recorded outputs of a vehicle FMU besides its motion, as its profile lists them."""
+"""The outputs of a vehicle FMU that are recorded besides its motion, as its profile lists them."""
 
 from typing import NamedTuple
 
@@ -12,16 +12,16 @@ ROAD_GRADE = (
     "rad",
     "angle at which the ego's body stands on the road, by the heights of the net; uphill positive",
 )
-"""Name, unit and meaning of the column that egos on roads with heights have."""
+"""Name, unit and meaning of the column for egos on roads with heights."""
 
 
 class Output(NamedTuple):
-    """One variable of an ego's FMU at the ego's control instants."""
+    """One variable of an ego's FMU, at the ego's control instants."""
 
     name: str
-    unit: str  # the FMU's own; empty where it declares none
-    description: str  # likewise
-    values: NDArray[np.float64]  # (T,)
+    unit: str  # unit in the FMU; empty if it declares none
+    description: str  # description in the FMU; empty if it declares none
+    values: NDArray[np.float64]  # (T,) values
 
     @property
     def column(self) -> Column:

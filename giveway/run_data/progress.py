@@ -18,16 +18,16 @@ class Ending(enum.StrEnum):
 
 @dataclass(frozen=True)
 class Progress:
-    """The progress of a run, for those who watch it."""
+    """The progress of a run, for its watchers."""
 
     time: float  # [s] since the run's first instant; 0 while SUMO alone runs up to it
-    clock: float  # [s] SUMO's
-    position: float  # [m] driven by the first ego on the road; nan without one
-    goal: float  # [m] that this ego is to drive; nan without one
-    speed: float  # [m/s] of this ego; nan without one
-    acting: str  # which controller acts; empty without an ego
-    pedestrians: int  # in the crowd
-    doing: str = ""  # what it does, told once, where it does not drive
+    clock: float  # [s] SUMO's clock
+    position: float  # [m] position of the first ego on the road; nan without an ego
+    goal: float  # [m] distance that this ego is to drive; nan without an ego
+    speed: float  # [m/s] speed of this ego; nan without an ego
+    acting: str  # controller that acts; empty without an ego
+    pedestrians: int  # number of people in the crowd
+    doing: str = ""  # activity of the run, told once, while it does not drive
 
 
 Watcher = Callable[[Progress], None]

@@ -11,14 +11,14 @@ Point = tuple[float, float]
 class Zebra(NamedTuple):
     """A pedestrian crossing, with or without a light."""
 
-    ends: tuple[Point, Point]  # [m] the middle of each kerb
+    ends: tuple[Point, Point]  # [m] middle of each kerb
     width: float  # [m]
 
 
 class SignalHead(NamedTuple):
     """A light, shown as the stop line of the lane that it governs."""
 
-    ends: tuple[Point, Point]  # [m] of the stop line
+    ends: tuple[Point, Point]  # [m] ends of the stop line
     system: str  # SUMO's id of the traffic light
     links: tuple[int, ...]  # indices of the lane's movements in the light's state
 
@@ -31,7 +31,7 @@ class RoadMarks:
     heads: tuple[SignalHead, ...] = ()
 
     def within(self, low: Point, high: Point) -> RoadMarks:
-        """Those that begin or end in a rectangle, given by its corners [m]."""
+        """Return the marks that begin or end in a rectangle, given by its corners [m]."""
 
         def inside(ends: tuple[Point, Point]) -> bool:
             return any(low[0] <= x <= high[0] and low[1] <= y <= high[1] for x, y in ends)
@@ -42,7 +42,7 @@ class RoadMarks:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """The marks as JSON has them; empty where there are none."""
+        """Return the marks as JSON values; empty if there are none."""
         found: dict[str, Any] = {}
         if self.zebras:
             found["zebras"] = [zebra._asdict() for zebra in self.zebras]
@@ -52,10 +52,10 @@ class RoadMarks:
 
     @classmethod
     def from_dict(cls, kept: dict[str, Any]) -> RoadMarks:
-        """The marks that ``as_dict`` was made of.
+        """Return the marks from the values of ``as_dict``.
 
         Raises:
-            KeyError, TypeError, ValueError: it is something else.
+            KeyError, TypeError, ValueError: the values are not those of marks.
         """
         return cls(
             tuple(
@@ -73,9 +73,10 @@ UNMARKED = RoadMarks()
 
 
 def shown(letters: str) -> str:
-    """The one letter to show for a lane whose movements a light tells ``letters``.
+    """Return the letter to show for a lane whose movements have the states ``letters``.
 
-    Green if any movement may go, then yellow, then red; otherwise, as where a light is out, empty.
+    It is green if any movement may go, else yellow, else red; otherwise, for example if the light
+    is off, it is empty.
     """
     for sought in ("Gg", "yu", "rR"):
         if any(letter in sought for letter in letters):

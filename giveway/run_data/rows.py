@@ -1,7 +1,8 @@
-"""The speed at which an ego counts as standing, and what the ledger of pedestrians counts."""
+"""The speed below which an ego stands, and the counts in the ledger of pedestrians."""
 
 STOP_SPEED = 0.2
-"""[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""
+"""Speed [m/s] below which the ego stands; Yang & Özgüner 2019, section 2.1, then treat it as an
+obstacle."""
 
 LEDGER = ("added", "taken_over", "handed_back", "arrived", "continued", "walking")
-"""What the ledger of pedestrians counts, in order."""
+"""The counts in the ledger of pedestrians, in order."""

@@ -1,7 +1,7 @@
 """The static scene of a run: the road's outlines and the vehicles' bodies.
 
 A results folder keeps it in ``scene.json``, so that a replay needs neither SUMO nor the scenario,
-which may be gone by then.
+which may have been deleted by then.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Scene:
     Attributes:
         road: Closed outlines [m] of lanes, crossings and walkingareas.
         bodies: Length and width [m] of vehicles, by their ids.
-        ways: Ways of the egos on which rules of the road apply.
+        ways: Paths of the egos on which rules of the road apply.
         marks: Crossings and stop lines.
     """
 
@@ -37,11 +37,11 @@ class Scene:
     marks: RoadMarks = UNMARKED
 
     def body(self, vehicle: str, otherwise: Body) -> Body:
-        """Length and width [m] of a vehicle; ``otherwise`` if they are not known."""
+        """Return length and width [m] of a vehicle, or ``otherwise`` if they are not known."""
         return (self.bodies or {}).get(vehicle, otherwise)
 
     def to_json(self) -> str:
-        """The scene as one line of JSON."""
+        """Return the scene as one line of JSON."""
         kept: dict[str, Any] = {"road": self.road, "bodies": self.bodies}
         kept |= self.marks.as_dict()
         if self.ways:
@@ -50,7 +50,7 @@ class Scene:
 
     @classmethod
     def read(cls, folder: Path) -> Scene:
-        """The scene that a results folder keeps; an empty one where there is none."""
+        """Read the scene in a results folder; it is empty if the folder has none."""
         try:
             kept = json.loads((folder / SCENE_FILE).read_text(encoding="utf-8"))
             road = tuple(tuple((float(x), float(y)) for x, y in line) for line in kept["road"])

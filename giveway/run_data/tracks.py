@@ -1,7 +1,7 @@
 """The tracks of egos, crowd and background vehicles, as arrays.
 
-The recorder fills these; metrics, tables and figures read them. Everything is SI, angles are
-mathematical (radians, counter-clockwise from +x) and x, y are the network's coordinates.
+The recorder fills them; metrics, tables and figures read them. All values have SI units, angles are
+mathematical (radians, counter-clockwise from +x), and x, y are coordinates of the network.
 """
 
 from __future__ import annotations
@@ -33,10 +33,11 @@ _FRONT = "of the front bumper's centre (SUMO's reference point)"
 
 @dataclass(kw_only=True)
 class EgoColumns(Generic[Number, Text, Count]):
-    """The columns of ``ego.csv``, declared once: :class:`EgoRow` is one row, :class:`EgoTrack` all.
+    """The columns of ``ego.csv``: :class:`EgoRow` is one row, :class:`EgoTrack` are all rows.
 
     Recorder, journal, table, data package and docs/results.md follow from this class. Here angles
-    are mathematical [rad], and a distance to what is not there is infinite; ``written`` converts.
+    are mathematical [rad], and a distance to something that is not there is infinite. ``written``
+    converts the values for the file.
     """
 
     time: Annotated[Number, Quantity("s", "simulation time t_k of the control instant")]
@@ -106,21 +107,21 @@ class EgoColumns(Generic[Number, Text, Count]):
 
 
 class EgoRow(EgoColumns[float, str, int]):
-    """An ego at one control instant."""
+    """The values of an ego at one control instant."""
 
 
 class EgoTrack(EgoColumns[NDArray[np.float64], NDArray[np.str_], NDArray[np.int64]]):
-    """An ego at its T control instants t_k; each column has the shape (T,)."""
+    """The values of an ego at its T control instants t_k; each column has the shape (T,)."""
 
 
 _TIME, *_OWN = columns_of(EgoTrack)
 EGO_COLUMNS = (_TIME, Column("id", "string", None, "SUMO id of the ego"), *_OWN)
-"""The columns of ``ego.csv``, in their order; the id is the same in all rows of a track."""
+"""Columns of ``ego.csv``, in order; the id is the same in all rows of a track."""
 
 
 @dataclass(frozen=True)
 class CrowdTrack:
-    """The crowd as flat records, one per pedestrian recorded at an instant, in time order."""
+    """The crowd as flat records in time order, one per pedestrian and recorded instant."""
 
     step: NDArray[np.int64]  # (R,) index into the control instants
     pedestrian: NDArray[np.int64]  # (R,) index into ``ids``
@@ -128,12 +129,13 @@ class CrowdTrack:
     y: NDArray[np.float64]  # (R,) [m]
     vx: NDArray[np.float64]  # (R,) [m/s]
     vy: NDArray[np.float64]  # (R,) [m/s]
-    ids: tuple[str, ...]  # one per pedestrian
-    kinds: tuple[str, ...] = ()  # kind of each, as "elderly"; empty if kinds are not used
-    groups: tuple[str, ...] = ()  # first member of each one's group; empty without groups
+    ids: tuple[str, ...]  # id of each pedestrian
+    # kind of each pedestrian, for example "elderly"; empty if kinds are not used
+    kinds: tuple[str, ...] = ()
+    groups: tuple[str, ...] = ()  # first member of each one's group; empty if there are no groups
 
     def during(self, first: int, instants: int) -> CrowdTrack:
-        """The records of ``instants`` control instants from ``first`` on, which becomes step 0."""
+        """Return the records of ``instants`` control instants from ``first`` on, as step 0."""
         a, b = np.searchsorted(self.step, (first, first + instants))
         if first == 0 and b == len(self.step):
             return self
@@ -154,9 +156,9 @@ class CrowdTrack:
 class PredictionTrack:
     """The positions of pedestrians that an ego's controller expected, in time order."""
 
-    time: NDArray[np.float64]  # (P,) [s] the control instant of the prediction
+    time: NDArray[np.float64]  # (P,) [s] control instant of the prediction
     pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
-    look_ahead: NDArray[np.float64]  # (P,) [s] from that instant on
+    look_ahead: NDArray[np.float64]  # (P,) [s] time ahead of that instant
     x: NDArray[np.float64]  # (P,) [m] body centre
     y: NDArray[np.float64]  # (P,) [m]
 
@@ -167,7 +169,7 @@ class BackgroundTrack:
 
     time: NDArray[np.float64]  # (B,) [s]
     id: NDArray[np.str_]  # (B,)
-    type: NDArray[np.str_]  # (B,) SUMO vType
+    type: NDArray[np.str_]  # (B,) vehicle type in SUMO
     x: NDArray[np.float64]  # (B,) [m] front-bumper centre
     y: NDArray[np.float64]  # (B,) [m]
     heading: NDArray[np.float64]  # (B,) [rad]
@@ -180,19 +182,19 @@ class BackgroundTrack:
 class SignalTrack:
     """The states of traffic lights, as changes in time order."""
 
-    time: NDArray[np.float64]  # (S,) [s] from when on
+    time: NDArray[np.float64]  # (S,) [s] time of the change
     system: NDArray[np.str_]  # (S,) SUMO's id of the light
     state: NDArray[np.str_]  # (S,) one letter per movement
 
 
 @dataclass(frozen=True)
 class PeopleTrack:
-    """The planned ways and desired speeds of pedestrians, as flat records in time order.
+    """The planned routes and desired speeds of pedestrians, as flat records in time order.
 
-    A pedestrian's way is the records of one step: the position then, and each later way-point.
+    The records of one step are a pedestrian's route: the position then, and each later way-point.
     """
 
-    step: NDArray[np.int64]  # (P,) index into the control instants, from when on
+    step: NDArray[np.int64]  # (P,) index of the control instant from which on the route holds
     pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
     desired_speed: NDArray[np.float64]  # (P,) [m/s]
     x: NDArray[np.float64]  # (P,) [m]
@@ -201,7 +203,7 @@ class PeopleTrack:
 
 @dataclass(frozen=True)
 class Timings:
-    """Computing times of each control step, apart from all that is equal in equal runs."""
+    """The computing times of each control step; all other tables are equal in equal runs."""
 
     NAMES: ClassVar[tuple[str, ...]] = tuple(
         column.name for column in TIMING_COLUMNS if column.name != "time"
@@ -210,5 +212,5 @@ class Timings:
     seconds: NDArray[np.float64]  # (T, 6) [s], columns in the order of NAMES
 
     def total(self, name: str) -> float:
-        """The sum over all steps of one part [s]."""
+        """Return the time [s] of one part, summed over all steps."""
         return float(self.seconds[:, self.NAMES.index(name)].sum())

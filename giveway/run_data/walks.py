@@ -1,4 +1,4 @@
-"""The progress of people on their ways at each control instant, as arrays."""
+"""The progress of people on their routes at each control instant, as arrays."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class WalkTrack:
-    """The people that giveway moved on their ways, as flat records in time order.
+    """The progress of the people that giveway moves, as flat records in time order.
 
     Attributes:
-        step: (R,) Index of the control instant.
-        pedestrian: (R,) Index into ``ids``.
-        x, y: (R,) [m] Position of the body's centre.
-        vx, vy: (R,) [m/s] Velocity.
-        remaining: (R,) [m] Rest of the route.
-        walked: (R,) [m] Distance walked so far.
-        arrival_step: (A,) Control instants at which somebody reached the last way-point.
-        arrival_pedestrian: (A,) Index into ``ids`` of who arrived.
-        desired_speed: (n,) [m/s] Desired speed.
-        near: (n,) Whether the person came close to an ego's way; others have no records.
+        step: Index (R,) of the control instant.
+        pedestrian: Index (R,) into ``ids``.
+        x, y: Position (R,) [m] of the body's centre.
+        vx, vy: Velocity (R,) [m/s].
+        remaining: Rest of the route (R,) [m].
+        walked: Distance (R,) [m] walked so far.
+        arrival_step: Control instants (A,) at which a person reached the last way-point.
+        arrival_pedestrian: Index (A,) into ``ids`` of the person who arrived.
+        desired_speed: Desired speed (n,) [m/s].
+        near: True (n,) if the person came close to an ego's path; others have no records.
         ids: Ids of all n people.
-        time_step: [s] between two control instants.
+        time_step: Time [s] between two control instants.
         last: Last control instant that was logged.
     """
 
@@ -45,7 +45,7 @@ class WalkTrack:
     last: int
 
     def until(self, step: int) -> WalkTrack:
-        """The records and arrivals up to the control instant ``step``."""
+        """Return the records and arrivals up to the control instant ``step``."""
         if self.last <= step:
             return self
         end = int(np.searchsorted(self.step, step, side="right"))

@@ -1,6 +1,6 @@
-"""The rules of the road on an ego's way (crossings, lines, junctions), as at its departure.
+"""An ego's path and the rules of the road on it (crossings, lines, junctions), at its departure.
 
-The recorder keeps one line of JSON per ego, so that the judgement over the tables
+The recorder keeps one line of JSON per ego. Therefore the judgement over the tables
 (:mod:`giveway.metrics.law`) needs neither SUMO nor the ego's own reading of the network.
 """
 
@@ -14,43 +14,43 @@ Point = tuple[float, float]
 
 
 class CrossingOnWay(NamedTuple):
-    """A pedestrian crossing that the path leads over."""
+    """A pedestrian crossing on the ego's path."""
 
-    lane: str  # SUMO's id
-    ends: tuple[Point, Point]  # [m] the middle of each kerb
+    lane: str  # SUMO's id of the crossing's lane
+    ends: tuple[Point, Point]  # [m] middle of each kerb
     width: float  # [m]
-    zebra: bool  # people have priority wherever no light says otherwise
+    zebra: bool  # True if people have priority where no light says otherwise
     system: str  # SUMO's id of the traffic light; empty without one
     link: int  # index of the movement in the light's state
 
 
 class StopLine(NamedTuple):
-    """The stop line of a traffic light on the ego's way."""
+    """The stop line of a traffic light on the ego's path."""
 
-    station: float  # [m] along the path
+    station: float  # [m] station along the path
     system: str  # SUMO's id of the traffic light
     link: int  # index of the movement in the light's state
 
 
 class JunctionOnWay(NamedTuple):
-    """A stretch of the path that crosses or joins the ways of other vehicles."""
+    """A part of the path that crosses or joins the paths of other vehicles."""
 
-    entry: float  # [m] station at which it begins
-    exit: float  # [m] and ends
-    waiting: tuple[float, ...]  # [m] stations in it at which a front bumper may wait
-    stop_sign: bool = False  # one has to stand before it first
+    entry: float  # [m] station of its beginning
+    exit: float  # [m] station of its end
+    waiting: tuple[float, ...]  # [m] stations inside at which a front bumper may wait
+    stop_sign: bool = False  # True if a vehicle has to stop before it first
 
 
 class Halt(NamedTuple):
     """A scheduled stop."""
 
     start: float  # [m] station from which on a halt counts
-    end: float  # [m] station that the ego drives up to
+    end: float  # [m] station up to which the ego drives
 
 
 @dataclass(frozen=True)
 class EgoWay:
-    """An ego's way and what stands on it; stations count along ``points``.
+    """An ego's path and the rules on it; stations count along ``points``.
 
     Attributes:
         ego: Id of the ego in SUMO.
@@ -72,33 +72,33 @@ class EgoWay:
 
     @property
     def is_ruled(self) -> bool:
-        """Return whether somebody has priority anywhere on the way."""
+        """True if another road user has priority anywhere on the path."""
         return bool(self.crossings or self.lines or self.junctions)
 
     @property
     def systems(self) -> frozenset[str]:
-        """The traffic lights that govern anything on it."""
+        """The traffic lights that govern anything on the path."""
         found = [crossing.system for crossing in self.crossings]
         found += [line.system for line in self.lines]
         return frozenset(system for system in found if system)
 
     def as_dict(self) -> dict[str, Any]:
-        """The way as JSON has it."""
+        """Return the path as JSON values."""
         plain = asdict(self)
         for name in ("crossings", "lines", "junctions", "halts"):
             plain[name] = [place._asdict() for place in getattr(self, name)]
         return plain
 
     def to_json(self) -> str:
-        """The way as one line of JSON."""
+        """Return the path as one line of JSON."""
         return json.dumps(self.as_dict(), separators=(",", ":"), ensure_ascii=False)
 
     @classmethod
     def from_dict(cls, kept: dict[str, Any]) -> EgoWay:
-        """The way that ``as_dict`` was made of.
+        """Return the path from the values of ``as_dict``.
 
         Raises:
-            KeyError, TypeError, ValueError: it is something else.
+            KeyError, TypeError, ValueError: the values are not those of a path.
         """
         return cls(
             ego=str(kept["ego"]),

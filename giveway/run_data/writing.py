@@ -6,7 +6,7 @@ import numpy as np
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A number with a true minus sign; N.A. where there is none."""
+    """Return a number with a true minus sign, or "N.A." if it is nan."""
     if not math.isfinite(value):
         return "N.A."
     text = f"{value:.{digits}f}"
@@ -16,7 +16,7 @@ def number(value: float, digits: int = 2) -> str:
 
 
 def digits_for(width: float) -> int:
-    """Decimals that show an interval of that width with two significant digits or more."""
+    """Return the decimals that show an interval of this width with two significant digits."""
     if not math.isfinite(width) or width <= 0.0:
         return 2
     if 1.0 <= width < 10.0:
@@ -25,10 +25,10 @@ def digits_for(width: float) -> int:
 
 
 def with_unit(text: str, unit: str) -> str:
-    """Text and unit, as "Time [s]"; without a unit the text alone."""
+    """Return text and unit, as "Time [s]", or the text alone without a unit."""
     return f"{text} [{pretty_unit(unit)}]" if unit else text
 
 
 def pretty_unit(unit: str) -> str:
-    """The unit as it is printed: m/s², not m/s^2."""
+    """Return the unit as it is printed: m/s², not m/s^2."""
     return unit.replace("^2", "²").replace("^3", "³").replace(".", "·")

@@ -9,11 +9,11 @@ from giveway.walkways.gates import Array
 from giveway.walkways.inside import polygon_of, rings
 from giveway.walkways.reading import PedLane, Survey
 
-_GAP = 0.15  # [m] half the width of gaps between neighbours that are closed
-_SLIVER = 0.1  # [m] half the width of spits that are cut off
-_SMALLEST = 0.5  # [m2] size below which a hole gets no wall
-_SIMPLE = 0.02  # [m] tolerance of the simplified outline
-_OVERLAP = 0.6  # [m] length by which a crossing reaches into the walkingareas at its ends
+_GAP = 0.15  # Half width [m] of the gaps between neighbours that are closed
+_SLIVER = 0.1  # Half width [m] of narrow spits that are cut off
+_SMALLEST = 0.5  # Size [m²] below which a hole gets no wall
+_SIMPLE = 0.02  # Tolerance [m] of the simplified outline
+_OVERLAP = 0.6  # Length [m] by which a crossing reaches into the walkingareas at its ends
 
 
 def walkable_area(survey: Survey) -> shapely.MultiPolygon:
@@ -26,14 +26,14 @@ def walkable_area(survey: Survey) -> shapely.MultiPolygon:
 
 
 def sidewalk_area(survey: Survey, place: shapely.Geometry) -> shapely.MultiPolygon:
-    """The sidewalks and walkingareas that reach into a place: where there are people only."""
+    """Return the sidewalks and walkingareas that reach into a place, without roadways."""
     parts = [_lane(edge.lane) for edge in survey.edges.values() if edge.sidewalk]
     parts += [polygon_of(area) for area in survey.walkingareas.values()]
     return _joined([part for part in parts if part.intersects(place)])
 
 
 def _joined(parts: list[shapely.Geometry]) -> shapely.MultiPolygon:
-    """Return the union of parts, with gaps closed and spits cut off."""
+    """Return the union of the parts, with gaps closed and spits cut off."""
     closed = shapely.union_all(parts).buffer(_GAP, join_style="mitre")
     opened = closed.buffer(-_GAP - _SLIVER, join_style="mitre")
     area = opened.buffer(_SLIVER, join_style="mitre").simplify(_SIMPLE)
@@ -46,7 +46,7 @@ def _joined(parts: list[shapely.Geometry]) -> shapely.MultiPolygon:
 
 
 def walls(area: shapely.MultiPolygon) -> Array:
-    """The rings of an area as segments (k, 4) x0, y0, x1, y1 [m], the area on their left."""
+    """Return an area's rings as segments (k, 4) x0, y0, x1, y1 [m], the area on their left."""
     segments = [np.empty((0, 4))]
     for polygon in area.geoms:
         segments += [np.hstack([ring[:-1], ring[1:]]) for ring in rings(polygon)]
@@ -54,7 +54,7 @@ def walls(area: shapely.MultiPolygon) -> Array:
 
 
 def _lane(lane: PedLane, extension: float = 0.0) -> shapely.Geometry:
-    """Return the area of a lane, cut off straight ``extension`` [m] beyond its ends."""
+    """Return the area of a lane, which ends straight ``extension`` [m] beyond its ends."""
     points = lane.shape
     if extension:
         first, last = points[0] - points[1], points[-1] - points[-2]
@@ -70,7 +70,7 @@ def _lane(lane: PedLane, extension: float = 0.0) -> shapely.Geometry:
 
 
 def _bare_junctions(survey: Survey) -> list[shapely.Geometry]:
-    """The outlines of junctions at which a lane ends and no walkingarea begins."""
+    """Return the outlines of junctions at which a lane ends and no walkingarea begins."""
     served = {(link.source, True) for link in survey.links}
     served |= {(link.target, False) for link in survey.links}
     bare: dict[str, list[Array]] = defaultdict(list)
@@ -88,7 +88,7 @@ def _bare_junctions(survey: Survey) -> list[shapely.Geometry]:
 
 
 def _end(lane: PedLane, last: bool) -> Array:
-    """The two corners (2, 2) [m] of a lane at one of its ends."""
+    """Return the two corners (2, 2) [m] of a lane at one of its ends."""
     end, inner = lane.shape[[-1, -2]] if last else lane.shape[[0, 1]]
     along = (end - inner) / max(float(np.hypot(*(end - inner))), 1e-9)
     across = lane.width / 2 * np.array([-along[1], along[0]])

@@ -1,4 +1,4 @@
-"""Places for people to start from if they are to cross a vehicle's path."""
+"""Places for people to start from so that they cross a vehicle's path."""
 
 from typing import NamedTuple
 
@@ -8,22 +8,22 @@ import shapely
 from giveway.walkways.gates import Array
 from giveway.walkways.network import WalkNetwork
 
-_HALF = 3.0  # [m] half the side of the square in which they start
-_BESIDE = 7.0  # [m] distance from the path if there is no walkway beside it
-_NEAREST, _FARTHEST = 2.0, 25.0  # [m] distances from the path if there is a walkway beside it
-_HEAD_START = 20.0  # [m] distance that the vehicle drives before it comes by
-_PREFERRED = 0.4  # share of the path at which they preferably cross
+_HALF = 3.0  # Half side [m] of the square in which they start
+_BESIDE = 7.0  # Distance [m] from the path if there is no walkway beside it
+_NEAREST, _FARTHEST = 2.0, 25.0  # Distances [m] from the path if there is a walkway beside it
+_HEAD_START = 20.0  # Distance [m] that the vehicle drives before it comes by
+_PREFERRED = 0.4  # Share of the path at which they preferably cross
 
 
 class SpawnPlace(NamedTuple):
-    """A place where people start, and their walk."""
+    """A place where people start, and the length of their walk."""
 
     area: tuple[float, float, float, float]  # [m] x_min, y_min, x_max, y_max
-    walk: tuple[float, float]  # [m]
+    walk: tuple[float, float]  # [m] shortest and longest walk
 
     @property
     def flags(self) -> str:
-        """Flags of the command line for it."""
+        """The flags of the command line for the place."""
         area, walk = (",".join(f"{number:.1f}" for number in part) for part in self)
         return f"--spawn-area={area} --walk={walk}"
 
@@ -34,7 +34,7 @@ def beside(way: Array, network: WalkNetwork, near: tuple[float, float] | None = 
     Args:
         way: Path (k, 2) [m] of the vehicle from departure to goal, k >= 2.
         network: Network in which people walk.
-        near: Point [m] to which the place is to be as near as the path allows; None: any.
+        near: Point [m] to which the place is to be as near as possible, or None for any place.
     """
     line = shapely.LineString(way)
     wanted = _PREFERRED * line.length if near is None else line.project(shapely.Point(near))
@@ -45,7 +45,7 @@ def beside(way: Array, network: WalkNetwork, near: tuple[float, float] | None = 
     across = np.zeros(2) if side is None else np.array(side) - middle
     if not _NEAREST <= np.hypot(*across) <= _FARTHEST:
         along = (middle - behind) / max(float(np.hypot(*(middle - behind))), 1e-9)
-        across = _BESIDE * np.array([along[1], -along[0]])  # to its right
+        across = _BESIDE * np.array([along[1], -along[0]])  # to the right of the path
     x, y = middle + across
     return SpawnPlace(
         (float(x - _HALF), float(y - _HALF), float(x + _HALF), float(y + _HALF)),

@@ -2,12 +2,12 @@
 
 A gate spans the usable width of the walkway at one place. People cross it anywhere on its width, so
 that a crowd uses the whole width and does not queue for one point. A person's side is a number from
--1 (right end) to +1 (left end of the usable width, in walking direction). People of the same side
+-1 (right end of the usable width, in walking direction) to +1 (left end). People of the same side
 go round the same corners.
 
-Gates are rows of one array, so that the route of one person is a single concatenation of pieces
-that many share. The columns are the middle x, y [m]; the spread x, y [m] from the middle to the
-left end; the unit direction of passage x, y; the signal that people wait for here, or -1.
+Gates are rows of one array, so that a person's route is one concatenation of pieces that many
+people share. The columns are: the middle x, y [m]; the vector x, y [m] from the middle to the left
+end; the unit direction of passage x, y; the signal that people wait for here, or -1.
 """
 
 import numpy as np
@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Place = tuple[float, float]
 
-BODY_RADIUS = 0.27  # [m] body radius of a pedestrian: half of a shoulder breadth of 0.54 m
-TRACKS = 2  # tracks to either side of the middle: people on one track go round the same corners
+BODY_RADIUS = 0.27  # Body radius [m] of a pedestrian: half of a shoulder breadth of 0.54 m
+TRACKS = 2  # Tracks to either side of the middle: people on one track go round the same corners
 NO_GATES: Array = np.empty((0, 7))
 _NO_SIGNAL = -1
-_ASKEW = 0.2  # cosine of route to gate's direction; below it people come from beside the gate
-_THERE = 0.01  # [m] nearer to a gate a person is at it, and comes from no direction
+# Cosine of the angle between route and gate, below which people come from beside the gate
+_ASKEW = 0.2
+_THERE = 0.01  # Distance [m] to a gate within which a person is at it, and comes from no direction
 
 
 def gate(
@@ -31,14 +32,14 @@ def gate(
     *,
     signal: int = _NO_SIGNAL,
 ) -> Array:
-    """One gate (1, 7) across ``direction`` (unit), ``half_width`` [m] to either side."""
+    """Return one gate (1, 7) across ``direction`` (unit), ``half_width`` [m] to either side."""
     x, y = middle
     d_x, d_y = direction
     return np.array([[x, y, -d_y * half_width, d_x * half_width, d_x, d_y, signal]])
 
 
 def turned(gates: Array) -> Array:
-    """The same gates walked in the other direction, without signals, which hold for one only."""
+    """Return the same gates for the other direction, without signals, which hold for one only."""
     back = gates[::-1].copy()
     back[:, 2:6] *= -1.0
     back[:, 6] = _NO_SIGNAL
@@ -46,7 +47,7 @@ def turned(gates: Array) -> Array:
 
 
 def track_of(side: float) -> int:
-    """The track, -TRACKS to TRACKS, of somebody on ``side`` [-1, 1]."""
+    """Return the track, -TRACKS to TRACKS, of a person on ``side`` [-1, 1]."""
     return round(side * TRACKS)
 
 
@@ -56,18 +57,18 @@ def places(gates: Array, side: float) -> Array:
 
 
 def passages(gates: Array, start: tuple[float, float]) -> Array:
-    """Unit direction and half width [m] (k, 3) of each gate around its middle.
+    """Return unit direction and half width [m] (k, 3) of the passage through each gate.
 
-    The half width is the usable one plus a body's radius, which is the whole walkway and nothing
-    beside it. Some gates are reached from behind their line, as round a corner to a kerb. Their
-    direction of passage is the one in which people come; with the gate's own direction, they would
-    have passed it before they reach it. Where people wait for a light the line stays the kerb's
-    whichever way they come: a line across their way may lead onto the roadway, and others push
-    them along it.
+    The half width is the usable one plus a body's radius: the whole walkway, and nothing beside it.
+    Some gates are reached from behind their line, as round a corner to a kerb. Their direction of
+    passage is the one in which people come, because with the gate's own direction people would have
+    passed the line before they reach it. At a gate with a light, the line always is the kerb's. A
+    line across the way of people who come along the kerb may lead onto the roadway, and other
+    people would push them along it.
 
     Args:
         gates: Gates (k, 7).
-        start: Place [m] that the person comes from.
+        start: Place [m] from which the person comes.
     """
     rows = np.empty((len(gates), 3))
     rows[:, :2] = gates[:, 4:6]
@@ -84,12 +85,12 @@ def passages(gates: Array, start: tuple[float, float]) -> Array:
 
 
 def signals(gates: Array) -> NDArray[np.int64]:
-    """The signal (k,) at each gate, or -1."""
+    """Return the signal (k,) at each gate, or -1 if it has none."""
     return gates[:, 6].astype(np.int64)
 
 
 def side_at(gates: Array, position: tuple[float, float]) -> float:
-    """The side [-1, 1] on which a straight walk from ``position`` crosses the first gate."""
+    """Return the side [-1, 1] on which a straight walk from ``position`` crosses the first gate."""
     x, y = gates[0, 0:2]
     s_x, s_y = gates[0, 2:4]
     square = s_x * s_x + s_y * s_y

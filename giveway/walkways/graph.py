@@ -1,8 +1,8 @@
-"""The connections of the lanes around a junction: the graph of its walkingareas and crossings.
+"""The graph of the walkingareas and crossings around a junction.
 
-A *portal* is where a lane or a crossing meets a walkingarea. People go from portal to portal
-inside a walkingarea, and along a crossing from its one portal to the other. Lanes outside of
-junctions are no edges of this graph, so that a route found in it never leaves its junction.
+A *portal* is where a lane or a crossing meets a walkingarea. People go from portal to portal inside
+a walkingarea, and along a crossing from its one portal to the other. Lanes outside of junctions are
+not edges of this graph, so that a route found in it never leaves its junction.
 """
 
 import heapq
@@ -18,7 +18,7 @@ from giveway.walkways.inside import Interior
 from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Link, PedLane, Signal, Survey
 
-_KERB = 0.4  # [m] distance from the roadway at which people wait for green
+_KERB = 0.4  # Distance [m] from the roadway at which people wait for green
 
 
 class End(NamedTuple):
@@ -34,30 +34,31 @@ class Portal:
 
     end: End
     area: str
-    gate: Array  # (1, 7) walked into the area
+    gate: Array  # (1, 7) gate, walked into the area
 
 
 class Step(NamedTuple):
-    """The remaining distance from a portal, and the portal that comes next."""
+    """The remaining distance from a portal, and the next portal."""
 
-    distance: float  # [m]
-    portal: int  # index; -1: none, this is the target
+    distance: float  # [m] remaining distance
+    portal: int  # index of the next portal, or -1 if the portal is the target
 
 
 @dataclass(frozen=True)
 class Tree:
     """The shortest routes from the portals of a junction to the end of one lane.
 
-    Areas and crossings take turns, so each portal has two roles: people come into its area there,
-    or leave it.
+    Areas and crossings alternate, so that each portal has two roles: people come into its area
+    there, or leave it.
     """
 
-    coming: dict[int, Step]  # steps by portal; next is the portal at which the area is left
-    leaving: dict[int, Step]  # steps by portal; next is the portal at the crossing's other end
+    coming: dict[int, Step]  # steps by portal; the next portal is the one at which the area is left
+    # steps by portal; the next portal is the one at the crossing's other end
+    leaving: dict[int, Step]
 
 
 class WalkGraph:
-    """Portals, and the gates of the routes between them; built when asked for, and kept.
+    """The portals, and the gates of the routes between them; each is built when it is first needed.
 
     Args:
         survey: Contents of the network file.
@@ -109,37 +110,37 @@ class WalkGraph:
         return self.signals.index(signal)
 
     def _inherit_signals(self) -> None:
-        """A crossing's one link counts for both directions unless the other has its own."""
+        """Let a crossing's link count for both directions, unless the other has its own."""
         for i, signal in enumerate(self.signals):
             for last in (False, True):
                 for area in self._links.get(End(signal.crossing, last), ()):
                     self._signal_of.setdefault((signal.crossing, area), i)
 
     def interior(self, area: str) -> Interior:
-        """The inside of a walkingarea."""
+        """Return the inside of a walkingarea."""
         found = self._interiors.get(area)
         if found is None:
             found = self._interiors[area] = Interior(self._survey.walkingareas[area])
         return found
 
     def lane(self, edge: str) -> PedLane:
-        """The lane of an edge or crossing."""
+        """Return the lane of an edge or crossing."""
         known = self._survey.edges.get(edge)
         return self._survey.crossings[edge] if known is None else known.lane
 
     def line(self, edge: str) -> Polyline:
-        """The centre line of an edge or crossing."""
+        """Return the centre line of an edge or crossing."""
         found = self.lines.get(edge)
         return self._crossing_lines[edge] if found is None else found
 
     # --- portals ------------------------------------------------------------------------------
 
     def portal(self, index: int) -> Portal:
-        """The portal with this index."""
+        """Return the portal with this index."""
         return self._portals[index]
 
     def portals_of(self, end: End) -> list[int]:
-        """The portals at one end of a lane or crossing."""
+        """Return the portals at one end of a lane or crossing."""
         found = self._portals_of.get(end)
         if found is None:
             found = self._portals_of[end] = []
@@ -149,7 +150,7 @@ class WalkGraph:
         return found
 
     def portals_in(self, area: str) -> list[int]:
-        """The portals of a walkingarea."""
+        """Return the portals of a walkingarea."""
         found = self._portals_in.get(area)
         if found is None:
             ends = dict.fromkeys(self._ends_at.get(area, ()))
@@ -159,7 +160,7 @@ class WalkGraph:
         return found
 
     def lane_end(self, end: End) -> Array:
-        """The gate (1, 7) across the end of a lane or crossing, walked out of it."""
+        """Return the gate (1, 7) across the end of a lane or crossing, walked out of it."""
         line = self.line(end.edge)
         half_width = usable_half_width(self.lane(end.edge).width)
         if end.last:
@@ -176,7 +177,7 @@ class WalkGraph:
     # --- routes -------------------------------------------------------------------------------
 
     def towards(self, target: End) -> Tree:
-        """The shortest routes to one end of a lane from all portals of its junction (Dijkstra)."""
+        """Find the shortest routes to a lane's end from all portals of its junction (Dijkstra)."""
         found = self._trees.get(target)
         if found is not None:
             return found
@@ -202,7 +203,7 @@ class WalkGraph:
         return tree
 
     def inside(self, start: int, end: int, track: int = 0) -> Array:
-        """The gates (k, 7) between two portals of a walkingarea, for people on one track."""
+        """Return the gates (k, 7) between two portals of a walkingarea, for people on one track."""
         found = self._inside.get((start, end, track))
         if found is None:
             first, last = self._portals[start], self._portals[end]
@@ -213,7 +214,7 @@ class WalkGraph:
         return found
 
     def across(self, start: int, end: int) -> Array:
-        """The gates (k, 7) along a crossing, both portals included; the first has the signal."""
+        """Return the gates (k, 7) of a crossing with both portals; the first has the signal."""
         found = self._across.get((start, end))
         if found is None:
             first, last = self._portals[start], self._portals[end]
@@ -224,13 +225,13 @@ class WalkGraph:
         return found
 
     def along_crossing(self, start: End) -> Array:
-        """The gates (k, 7) of a crossing's bends, walked from one end to the other."""
+        """Return the gates (k, 7) of a crossing's bends, walked from one end to the other."""
         half_width = usable_half_width(self.lane(start.edge).width)
         gates = self._crossing_lines[start.edge].gates(half_width)[1:-1]
         return turned(gates) if start.last else gates
 
     def follow(self, start: int, tree: Tree, track: int) -> Array:
-        """The gates (k, 7) after a portal at which an area is entered, up to the target."""
+        """Return the gates (k, 7) up to the target after a portal at which an area is entered."""
         pieces = []
         while True:
             out = tree.coming[start].portal
@@ -242,7 +243,7 @@ class WalkGraph:
             start = following
 
     def leave(self, start: int, tree: Tree, track: int) -> Array:
-        """The gates (k, 7) from a portal at which an area is left, that included, to the target."""
+        """Return the gates (k, 7) up to the target from a portal on at which an area is left."""
         following = tree.leaving[start].portal
         if following < 0:
             return turned(self._portals[start].gate)
@@ -250,6 +251,6 @@ class WalkGraph:
 
 
 def _length(start: Array, between: Array, end: Array) -> float:
-    """Length [m] of the line through the middles of gates."""
+    """Return the length [m] of the line through the middles of gates."""
     middles = np.vstack([start[:, :2], between[:, :2], end[:, :2]])
     return float(np.hypot(*np.diff(middles, axis=0).T).sum())

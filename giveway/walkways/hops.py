@@ -1,4 +1,4 @@
-"""The route along a sequence of edges: their bends, and the hops over the junctions between."""
+"""The route along a sequence of edges: bends on the edges, and hops over the junctions."""
 
 import itertools
 import math
@@ -12,7 +12,7 @@ from giveway.walkways.graph import End, WalkGraph
 from giveway.walkways.polyline import usable_half_width
 from giveway.walkways.reading import Survey
 
-_AT_END = 1.0  # [m] lanes whose ends are this near to each other meet
+_AT_END = 1.0  # Distance [m] up to which two lanes' ends meet
 
 
 class Stretch(NamedTuple):
@@ -35,17 +35,17 @@ class Stretch(NamedTuple):
 class Hop(NamedTuple):
     """The route over a junction from one lane's end to another's."""
 
-    portal: int | None  # portal at its beginning; None if it goes straight across
-    length: float  # [m]
+    portal: int | None  # portal at its beginning, or None if it goes straight across
+    length: float  # [m] length
     connected: bool
 
 
 class Pieces:
-    """Pieces of routes, each built when first asked for, and kept.
+    """The pieces of routes; each is built when it is first needed.
 
     Args:
         survey: Contents of the network file.
-        graph: Its walkingareas and crossings.
+        graph: Walkingareas and crossings of the network.
     """
 
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:
@@ -56,7 +56,7 @@ class Pieces:
         self._bends: dict[Stretch, Array] = {}
 
     def directed(self, edges: list[str]) -> list[list[Stretch]]:
-        """The edges with directions: either one on the first edge, then by shared junctions."""
+        """Return the edges with directions, which follow from the junctions that they share."""
         routes = []
         for forward in (True, False):
             stretches = [Stretch(edges[0], forward)]
@@ -81,14 +81,14 @@ class Pieces:
         return math.dist(here, line[0]) <= math.dist(here, line[-1])
 
     def behind(self, stretches: list[Stretch], junction: str) -> list[Stretch]:
-        """The part of a route behind the junction that the person is in."""
+        """Return the part of a route behind the junction that the person is in."""
         for i, stretch in enumerate(stretches[:-1]):
             if self.junction(stretch.exit) == junction:
                 return stretches[i + 1 :]
         return stretches
 
     def measure(self, stretches: list[Stretch], arrival: float) -> tuple[int, float]:
-        """Gaps and length [m] from the exit of the first stretch to the arrival on the last."""
+        """Return gaps and length [m] from the exit of the first stretch to the arrival."""
         if len(stretches) == 1:
             return 0, 0.0
         hops = [self._hop(a.exit, b.entry) for a, b in itertools.pairwise(stretches)]
@@ -98,7 +98,7 @@ class Pieces:
         return sum(not hop.connected for hop in hops), length
 
     def gates(self, stretches: list[Stretch], arrival: float, side: float) -> list[Array]:
-        """The gates from the exit of the first stretch to the arrival on the last."""
+        """Return the gates from the exit of the first stretch to the arrival on the last."""
         track = g.track_of(side)
         pieces = []
         for here, there in itertools.pairwise(stretches):
@@ -124,12 +124,12 @@ class Pieces:
             return Hop(i, distance, connected=True)
         distance = math.dist(graph.lane_end(start)[0, :2], graph.lane_end(end)[0, :2])
         meets = self.junction(start) == self.junction(end)
-        # Where there are no walkingareas, people go straight over the junction.
+        # Without walkingareas, people go straight over the junction.
         open_ground = not graph.portals_of(start) and not graph.portals_of(end)
         return Hop(None, distance, (meets and open_ground) or distance < _AT_END)
 
     def _over(self, start: End, end: End, track: int) -> Array:
-        """The gates of a hop, with those across the ends of both lanes."""
+        """Return the gates of a hop, with those across the ends of both lanes."""
         found = self._hop_gates.get((start, end, track))
         if found is None:
             graph = self._graph
@@ -143,7 +143,7 @@ class Pieces:
         return found
 
     def junction(self, end: End) -> str:
-        """The junction at an end."""
+        """Return the junction at an end."""
         return self._edges[end.edge].junctions[end.last]
 
     def station(self, end: End) -> float:
@@ -151,7 +151,7 @@ class Pieces:
         return self._graph.lines[end.edge].length if end.last else 0.0
 
     def bends(self, stretch: Stretch) -> Array:
-        """The gates of an edge's bends, its ends left out."""
+        """Return the gates of an edge's bends, without its ends."""
         found = self._bends.get(stretch)
         if found is None:
             half_width = usable_half_width(self._edges[stretch.edge].lane.width)
@@ -162,7 +162,7 @@ class Pieces:
         return found
 
     def partly(self, stretch: Stretch, start: float | None, end: float) -> Array:
-        """The gates after the station ``start`` [m] of an edge (None: its entry) up to ``end``."""
+        """Return the gates of an edge after ``start`` [m] (None: its entry) up to ``end`` [m]."""
         line = self._graph.lines[stretch.edge]
         if start is None:
             start = self.station(stretch.entry)

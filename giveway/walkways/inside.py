@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from giveway.walkways.gates import BODY_RADIUS, NO_GATES, Array, places
 from giveway.walkways.reading import PedLane
 
-_TOLERANCE = 0.05  # [m] largest distance of a route outside of the area
-_SLIGHT = math.sin(math.radians(0.5))  # a corner that juts in by less is none
-_INSET = 0.02  # [m] distance of a route's corner from the area's corner
+_TOLERANCE = 0.05  # Largest distance [m] of a route outside of the area
+_SLIGHT = math.sin(math.radians(0.5))  # Sine of the angle below which a corner does not jut in
+_INSET = 0.02  # Distance [m] of a route's corner from the area's corner
 
 
 def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
-    """A walkingarea's outline as a valid polygon.
+    """Return a walkingarea's outline as a valid polygon.
 
-    An outline that crosses itself or is thinner than a body gets room for a body along it, or it
-    would fall into pieces; an outline without an area is widened to the width of its lane.
+    An outline that crosses itself or is thinner than a body would fall into pieces, and gets room
+    for a body along it. An outline without an area is widened to the width of its lane.
     """
     if len(area.shape) >= 3:
         polygon = shapely.make_valid(shapely.Polygon(area.shape))
@@ -36,7 +36,7 @@ def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
 
 
 def rings(polygon: shapely.Polygon) -> list[Array]:
-    """The closed rings (k, 2) [m] of a polygon, the inside on their left: holes run clockwise."""
+    """Return the closed rings (k, 2) [m] of a polygon, the inside on their left."""
     found = []
     for i, ring in enumerate((polygon.exterior, *polygon.interiors)):
         points = np.asarray(ring.coords)[:, :2]
@@ -58,9 +58,9 @@ class Interior:
         self._corners, self._inwards = _corners(self.polygon)
 
     def gate_within(self, row: Array, depth: float) -> Array:
-        """A gate (1, 7) on the area's edge moved ``depth`` [m] in, as wide as there is room.
+        """Return a gate (1, 7) on the area's edge moved ``depth`` [m] inwards, as wide as fits.
 
-        In a shallow corner it stays nearer to the edge.
+        In a shallow corner it is moved less.
         """
         widest = -1.0, row
         for share in (1.0, 0.5, 0.1):
@@ -73,7 +73,7 @@ class Interior:
         return widest[1]
 
     def _fitted(self, row: Array) -> tuple[Array, float]:
-        """A gate narrowed to where a body has room, and how much room [m] there is."""
+        """Return a gate narrowed to where a body has room, and the room [m] there."""
         middle, direction = row[0, :2], row[0, 4:6]
         half = float(np.hypot(*row[0, 2:4])) + BODY_RADIUS
         left = np.array([-direction[1], direction[0]])
@@ -89,12 +89,12 @@ class Interior:
         return fitted, float(piece.length)
 
     def between(self, start: Array, end: Array, side: float) -> Array:
-        """The gates (k, 7) of the route from one gate (1, 7) to another, without those two.
+        """Return the gates (k, 7) of the route from one gate (1, 7) to another, without those two.
 
         Args:
-            start: The gate where people come from.
-            end: The gate where they go.
-            side: The route is for people on or near this side [-1, 1].
+            start: Gate from which people come.
+            end: Gate to which they go.
+            side: Side [-1, 1] of the people.
         """
         if not len(self._corners):
             return NO_GATES
@@ -109,7 +109,7 @@ class Interior:
         return bool(self._room.covers(shapely.LineString([a, b])))
 
     def _inside(self, place: Array) -> Array:
-        """The place, or the nearest one inside: SUMO's persons cut corners a little."""
+        """Return the place, or the nearest one inside: SUMO's persons cut corners a little."""
         point = shapely.Point(place)
         if self._room.covers(point):
             return place
@@ -117,7 +117,7 @@ class Interior:
         return np.array(nearest.coords[0])
 
     def _round(self, order: list[int], start: Array, end: Array, width: float) -> Array:
-        """Gates from each corner inwards, at most ``width`` [m] wide."""
+        """Return gates from each corner inwards, at most ``width`` [m] wide."""
         stops = [start, *(self._corners[i] for i in order), end]
         gates = np.empty((len(order), 7))
         for j, corner in enumerate(order):
@@ -132,12 +132,12 @@ class Interior:
         return gates
 
     def _reach(self, vertex: Array, inwards: Array) -> float:
-        """The distance [m] from a corner straight inwards to the other side."""
+        """Return the distance [m] from a corner straight inwards to the other side."""
         ray = shapely.LineString([vertex + 1e-3 * inwards, vertex + 100.0 * inwards])
         return float(self._piece_near(vertex, ray).length)
 
     def _piece_near(self, place: Array, line: shapely.LineString) -> shapely.Geometry:
-        """The part of a line inside the area that is nearest to a place."""
+        """Return the part of a line inside the area that is nearest to a place."""
         inside = self.polygon.intersection(line)
         start = shapely.Point(place)
         pieces = [piece for piece in getattr(inside, "geoms", [inside]) if piece.length > 0.0]
@@ -145,7 +145,7 @@ class Interior:
 
     @cached_property
     def _visible(self) -> NDArray[np.bool_]:
-        """Return a matrix (k, k): whether two corners see each other."""
+        """Return a matrix (k, k) of flags: the straight line between two corners is inside."""
         near = self._near_corners
         k = len(near)
         ends = np.stack([np.repeat(near, k, axis=0), np.tile(near, (k, 1))], axis=1)
@@ -157,7 +157,7 @@ class Interior:
         return self._corners + _INSET * self._inwards
 
     def _shortest(self, a: Array, b: Array) -> list[int]:
-        """The corners that the shortest route from a to b bends round, by the visibility graph."""
+        """Return the corners round which the shortest route from a to b goes (visibility graph)."""
         a, b = self._inside(a), self._inside(b)
         if self._sees(a, b):
             return []
@@ -197,7 +197,7 @@ class Interior:
 
 
 def _corners(polygon: shapely.Polygon | shapely.MultiPolygon) -> tuple[Array, Array]:
-    """The vertices (k, 2) that jut into a polygon, and the unit bisectors (k, 2) pointing in."""
+    """Return the vertices (k, 2) that jut into a polygon, and their unit bisectors (k, 2)."""
     vertices: list[Array] = []
     inwards: list[Array] = []
     simple = polygon.simplify(_TOLERANCE)

@@ -22,18 +22,18 @@ class NearestLane(NamedTuple):
 
     edge: str
     lane: str
-    position: float  # [m] along the lane, as SUMO counts
-    distance: float  # [m] distance from the lane's centre line
+    position: float  # [m] place along the lane, in SUMO's metres
+    distance: float  # [m] distance from the centre line
 
 
 class WalkNetwork:
     """The places where people can walk in a SUMO network.
 
     Attributes:
-        signals: The traffic-light links that govern crossings.
+        signals: Traffic-light links that govern crossings.
         has_walkingareas: True if the network has any.
         has_sidewalks: True if there is a lane that pedestrians may use and cars may not.
-        boundary: x_min, y_min, x_max, y_max [m] of the network.
+        boundary: Extent x_min, y_min, x_max, y_max [m] of the network.
     """
 
     signals: tuple[Signal, ...]
@@ -52,7 +52,7 @@ class WalkNetwork:
 
     @classmethod
     def read(cls, net_file: Path) -> WalkNetwork:
-        """Read a ``.net.xml`` or ``.net.xml.gz``.
+        """Read a file ``.net.xml`` or ``.net.xml.gz``.
 
         Raises:
             ScenarioError: the file is unreadable or no SUMO network.
@@ -68,23 +68,23 @@ class WalkNetwork:
         arrival_position: float,
         offset_side: float | None = None,
     ) -> WalkRoute:
-        """The route from where a person is to the end of its walk; never fails.
+        """Return the route from where a person is to the end of the walk; it never fails.
 
         Args:
-            edges: The remaining edges, the present one first; for somebody in a walkingarea or on
-                a crossing the first is the edge that was left, as SUMO lists them.
-            position: Place of the person [m].
-            lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
-            arrival_position: The end of the walk on the last edge, in SUMO's metres; a negative
-                one counts from the edge's end.
-            offset_side: The side of the walkway, from -1 (right end of its usable width) to 1
-                (left), that decides round which corners the person goes; None takes the side on
-                which the person is now.
+            edges: Remaining edges, the present one first. For a person in a walkingarea or on a
+                crossing, the first is the edge that was left, as SUMO lists them.
+            position: Place x, y [m] of the person.
+            lane: Id of the present lane in SUMO, which may be a walkingarea's or a crossing's.
+            arrival_position: End of the walk on the last edge, in SUMO's metres; a negative one
+                counts from the edge's end.
+            offset_side: Side of the walkway, from -1 (right end of its usable width) to 1 (left),
+                that decides round which corners the person goes. With None it is the side on which
+                the person is now.
         """
         return self._router.route(edges, position, lane, arrival_position, offset_side)
 
     def nearest_lane(self, x: float, y: float) -> NearestLane | None:
-        """The nearest lane outside of junctions on which SUMO lets people walk, if there is one."""
+        """Return the nearest lane outside of junctions on which SUMO lets people walk, or None."""
         edges, tree = self._index
         if not edges:
             return None
@@ -111,7 +111,7 @@ class WalkNetwork:
         return list(lines), shapely.STRtree(shapes)
 
     def walkable(self) -> shapely.MultiPolygon:
-        """Area where people may walk: lanes, walkingareas, crossings, other junctions."""
+        """The area where people may walk: lanes, walkingareas, crossings, other junctions."""
         return self._walkable
 
     @cached_property
@@ -123,7 +123,7 @@ class WalkNetwork:
         return sidewalk_area(self._survey, place)
 
     def wall_segments(self) -> Array:
-        """The edge of the walkable area as segments (k, 4) x0, y0, x1, y1 [m].
+        """Return the edge of the walkable area as segments (k, 4) x0, y0, x1, y1 [m].
 
         The walkable side is on the left.
         """
@@ -135,7 +135,7 @@ class WalkNetwork:
 
 
 def _extent(found: Survey) -> tuple[float, float, float, float]:
-    """Return the extent [m] of the walkable area, for a file that does not tell its own."""
+    """Return the extent [m] of the walkable area, for a file without its own extent."""
     shapes = [edge.lane.shape for edge in found.edges.values()]
     points = np.vstack([*shapes, *found.junctions.values()] or [np.zeros((1, 2))])
     (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from giveway.walkways.gates import BODY_RADIUS, Array
 
-_STRAIGHT = 0.05  # [m] distance from its neighbours' line up to which a vertex is no bend
-_SHARPEST = 0.5  # cosine of half the sharpest bend at which a walkway keeps its full width
+_STRAIGHT = 0.05  # Distance [m] from its neighbours' line up to which a vertex is no bend
+_SHARPEST = 0.5  # Cosine of half the sharpest bend at which a walkway keeps its full width
 
 
 def usable_half_width(width: float) -> float:
@@ -26,7 +26,7 @@ class Polyline:
 
     Attributes:
         points: Points (k, 2) [m], k >= 2.
-        stations: Arc length [m] at each point, from 0; plain numbers, since every person asks.
+        stations: Arc length [m] at each point, from 0.
     """
 
     points: Array
@@ -34,19 +34,19 @@ class Polyline:
 
     @classmethod
     def through(cls, points: Array) -> Self:
-        """The polyline through ``points`` (k, 2) [m], nearly straight vertices thinned out."""
+        """Return the polyline through ``points`` (k, 2) [m], without nearly straight vertices."""
         kept = points[_bends(points)]
         steps = np.hypot(*np.diff(kept, axis=0).T)
         return cls(kept, [0.0, *np.cumsum(steps).tolist()])
 
     @property
     def length(self) -> float:
-        """Arc length [m]."""
+        """The arc length [m]."""
         return self.stations[-1]
 
     @cached_property
     def directions(self) -> Array:
-        """Unit direction (k - 1, 2) of each segment."""
+        """The unit direction (k - 1, 2) of each segment."""
         steps = np.diff(self.points, axis=0)
         lengths: Array = np.hypot(*steps.T)
         return np.asarray(steps / np.maximum(lengths, 1e-12)[:, None])
@@ -82,14 +82,14 @@ class Polyline:
         before, after = np.vstack([along[:1], along]), np.vstack([along, along[-1:]])
         middle = before + after
         size = np.hypot(*middle.T)
-        # A hairpin has no bisector: the gate lies across the direction after it.
+        # A hairpin bend has no bisector: the gate lies across the direction after it.
         middle = np.where(size[:, None] > 1e-6, middle / np.maximum(size, 1e-6)[:, None], after)
         half_angle = np.maximum((middle * after).sum(axis=1), _SHARPEST)
         spread = np.column_stack([-middle[:, 1], middle[:, 0]]) * (half_width / half_angle)[:, None]
         return np.column_stack([self.points, spread, middle, np.full(len(middle), -1.0)])
 
     def gate_at(self, station: float, half_width: float) -> Array:
-        """A gate (1, 7) across the line at ``station`` [m]."""
+        """Return a gate (1, 7) across the line at ``station`` [m]."""
         i = min(bisect.bisect_right(self.stations, station), len(self.stations) - 1) - 1
         x, y, d_x, d_y, _ = self._segments[i]
         along = station - self.stations[i]
@@ -98,7 +98,7 @@ class Polyline:
 
 
 def _bends(points: Array) -> NDArray[np.int64]:
-    """Indices of the ends and of the vertices that bend (Douglas and Peucker 1973)."""
+    """Return the indices of the ends and of the bends (Douglas and Peucker 1973)."""
     kept = {0, len(points) - 1}
     stack = [(0, len(points) - 1)]
     while stack:

@@ -1,6 +1,6 @@
-"""Reads the part of a SUMO network file that people walk on.
+"""The reading of the part of a SUMO network file that people walk on.
 
-Only what concerns pedestrians is kept, so that a network of 50 MB takes seconds and little memory.
+Only the parts for pedestrians are kept, so that a network of 50 MB takes little time and memory.
 """
 
 from dataclasses import dataclass, field
@@ -14,20 +14,20 @@ from giveway.walkways.gates import Array
 _PEDESTRIAN = "pedestrian"
 _CAR = "passenger"
 _ON_FOOT = frozenset(("pedestrian", "bicycle"))
-_DEFAULT_WIDTH = 3.2  # [m] SUMO's width of a lane that names none
+_DEFAULT_WIDTH = 3.2  # Width [m] of a lane in SUMO that names none
 
 
 @dataclass(frozen=True)
 class PedLane:
     """The lane of an edge on which pedestrians walk.
 
-    ``length`` is the nominal one in which SUMO counts positions; the shape's may differ.
+    ``length`` is SUMO's nominal length, in which positions count; the shape's length may differ.
     """
 
     id: str
-    shape: Array  # (k, 2) [m], k >= 2
-    width: float  # [m]
-    length: float  # [m]
+    shape: Array  # (k, 2) [m] centre line, k >= 2
+    width: float  # [m] width
+    length: float  # [m] nominal length
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ class Signal:
     """A traffic-light link that lets people onto a crossing."""
 
     tls: str
-    link: int  # index into the light's state string
-    crossing: str  # the crossing's edge id
+    link: int  # index in the light's state
+    crossing: str  # edge id of the crossing
 
 
 @dataclass(frozen=True)
@@ -44,16 +44,16 @@ class WalkEdge:
     """An edge between two junctions and the lane people walk on."""
 
     id: str
-    junctions: tuple[str, str]  # junctions at the beginning and the end of its lane
+    junctions: tuple[str, str]  # junctions at the beginning and end of the lane
     lane: PedLane
-    sidewalk: bool = False  # nothing that has an engine uses the lane
+    sidewalk: bool = False  # True if no motor vehicle uses the lane
 
 
 @dataclass(frozen=True)
 class Link:
-    """A connection between two places inside a junction, or between one and a lane outside.
+    """A connection between two places in a junction, or between one and a lane outside.
 
-    SUMO lets people walk it both ways; the direction says only which ends meet.
+    SUMO lets people walk it both ways; its direction only says which ends meet.
     """
 
     source: str  # edge id
@@ -67,11 +67,11 @@ class Survey:
 
     Attributes:
         edges: Normal edges with a lane for pedestrians.
-        walkingareas, crossings: The lane of each, whose shape is an area or a centre line.
+        walkingareas, crossings: Lane of each, whose shape is an area or a centre line.
         links: Connections with a walkingarea or crossing at one end.
-        junctions: The outline (k, 2) [m] of each junction, as far as it has one.
-        has_sidewalks: A lane that pedestrians may use and cars may not.
-        boundary: x_min, y_min, x_max, y_max [m] as the file says; None where it does not.
+        junctions: Outline (k, 2) [m] of each junction that has one.
+        has_sidewalks: True if there is a lane that pedestrians may use and cars may not.
+        boundary: Extent x_min, y_min, x_max, y_max [m] in the file, or None if it has none.
     """
 
     edges: dict[str, WalkEdge] = field(default_factory=dict)
@@ -87,7 +87,7 @@ def survey(net_file: Path) -> Survey:
     """Read a network file, gzipped or not.
 
     Raises:
-        ScenarioError: unreadable, damaged, or no SUMO network.
+        ScenarioError: the file is unreadable, damaged, or no SUMO network.
     """
     reader = _Reader()
     read_network(net_file, reader.tags)
@@ -129,7 +129,7 @@ class _Reader:
             found.crossings[edge["id"]] = _ped_lane(attributes)
         else:
             found.has_sidewalks |= not _admits(attributes, _CAR)
-            # SUMO prefers the first lane for pedestrians only, else takes the first they may use.
+            # SUMO uses the first lane for pedestrians only, else the first that they may use.
             exclusive = attributes.get("allow") == _PEDESTRIAN
             if edge["id"] not in found.edges or (exclusive and not self._exclusive):
                 ends = edge["from"], edge["to"]
@@ -143,7 +143,7 @@ class _Reader:
                 self._exclusive = exclusive
 
     def _junction(self, attributes: dict[str, str]) -> None:
-        # Internal junctions have no shape, the outer ones of dead ends only a line.
+        # Internal junctions have no shape, and the outer ones of dead ends have only a line.
         if attributes.get("shape") and attributes.get("type") != "internal":
             self.survey.junctions[attributes["id"]] = _points(attributes["shape"])
 
@@ -162,7 +162,7 @@ class _Reader:
 
 
 def _admits(lane: dict[str, str], vehicle_class: str) -> bool:
-    """Return whether a lane's ``allow`` or ``disallow`` lets a class use it, as SUMO reads them."""
+    """Return whether a lane's ``allow`` and ``disallow`` let a class use it, as SUMO reads them."""
     allow = lane.get("allow")
     if allow:
         return allow == "all" or vehicle_class in allow.split()
@@ -179,7 +179,7 @@ def _ped_lane(attributes: dict[str, str], at_least: int = 2) -> PedLane:
 
 
 def _points(text: str) -> Array:
-    """The (k, 2) points of a SUMO shape, heights dropped, repeated points too."""
+    """Return the points (k, 2) of a SUMO shape, without heights and repeated points."""
     points = np.array([[*map(float, p.split(",")[:2])] for p in text.split()], dtype=np.float64)
     points = points.reshape(-1, 2)
     if not np.isfinite(points).all():

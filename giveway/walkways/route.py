@@ -1,4 +1,4 @@
-"""The route of one person: way-points from its present place to the end of its walk."""
+"""The route of one person: way-points from the present place to the end of the walk."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -15,19 +15,19 @@ from giveway.walkways.polyline import usable_half_width
 from giveway.walkways.reading import Survey
 from giveway.walkways.starts import Starts
 
-_TOGETHER = 0.05  # [m] distance below which two way-points are one
+_TOGETHER = 0.05  # Distance [m] below which two way-points are one
 
 
 @dataclass(frozen=True)
 class WalkRoute:
-    """The route ahead of one person; the last of its way-points is the walk's end.
+    """The route ahead of one person; the last way-point is the end of the walk.
 
     Attributes:
         waypoints: Way-points (k, 2) [m] in the middle of the walkway, without the present place.
-        passages: Unit direction (k, 3) in which a way-point's line is crossed, and how far [m]
-            beside the way-point a crossing of the line still counts as a passage.
+        passages: Unit direction in which a way-point's line is crossed, and distance [m] beside the
+            way-point up to which a crossing of the line counts as a passage (k, 3).
         signals: Index (k,) into ``WalkNetwork.signals`` where people wait for green, else -1.
-        gaps: Number of missing connections and the route goes straight on.
+        gaps: Number of missing connections, over which the route goes straight on.
     """
 
     waypoints: Array
@@ -40,17 +40,17 @@ class _Candidate(NamedTuple):
     """One of the routes that a person could take."""
 
     gaps: int
-    length: float  # [m]
+    length: float  # [m] length
     side: float  # [-1, 1] present side of the person, seen in walking direction
-    gates: Callable[[float], list[Array]]  # function of the side that the person keeps to
+    gates: Callable[[float], list[Array]]  # function of the person's side that returns the gates
 
 
 class Router:
-    """Puts routes together from pieces that it builds once.
+    """Puts routes together from pieces, which it builds once.
 
     Args:
         survey: Contents of the network file.
-        graph: Its walkingareas and crossings.
+        graph: Walkingareas and crossings of the network.
     """
 
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:
@@ -80,7 +80,7 @@ class Router:
         return _finished(np.concatenate(best.gates(side)), position, gaps + best.gaps)
 
     def _known(self, edges: Iterable[str]) -> tuple[list[str], int]:
-        """Return the edges that can be walked, without repetitions, and the number of others."""
+        """Return the edges that people can walk, once each, and the number of the others."""
         known: list[str] = []
         gaps = 0
         for edge in edges:
@@ -103,7 +103,7 @@ class Router:
     def _from_lane(
         self, edges: list[str], place: str, position: Place, arrival: float
     ) -> Iterator[_Candidate]:
-        """The routes of a person on the lane of the first edge, or beside all lanes."""
+        """Yield the routes of a person on the lane of the first edge, or beside all lanes."""
         pieces = self._pieces
         if place in edges:
             edges = edges[edges.index(place) :]
@@ -133,7 +133,7 @@ class Router:
     def _from_junction(
         self, edges: list[str], place: str, position: Place, arrival: float
     ) -> Iterator[_Candidate]:
-        """The routes of a person in a walkingarea, on a crossing or elsewhere in a junction."""
+        """Yield the routes of a person in a walkingarea, on a crossing or in a junction."""
         pieces = self._pieces
         junction = place[1 : place.rfind("_")]
         for whole in pieces.directed(edges):
@@ -161,13 +161,13 @@ def _finished(rows: Array, position: Place, gaps: int) -> WalkRoute:
     points = rows[:, :2].copy()
     if len(points) > 1:
         apart = np.abs(np.diff(points, axis=0)).max(axis=1) > _TOGETHER
-        # Of several way-points in one place the one with a signal is kept, else the last.
+        # Of several way-points in one place, the one with a signal is kept, else the last one.
         keep = np.append(apart, True) | (rows[:, 6] >= 0)
         rows, points = rows[keep], points[keep]
     return WalkRoute(points, g.passages(rows, position), g.signals(rows), gaps)
 
 
 def _stay(position: Place, gaps: int) -> WalkRoute:
-    """Return the route to the present place, as the network knows none of the edges."""
+    """Return the route to the present place, for a network that knows none of the edges."""
     place = np.array([position], dtype=np.float64)
     return WalkRoute(place, np.zeros((1, 3)), np.array([-1], dtype=np.int64), gaps)

@@ -1,6 +1,6 @@
 """The beginning of the route of a person who is inside a junction.
 
-The person goes on from there. Nobody is sent back to a kerb, and a person on a crossing does not
+The person goes on from there: nobody is sent back to a kerb, and a person on a crossing does not
 wait for its light.
 """
 
@@ -20,10 +20,10 @@ from giveway.walkways.reading import Survey
 class Start(NamedTuple):
     """The route from a place to the end of a lane, with the gate across that end."""
 
-    length: float  # [m]
+    length: float  # [m] length
     connected: bool
     side: float  # [-1, 1] present side of the person, seen in walking direction
-    gates: Callable[[float], Array]  # function of the side that the person keeps to
+    gates: Callable[[float], Array]  # function of the person's side that returns the gates
 
 
 class Starts:
@@ -31,7 +31,7 @@ class Starts:
 
     Args:
         survey: Contents of the network file.
-        graph: Its walkingareas and crossings.
+        graph: Walkingareas and crossings of the network.
     """
 
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:
@@ -39,7 +39,7 @@ class Starts:
         self._graph = graph
 
     def into(self, place: str, position: Place, entry: End) -> Start:
-        """Return the route from a place [m] inside a junction, on an edge, to a lane's end."""
+        """Return the route from a place [m] inside a junction, or on an edge, to a lane's end."""
         graph = self._graph
         tree = graph.towards(entry)
         paved = True
@@ -57,7 +57,7 @@ class Starts:
         return Start(length, not paved, g.side_at(straight, position), lambda _: straight)
 
     def _out_of_area(self, area: str, position: Place, tree: Tree) -> Start | None:
-        """Go from the middle of a walkingarea through the portal that makes the route shortest."""
+        """Return the route out of a walkingarea, through the portal that makes it shortest."""
         graph = self._graph
         exits = [
             (tree.leaving[i].distance + math.dist(position, graph.portal(i).gate[0, :2]), i)
@@ -77,7 +77,7 @@ class Starts:
         return Start(length, True, g.side_at(way_out, position), gates)
 
     def _off_crossing(self, crossing: str, position: Place, tree: Tree) -> Start | None:
-        """Go on from the middle of a crossing in the direction of the route, without waiting."""
+        """Return the route on from the middle of a crossing, without waiting for its light."""
         graph = self._graph
         line = graph.line(crossing)
         station, left = line.project(*position)

@@ -1,4 +1,4 @@
-"""The controller FMU that a configuration names: read, fitted to its profile, described."""
+"""The controller FMU that a configuration names: its file, its profile, its hash."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from giveway.errors import ControlError
 
 
 def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
-    """Return what a controller is told of its drive.
+    """Return the setup by which a controller learns about its drive.
 
     Args:
         config: Configuration of the ego, with a number as its reference speed.
@@ -43,14 +43,14 @@ def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
 
 
 def prepared(config: EgoRunConfig, time_step: float) -> PreparedController:
-    """The controller FMU of one ego, with the run's settings and the user's options.
+    """Return the controller FMU of one ego, with the run's settings and the user's options.
 
     Args:
         config: Configuration of the ego.
         time_step: Time step of the co-simulation [s].
 
     Raises:
-        ControlError: the file or its profile cannot be read, or they do not fit each other.
+        ControlError: the file or its profile cannot be read, or the two do not fit each other.
     """
     try:
         return prepare_controller(
@@ -65,10 +65,10 @@ def prepared(config: EgoRunConfig, time_step: float) -> PreparedController:
 
 
 def fmu_hash(path: str) -> str:
-    """The SHA-256 of a controller FMU.
+    """Return the SHA-256 of a controller FMU.
 
     Raises:
-        ControlError: it cannot be read.
+        ControlError: the file cannot be read.
     """
     try:
         return sha256(Path(path).read_bytes()).hexdigest()
@@ -79,10 +79,10 @@ def fmu_hash(path: str) -> str:
 
 
 def fmu_described(config: EgoRunConfig) -> dict[str, Any]:
-    """Return the manifest's entries on a controller FMU.
+    """Return the entries of the manifest for a controller FMU.
 
     Raises:
-        ControlError: it cannot be read.
+        ControlError: the file cannot be read.
     """
     path = Path(config.controller)
     try:
@@ -98,10 +98,10 @@ def fmu_described(config: EgoRunConfig) -> dict[str, Any]:
 
 
 def _start_values(config: EgoRunConfig) -> dict[str, Any]:
-    """The options, which are parameters of the FMU.
+    """Return the user's options, which are parameters of the FMU.
 
     Raises:
-        ControlError: one is a table.
+        ControlError: an option is a table.
     """
     for name, value in config.controller_options.items():
         if isinstance(value, dict) or value is None:

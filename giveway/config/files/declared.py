@@ -15,7 +15,7 @@ Settings = dict[tuple[str, str], Any]
 
 
 def with_declared(config: RunConfig) -> RunConfig:
-    """The configuration in which each plug-in's ``defaults`` stand where the user set nothing.
+    """Return the configuration with each plug-in's ``defaults`` where the user set nothing.
 
     Args:
         config: Configuration of the run; its plug-ins may be imported.
@@ -35,7 +35,7 @@ def with_declared(config: RunConfig) -> RunConfig:
 
 
 def _entry(config: RunConfig, entry: dict[str, Any]) -> dict[str, Any]:
-    """The table of one ego with what its controller declares."""
+    """Return the table of one ego with the declarations of its controller."""
     for (table, key), value in _declared(entry.get("controller", config.controller)).items():
         own = entry.get(table, {})
         if own.get(key) is None and getattr(getattr(config, table), key) is None:
@@ -44,13 +44,13 @@ def _entry(config: RunConfig, entry: dict[str, Any]) -> dict[str, Any]:
 
 
 def _declared(name: Any) -> Settings:
-    """The settings that a plug-in's ``defaults`` differ in from everybody's."""
+    """Return the settings in which a plug-in's ``defaults`` differ from :class:`Defaults`."""
     if not isinstance(name, str) or name in {*BUNDLED, "pid"} or is_fmu(name):
         return {}
     try:
         kind = load(find(name))
     except ControlError:
-        return {}  # the check before the run says what is wrong with it
+        return {}  # the check before the run reports the error
     from controller import Defaults
 
     declared = getattr(kind, "defaults", Defaults())

@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 
 class Named(NamedTuple):
-    """One plug-in that a run has.
+    """A plug-in that a run uses.
 
     Attributes:
-        socket: that it is for.
+        socket: Socket for which it is used.
         whose: The ego's id, "the crowd", or "the run".
         name: Name as the user wrote it; perhaps a path to an FMU.
         options: Options as the user has set them.
-        ego: whose controller it is; None: it is none.
+        ego: Configuration of the ego that it controls, or None if it is no controller.
     """
 
     socket: Socket
@@ -44,15 +44,15 @@ class Named(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The key by which the inputs of a study's cell know it, wherever a file lies."""
+        """The key of the plug-in in a study's inputs, which does not depend on file paths."""
         return f"{self.socket.what} of {self.whose}: {shown(self.name)}"
 
     @property
     def sha256(self) -> str:
-        """The SHA-256 of its package, or of its file.
+        """The SHA-256 of the plug-in's package or file.
 
         Raises:
-            ControlError: it is not there.
+            ControlError: the package or file is not there.
         """
         if is_fmu(self.name):
             return fmu_hash(self.name)
@@ -65,11 +65,11 @@ _PLACES = (
     (MODEL, "in the crowd's step from", "in the pedestrian model {} at"),
     (METRIC, "while the run's numbers were being worked out", "in the metric {}"),
 )
-"""Places as a heartbeat tells them, and in words that name the code."""
+"""Places of a crash in a heartbeat's words, and the same places with the name of the code."""
 
 
 def foreign_code(config: RunConfig) -> list[Named]:
-    """All plug-ins of a run: of its egos, their sensors, its crowd, and its metrics."""
+    """Return all plug-ins of a run: of its egos, their sensors, its crowd, and its metrics."""
     named = [
         Named(CONTROLLER, ego.ego_id, ego.controller, ego.controller_options, ego)
         for ego in config.each_ego()
@@ -92,14 +92,14 @@ def foreign_code(config: RunConfig) -> list[Named]:
 def code_hashes(
     config: RunConfig, sockets: Collection[Socket] = (*SOCKETS, *TABLES)
 ) -> dict[str, str]:
-    """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
+    """Return the SHA-256 of the package of each plug-in, by :attr:`Named.key`.
 
     Args:
         config: Configuration of the run.
-        sockets: Those that count.
+        sockets: Sockets whose plug-ins count.
 
     Raises:
-        ControlError: one is not installed.
+        ControlError: a plug-in is not installed.
     """
     code = [one for one in foreign_code(config) if one.socket in sockets]
     return {one.key: one.sha256 for one in code}
@@ -109,7 +109,7 @@ def named_in(failure: str, config: RunConfig) -> str:
     """Return a message about a process that died in foreign code, with the name of that code.
 
     Args:
-        failure: Failure as the supervisor tells it.
+        failure: Message of the supervisor.
         config: Configuration of the run.
     """
     code = foreign_code(config)
@@ -129,8 +129,8 @@ def require_code(config: RunConfig, time_step: float = PAPER_STEP) -> None:
         time_step: Time step of the co-simulation [s].
 
     Raises:
-        ConfigError: one has no such option.
-        ControlError: one is not installed, or cannot be imported or read.
+        ConfigError: a plug-in has no such option.
+        ControlError: a plug-in is not installed, or cannot be imported or read.
     """
     for one in foreign_code(config):
         if one.ego is not None and is_fmu(one.name):

@@ -25,20 +25,20 @@ Location = tuple[str, ...]
 
 
 PLUGGED = {socket.options: socket for socket in SOCKETS}
-"""The tables whose keys are somebody else's (--set)."""
+"""The tables whose keys are the options of plug-ins (--set)."""
 
 NO_FLAGS = frozenset({"egos", "measure", "flow", *PLUGGED})
-"""Lists of tables, and those."""
+"""Keys without flags: lists of tables, and the tables of plug-ins' options."""
 
 
 @dataclass(frozen=True)
 class Layer:
-    """Settings from one origin; a later layer overrides an earlier one key by key."""
+    """The settings from one origin; a later layer overrides an earlier one key by key."""
 
     origin: str
     values: Mapping[str, Any]
     from_flags: bool = False
-    results: Path | None = None  # the folder of results that it was read from; None: from none
+    results: Path | None = None  # results folder of the file, or None if the file is the user's
 
     def holds(self, location: Location) -> bool:
         """Return whether this layer sets the key at ``location``."""
@@ -62,14 +62,14 @@ class Layer:
 
 @dataclass(frozen=True)
 class Option:
-    """One leaf of the configuration, as the command line and the documentation present it."""
+    """One option of the configuration, as the command line and the documentation present it."""
 
     location: Location
     field: FieldInfo
 
     @property
     def extra(self) -> dict[str, Any]:
-        """Unit, flag and limits as declared beside the field."""
+        """The unit, flag and limits that are declared beside the field."""
         return declared(self.field)
 
     @property
@@ -79,12 +79,12 @@ class Option:
 
     @property
     def flag(self) -> str:
-        """The command line's name of this option."""
+        """The flag of this option on the command line."""
         return self.extra.get("flag") or "--" + "-".join(self.location).replace("_", "-")
 
 
 def options(model: type[Section] = RunConfig, prefix: Location = ()) -> Iterator[Option]:
-    """Every leaf option of the configuration, in declaration order."""
+    """Yield every option of the configuration, in the order of declaration."""
     for name, field in model.model_fields.items():
         if name in NO_FLAGS:
             continue
@@ -96,13 +96,13 @@ def options(model: type[Section] = RunConfig, prefix: Location = ()) -> Iterator
 
 
 def flag_of(location: Location) -> str:
-    """The flag of the option at ``location``."""
+    """Return the flag of the option at ``location``."""
     known = {option.location: option.flag for option in options()}
     return known.get(location, "--" + "-".join(location).replace("_", "-"))
 
 
 def read_toml(path: Path) -> Layer:
-    """The settings in a TOML file; paths in it are relative to its folder.
+    """Read the settings in a TOML file; relative paths in it count from its folder.
 
     Raises:
         ConfigError: the file is missing, unreadable or not TOML.
@@ -113,18 +113,18 @@ def read_toml(path: Path) -> Layer:
 
 
 def results_of(path: Path) -> Path | None:
-    """Return the results folder that a file of settings lies in, or None if it is a user's."""
+    """Return the results folder that holds a file of settings, or None if it is a user's."""
     written = path.name in {"config.toml", "study.toml"}
     return path.parent if written and path.with_name("manifest.json").is_file() else None
 
 
 def read_toml_text(text: str, origin: str) -> Layer:
-    """The settings in a TOML text that giveway itself has written."""
+    """Read the settings in a TOML text that giveway itself has written."""
     return Layer(origin, tomllib.loads(text))
 
 
 def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """``values`` with those files that exist relative to ``folder`` named absolutely."""
+    """Return ``values``, in which files that exist relative to ``folder`` have absolute paths."""
     tables = [values]
     if isinstance(values.get("egos"), list):
         tables += [ego for ego in values["egos"] if isinstance(ego, dict)]
@@ -135,21 +135,23 @@ def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
     for table, key in places:
         if isinstance(table, dict) and isinstance(table.get(key), str):
             named = Path(table[key])
-            is_path = len(named.parts) > 1 or named.suffix  # a bare word is a bundled name
-            if is_path and os.path.exists(folder / named):  # noqa: PTH110 - also of too long a name
+            # a word without a folder or suffix is a bundled name
+            is_path = len(named.parts) > 1 or named.suffix
+            # the name may be too long for Path
+            if is_path and os.path.exists(folder / named):  # noqa: PTH110
                 table[key] = str(folder / named)
     return values
 
 
 def merge(layers: Sequence[Layer]) -> dict[str, Any]:
-    """One nested dictionary in which the last layer to set a key wins."""
+    """Merge the layers into one nested dictionary; the last layer that sets a key counts."""
     merged: dict[str, Any] = {}
     for layer in layers:
         for table, socket in PLUGGED.items():
             before = same_name(_at(merged, socket.location))
             named = same_name(_at(layer.values, socket.location))
             if before is not None and named not in {None, before}:
-                merged.pop(table, None)  # they are those of another one
+                merged.pop(table, None)  # these options belong to another plug-in
                 if socket is CONTROLLER:
                     merged.pop("controller_profile", None)
         _merge_into(merged, layer.values)
@@ -157,14 +159,14 @@ def merge(layers: Sequence[Layer]) -> dict[str, Any]:
 
 
 def _at(values: Any, location: Location) -> Any:
-    """The value at ``location``; None where there is none."""
+    """Return the value at ``location``, or None if there is none."""
     for key in location:
         values = values.get(key) if isinstance(values, Mapping) else None
     return values
 
 
 def undotted(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings as tables: ``{"crowd.preset": p}`` is ``{"crowd": {"preset": p}}``."""
+    """Return the settings as tables: ``{"a.b": p}`` becomes ``{"a": {"b": p}}``."""
     tables: dict[str, Any] = {}
     for name, value in settings.items():
         nested: Any = value
@@ -183,11 +185,11 @@ def _merge_into(target: dict[str, Any], values: Mapping[str, Any]) -> None:
 
 
 def build_config(layers: Sequence[Layer]) -> RunConfig:
-    """The validated configuration that the layers amount to.
+    """Merge the layers and return the validated configuration.
 
     Raises:
-        ConfigError: one line naming origin, key, value, what was expected and, for an unknown
-            key, the one probably meant.
+        ConfigError: a setting is wrong. The message is one line with origin, key, value, what was
+            expected and, for an unknown key, the key that was probably meant.
     """
     for layer in layers:
         for old, new in renamed_in(layer.values):
@@ -212,7 +214,7 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
     if error["type"] == "value_error":
         origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
         table = f"[{'.'.join(location)}] " if location else ""
-        return f"{origin}{table}{error['ctx']['error']}"  # of several keys
+        return f"{origin}{table}{error['ctx']['error']}"  # the error concerns several keys
     if len(location) > 1 and location[0] in PLUGGED:
         return f"{name} = {error['input']!r}: expected a finite number, a word, a list or a table"
     option = next((o for o in options() if o.location == location), None)
@@ -222,7 +224,7 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
 
 
 def _known_part(location: Location) -> Location:
-    """``location`` without what pydantic appends: positions in tuples, branches of unions."""
+    """Return ``location`` without pydantic's additions: positions in tuples, branches of unions."""
     known = {option.location for option in options()}
     for end in range(len(location), 0, -1):
         if location[:end] in known:
@@ -240,7 +242,7 @@ def _did_you_mean(location: Location) -> str:
 
 
 def dump_toml(config: RunConfig) -> str:
-    """The whole configuration as TOML, each key followed by its unit and meaning."""
+    """Return the whole configuration as TOML, each key followed by its unit and meaning."""
     document = tomlkit.document()
     for entry in options():
         *tables, key = entry.location
@@ -251,7 +253,7 @@ def dump_toml(config: RunConfig) -> str:
             value = getattr(value, table)
         value = getattr(value, key)
         if value is None:
-            continue  # TOML has no null: an absent key is the default
+            continue  # TOML has no null: an absent key means the default
         item = tomlkit.item(list(value) if isinstance(value, tuple) else value)
         unit = f"[{entry.unit}] " if entry.unit else ""
         node.add(key, item.comment(f"{unit}{entry.field.description}"))

@@ -1,4 +1,4 @@
-"""The order of settings: the scenario's, the user's file, then flags or arguments."""
+"""The merging of settings in their order: the scenario's, the user's file, flags or arguments."""
 
 import os
 from collections.abc import Collection, Mapping, Sequence
@@ -15,18 +15,18 @@ from giveway.errors import ConfigError, ScenarioError, VehicleError
 from sumo_scenarios import Scenario, available, find
 from sumo_scenarios import ScenarioError as UnknownScenario
 
-_FILES = ("fmu", "profile", "preset")  # keys of tables that may name a file
-_OWN_FILES = ("controller", "controller_profile")  # of a run and of its egos
-_WITH_FILES = ("vehicle", "crowd", "perception")  # tables that have such keys
+_FILES = ("fmu", "profile", "preset")  # Keys of tables that may name a file
+_OWN_FILES = ("controller", "controller_profile")  # The same for keys of a run and of its egos
+_WITH_FILES = ("vehicle", "crowd", "perception")  # Tables that have such keys
 _KINDS_OF_EGO = ("take_over", "route", "none")
 
 
 def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunConfig, Scenario]:
-    """The configuration that ``layers`` amount to on top of their scenario's own settings.
+    """Return the configuration of ``layers`` on top of their scenario's own settings.
 
     Args:
         layers: Layers of settings.
-        trusted: Controllers that may be imported though only a results folder names them.
+        trusted: Plug-ins that may be imported although only a results folder names them.
 
     Raises:
         ConfigError: a key or value cannot be used.
@@ -34,7 +34,7 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
     """
     wanted = merge(layers).get("scenario", RunConfig.model_fields["scenario"].default)
     if not isinstance(wanted, str) or not wanted:
-        build_config(layers)  # names the layer and what was expected
+        build_config(layers)  # raises an error that names the layer and what was expected
     try:
         scenario = find(wanted)
     except UnknownScenario as error:
@@ -57,7 +57,7 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
 
 
 def _identified(layers: Sequence[Layer]) -> list[Layer]:
-    """Return the lowest layer: what the profile of the run's vehicle knows of it.
+    """Return the lowest layer: the identified parameters in the profile of the run's vehicle.
 
     Raises:
         VehicleError: the profile cannot be used.
@@ -65,7 +65,7 @@ def _identified(layers: Sequence[Layer]) -> list[Layer]:
     vehicle = merge(layers).get("vehicle")
     profile = vehicle.get("profile") if isinstance(vehicle, Mapping) else None
     if not profile or not isinstance(profile, str):
-        return []  # the vehicle's own table says what is wrong with it
+        return []  # the validation of the table reports the error
     return [Layer(profile, {"vehicle": _model_in(profile)})]
 
 
@@ -74,11 +74,12 @@ def _model_of(config: RunConfig) -> dict[str, float]:
 
 
 def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfig:
-    """``config`` in which those entries of ``egos`` that name an FMU have what belongs to it.
+    """Return ``config`` with the FMU's parameters in each entry of ``egos`` that names an FMU.
 
     Args:
-        config: Configuration of the run; its vehicle's M and alpha may be those of its profile.
-        set_model: M and alpha without that: what was identified of another FMU is no other's.
+        config: Configuration of the run. Its vehicle's M and alpha may come from its profile.
+        set_model: M and alpha without that profile, since one FMU's identified parameters do not
+            hold for another FMU.
     """
     identified = {} if _model_of(config) == set_model else set_model
     entries = []
@@ -93,7 +94,7 @@ def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfi
 
 
 def _model_in(profile: object) -> dict[str, float]:
-    """M and alpha as identified; empty if they have not been."""
+    """Return the identified M and alpha of a profile; empty if they have not been identified."""
     try:
         model = read_profile(Path(str(profile))).model
     except FmuError as error:
@@ -102,11 +103,11 @@ def _model_in(profile: object) -> dict[str, float]:
 
 
 def _with_one_ego(config: RunConfig, layers: Sequence[Layer]) -> RunConfig:
-    """``config`` with the kind of ego that was asked for last, and nothing left of the others.
+    """Return ``config`` with the kind of ego that was requested last, and nothing of the others.
 
-    A scenario's own route means nothing to a run that takes over a vehicle; written down beside
-    it, the two would contradict each other. Where nobody drives, the route stays: zone and crowd
-    are about the way that an ego would have.
+    A scenario's own route has no meaning in a run that takes over a vehicle, and the two settings
+    would contradict each other. In a run without an ego, the route stays: zone and crowd refer to
+    the path that an ego would have.
     """
     asked = [key for layer in layers for key in _KINDS_OF_EGO if _ego_of(layer).get(key)]
     nothing: dict[str, Any] = {"take_over": (), "route": (), "none": False}
@@ -121,10 +122,10 @@ def _ego_of(layer: Layer) -> Mapping[str, Any]:
 
 
 def _require_one_ego(layer: Layer) -> None:
-    """Make sure that one origin does not ask for several kinds of ego at once.
+    """Make sure that one origin does not request several kinds of ego at once.
 
     Raises:
-        ConfigError: it does.
+        ConfigError: it requests several.
     """
     ego = _ego_of(layer)
     named = [layer.name(("ego", key)) for key in _KINDS_OF_EGO if ego.get(key)]
@@ -136,7 +137,7 @@ def _require_one_ego(layer: Layer) -> None:
 
 
 def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
-    """``config`` with absolute paths, so that it means the same from any folder."""
+    """Return ``config`` with absolute paths, so that it does not depend on the current folder."""
     if config.scenario not in available():
         config = config.model_copy(update={"scenario": str(scenario.config_file)})
     placed: dict[str, Any] = {
@@ -159,20 +160,21 @@ def _table_placed(name: str, table: Any) -> Any:
 
 
 def _absolute(table: Mapping[str, Any], keys: Sequence[str] = _FILES) -> dict[str, str]:
-    """The files that a table's settings name, as far as there are such files."""
+    """Return the files that a table's settings name, with absolute paths, if they exist."""
     named = {key: Path(str(table[key])) for key in keys if table.get(key)}
     return {
         key: str(path.absolute())
         for key, path in named.items()
-        if os.path.isfile(path)  # noqa: PTH113 - Path's own raises if a name is too long
+        # Path.is_file raises an error if a name is too long
+        if os.path.isfile(path)  # noqa: PTH113
     }
 
 
 def _presets_read(config: RunConfig) -> RunConfig:
-    """``config``, whose preset files can be used.
+    """Return ``config`` after a check that its preset files can be used.
 
     Raises:
-        ConfigError: one cannot.
+        ConfigError: a preset file cannot be used.
     """
     named = {config.crowd.preset: "[crowd] preset"}
     named |= {ego.perception.preset: "[perception] preset" for ego in config.each_ego()}
@@ -186,10 +188,11 @@ def _presets_read(config: RunConfig) -> RunConfig:
 
 
 def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:
-    """Return what a caller of the Python API has set, without the defaults.
+    """Return the settings of a caller of the Python API, without the defaults.
 
     Raises:
-        ConfigError: it is neither a configuration nor the name of a scenario or TOML file.
+        ConfigError: the argument is neither a configuration nor the name of a scenario or TOML
+            file.
     """
     if isinstance(config, str | Path):
         path = Path(config)

@@ -1,4 +1,4 @@
-"""The numbers of the pedestrian model by name, or from a preset file (TOML) of your own."""
+"""The parameters of the pedestrian model, by name or from a preset file (TOML) of the user."""
 
 import difflib
 import functools
@@ -16,19 +16,20 @@ from pedestrian_model import PRESETS, ParameterError, VciParameters, require_ste
 
 SUFFIX = ".toml"
 NAMES = tuple(field.name for field in fields(VciParameters))
-"""The parameters of the model, in the order of their declaration."""
+"""The names of the model's parameters, in the order of declaration."""
 
 _TABLES = frozenset({"name", "base", "parameters", "provenance"})
 
 
 def parameters_of(preset: str) -> VciParameters:
-    """The parameters of a preset: one that is built in, or a preset file.
+    """Return the parameters of a preset: a built-in one, or a preset file.
 
     Args:
-        preset: A name (SIM, TABLE2) or the path of a ``.toml`` file.
+        preset: Name (SIM, TABLE2) or path of a ``.toml`` file.
 
     Raises:
-        ConfigError: naming the preset or the file, the key, the value and what was expected.
+        ConfigError: the preset cannot be used; the message names preset or file, key, value and
+            what was expected.
     """
     if preset in PRESETS:
         return PRESETS[preset]
@@ -44,15 +45,15 @@ def parameters_of(preset: str) -> VciParameters:
 
 
 def require_steady_preset(preset: str, time_step: float, where: str) -> None:
-    """Make sure that people do not tremble by the parameters of ``preset``.
+    """Make sure that people do not tremble with the parameters of ``preset``.
 
     Args:
-        preset: A name or a file, as for :func:`parameters_of`.
+        preset: Name or file, as for :func:`parameters_of`.
         time_step: Time step of the crowd [s].
-        where: The option that names the preset; the message begins with it.
+        where: Option that names the preset; the message begins with it.
 
     Raises:
-        ConfigError: they do, or the preset cannot be read.
+        ConfigError: people would tremble, or the preset cannot be read.
     """
     try:
         require_steady(parameters_of(preset), time_step)
@@ -63,10 +64,10 @@ def require_steady_preset(preset: str, time_step: float, where: str) -> None:
 
 
 def require_preset_name(preset: str) -> None:
-    """Make sure that ``preset`` may name a preset; whether its file is there is not looked at.
+    """Make sure that ``preset`` may name a preset; the file need not exist yet.
 
     Raises:
-        ConfigError: it cannot.
+        ConfigError: it may not.
     """
     if preset in PRESETS or preset.endswith(SUFFIX):
         return
@@ -82,7 +83,7 @@ def require_parameter(name: str, where: str) -> None:
     """Make sure that ``name`` is a parameter of the model.
 
     Raises:
-        ConfigError: it is not; the message begins with ``where``.
+        ConfigError: it is none; the message begins with ``where``.
     """
     if name not in NAMES:
         close = difflib.get_close_matches(name, NAMES, n=1)
@@ -91,17 +92,17 @@ def require_parameter(name: str, where: str) -> None:
 
 
 def is_preset_file(preset: str) -> bool:
-    """Return whether ``preset`` names a file, not a preset that is built in."""
+    """Return whether ``preset`` names a file and not a built-in preset."""
     return preset not in PRESETS and preset.endswith(SUFFIX)
 
 
 def preset_text(name: str, parameters: VciParameters, provenance: Mapping[str, Any]) -> str:
-    """A preset file: every parameter, and where the numbers come from.
+    """Return the text of a preset file: every parameter, and where the numbers come from.
 
     Args:
         name: Name of the preset.
-        parameters: All of them are written, to the last digit.
-        provenance: what was fitted, on what, how well: text, numbers, lists of them.
+        parameters: Parameters, which are all written to the last digit.
+        provenance: What was fitted, to which data, and how well: texts, numbers, or lists of them.
     """
     document = tomlkit.document()
     document.add(tomlkit.comment("Parameters of the VCI pedestrian model; giveway's docs tell"))
@@ -132,7 +133,7 @@ def _read(path: Path, _stamp: object) -> VciParameters:
 
 
 def _base(path: Path, base: object) -> dict[str, float]:
-    """Return the values that a file with a ``base`` need not repeat."""
+    """Return the values of the ``base`` of a file, which the file need not repeat."""
     if base is None:
         return {}
     if not isinstance(base, str) or base not in PRESETS:

@@ -1,6 +1,6 @@
-"""The names of the JSON schemas that ``giveway schema`` writes, and how a TOML file refers to one.
+"""The names of the JSON schemas that ``giveway schema`` writes, and the reference to one in TOML.
 
-Editors (Taplo, and what uses it) read the schema that a file's first line names, relative to it.
+Editors (such as those with Taplo) read the schema that a file's first line names, relative to it.
 """
 
 from typing import Final
@@ -12,5 +12,5 @@ PRESET: Final = "giveway-preset.schema.json"
 
 
 def with_schema(text: str, name: str) -> str:
-    """A TOML text that names its schema in its first line."""
+    """Return a TOML text that names its schema in its first line."""
     return f"#:schema {name}\n{text}"

@@ -1,4 +1,4 @@
-"""TOML files of users, read: whatever is in them, the problem is told in one line."""
+"""The reading of users' TOML files; every problem is reported in one line."""
 
 import tomllib
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from giveway.errors import ConfigError
 
-_DEEPEST: Final = 20  # levels of tables and lists; nothing that we read has half as many
+_DEEPEST: Final = 20  # Levels of tables and lists; files of giveway have less than half as many
 
 
 def read_toml_file(file: Path, expected: str, called: str | None = None) -> dict[str, Any]:
@@ -14,11 +14,11 @@ def read_toml_file(file: Path, expected: str, called: str | None = None) -> dict
 
     Args:
         file: File to be read.
-        expected: what it should be, for messages: "a preset file".
-        called: how messages call it; None: by its path.
+        expected: Kind of file that it should be, for messages: "a preset file".
+        called: Name of the file in messages, or None for its path.
 
     Raises:
-        ConfigError: it is not there, cannot be read, or is not TOML.
+        ConfigError: the file is not there, cannot be read, or is not TOML.
     """
     origin = str(file) if called is None else called
     try:
@@ -37,10 +37,10 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
 
     Args:
         text: Text of a file.
-        origin: what messages call it.
+        origin: Name of the text in messages.
 
     Raises:
-        ConfigError: it is not TOML.
+        ConfigError: the text is not TOML.
     """
     try:
         values = tomllib.loads(text)

@@ -1,8 +1,8 @@
-"""Code that a results folder names: what is imported without the user's own word, and what is not.
+"""The decision which code may be imported if only a results folder names it.
 
-Somebody else's results are data. A name that an installed package declares may be followed, if the
-package is the one that the results were made with; ``module:Class`` could be anything installed,
-and is imported only if the user has named it too.
+The results of other people are data. A name that an installed package declares may be imported if
+the package is the one with which the results were made. ``module:Class`` could be anything that is
+installed, and is imported only if the user has named it, too.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from giveway.plug_ins.sockets import Socket
 def require_trusted(
     config: RunConfig, layers: Sequence[Layer], trusted: Collection[str] = ()
 ) -> None:
-    """Make sure that no results folder alone decides on what is imported.
+    """Make sure that no results folder alone decides which code is imported.
 
     Args:
-        config: what the layers amount to.
+        config: Configuration that the layers amount to.
         layers: Layers of settings.
-        trusted: Code that the user has named apart from the layers.
+        trusted: Code that the user has named, apart from the layers.
 
     Raises:
-        ConfigError: one does, or names code that has changed since.
-        ControlError: something is not installed.
+        ConfigError: a folder alone names code, or names code that has changed since.
+        ControlError: a plug-in is not installed.
     """
     for code in sorted(foreign_code(config), key=lambda code: code.key):
         socket, name = code.socket, same_name(code.name)
@@ -73,11 +73,11 @@ def _require_same(code: Named, origin: str, folder: Path) -> None:
 
 
 def hashes_in(folder: Path, name: str, socket: Socket) -> set[str]:
-    """The SHA-256 of a plug-in that the manifest of a results folder tells; perhaps none."""
+    """Return the SHA-256 of a plug-in in the manifest of a results folder; empty if it has none."""
     try:
         manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
-        told = manifest.get(socket.manifest, {}).values()  # of a run
-        inputs = [cell["inputs"] for cell in manifest.get("cells", ())]  # of a study
+        told = manifest.get(socket.manifest, {}).values()  # manifest of a run
+        inputs = [cell["inputs"] for cell in manifest.get("cells", ())]  # manifest of a study
         return {str(one["sha256"]) for one in told if same_name(one["name"]) == same_name(name)} | {
             str(hash_)
             for files in inputs
@@ -89,7 +89,7 @@ def hashes_in(folder: Path, name: str, socket: Socket) -> set[str]:
 
 
 def _named_in(values: Mapping[str, Any], socket: Socket) -> set[str]:
-    """Return the plug-ins that settings name, of the run and of its egos."""
+    """Return the plug-ins that settings name, for the run and for its egos."""
     egos = values.get("egos")
     named = set()
     for node in (values, *(egos if isinstance(egos, list | tuple) else ())):
@@ -97,6 +97,6 @@ def _named_in(values: Mapping[str, Any], socket: Socket) -> set[str]:
             node = node.get(key) if isinstance(node, Mapping) else None
         if isinstance(node, str):
             named.add(same_name(node))
-        elif isinstance(node, Mapping):  # of names
+        elif isinstance(node, Mapping):  # a table of names
             named |= {name for name, own in node.items() if own}
     return named

@@ -18,14 +18,14 @@ from giveway.config.option import (
 )
 from giveway.config.reasons import FORCE
 
-_SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # what SUMO accepts as the name of anything
+_SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # Pattern of the ids that SUMO accepts
 SUMO_TIME = "SUMO counts milliseconds"
 
 BUNDLED_VEHICLES: Final[dict[str, Literal["2.0", "3.0"]]] = {"fmi2": "2.0", "fmi3": "3.0"}
 """The FMI versions of the vehicle FMUs that are named by a word."""
 
 DEFAULT_SPEED = 4.0
-"""[m/s] of an inserted ego at its departure (Yang & Özgüner 2019, table 1)."""
+"""Speed [m/s] of an inserted ego at its departure (Yang & Özgüner 2019, table 1)."""
 
 
 class EgoConfig(Section):
@@ -169,7 +169,7 @@ class VehicleConfig(Section):
 
     @property
     def acceleration_limit(self) -> float:
-        """The largest acceleration [m/s^2] that the actuator's force gives the mass."""
+        """The largest acceleration [m/s^2] that the largest force gives the vehicle's mass."""
         return self.force_limit / self.mass
 
 

@@ -282,4 +282,4 @@ class NoOptions(Section):
 OWN_OPTIONS: Mapping[str, type[Section]] = MappingProxyType(
     {"mpc": PlannerOptions, "pid-tuned": TunedPidOptions}
 )
-"""The options of each of our controllers by its public name, in [controller_options]."""
+"""Options of each of giveway's controllers by its public name, in [controller_options]."""

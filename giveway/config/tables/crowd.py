@@ -26,8 +26,8 @@ from giveway.config.tables.people import DISTRACTED, SHARE, PeopleConfig
 
 WALKING = "the model's people walk with 2.5 m/s at most, and somebody below 0.01 m/s stands"
 ENCOUNTERS: Final = "encounters"
-_NEAREST = 0.01  # [m] a shorter side of an area, or a shorter walk, is none
-_FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
+_NEAREST = 0.01  # Smallest side of an area, and smallest walk [m]
+_FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
 
 
 class CrowdConfig(Section):
@@ -166,23 +166,23 @@ class CrowdConfig(Section):
 
     @property
     def adds_people(self) -> bool:
-        """Return whether giveway adds anybody."""
+        """True if giveway adds people."""
         return self.pedestrians > 0 or bool(self.flow and self.flow_scale)
 
     @property
     def has_distracted(self) -> bool:
-        """Return whether anybody may be distracted."""
+        """True if a person may be distracted."""
         each = (self.people, *(flow.people for flow in self.flow if flow.people is not None))
         return any(people.shares[DISTRACTED] for people in each)
 
     @property
     def has_groups(self) -> bool:
-        """Return whether anybody may walk in a group that stays together."""
+        """True if a person may walk in a group that stays together."""
         return self.groups > 0.0 or any(flow.groups for flow in self.flow)
 
     @property
     def plugged_in(self) -> bool:
-        """Return whether the model of people is somebody else's."""
+        """True if the pedestrian model is a plug-in."""
         return self.model not in BUNDLED_MODELS
 
     @model_validator(mode="after")

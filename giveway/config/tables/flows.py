@@ -1,4 +1,4 @@
-"""``[[crowd.flow]]``: streams of people, so many an hour from here to there."""
+"""``[[crowd.flow]]``: streams of people from one place to another, in persons per hour."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ from pydantic_core import PydanticCustomError
 from giveway.config.option import Section, expectation, is_number, option
 from giveway.config.tables.people import SHARE, PeopleConfig
 
-_FARTHEST = 1e7  # [m] a coordinate; beyond it a millimetre is lost in rounding
-_SHORTEST = 0.01  # [m] a side of a rectangle, a line: a shorter one is a point
-_LONGEST_BEFORE: Final = 3600.0  # [s]
-_MOST = 100  # flows
+_FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
+_SHORTEST = 0.01  # Smallest side of a rectangle or length of a line [m]
+# Longest time [s] before the run's beginning for which a flow may have run
+_LONGEST_BEFORE: Final = 3600.0
+_MOST = 100  # Largest number of flows
 
 Point = tuple[float, float]
 Line = tuple[Point, Point]
 Box = tuple[float, float, float, float]
 Place = Point | Line | Box
-"""A point x, y; a line between two points; a rectangle x_min, y_min, x_max, y_max. All in m."""
+"""A point x, y, a line between two points, or a rectangle x_min, y_min, x_max, y_max, all in
+[m]."""
 
 
 def is_line(place: Place) -> bool:
@@ -63,7 +65,7 @@ def _box(value: Any) -> Box | None:
 
 
 def _origin(value: Any) -> Place:
-    """Return the place where people come from, which has room for several."""
+    """Return the place that people come from, which has room for several people."""
     found = _line(value) or _box(value)
     if found is None:
         raise _refused("expected a line or a rectangle")
@@ -71,7 +73,7 @@ def _origin(value: Any) -> Place:
 
 
 def _destination(value: Any) -> Place:
-    """Return the place where people go to."""
+    """Return the place that people go to."""
     found = _point(value) or _line(value) or _box(value)
     if found is None:
         raise _refused(
@@ -81,7 +83,7 @@ def _destination(value: Any) -> Place:
 
 
 def _via(value: Any) -> tuple[Point | Line, ...]:
-    """Return the places that people come through, one after the other."""
+    """Return the places that people pass, one after the other."""
     places = value if isinstance(value, list | tuple) else [value]
     found = [_point(place) or _line(place) for place in places]
     if not all(found):
@@ -152,16 +154,16 @@ class FlowConfig(Section):
         return self
 
     def settings(self) -> dict[str, Any]:
-        """Return the entries of a table of a TOML file."""
+        """Return the entries for a table of a TOML file."""
         values: dict[str, Any] = self.model_dump(mode="json", exclude_defaults=True)
         return values
 
 
 def read_flows(value: Any) -> tuple[FlowConfig, ...]:
-    """The flows that a TOML file or a dictionary holds.
+    """Read the flows in a TOML file or a dictionary.
 
     Raises:
-        ValueError: one cannot be; the message names it.
+        ValueError: a flow is not valid; the message names it.
     """
     if not isinstance(value, list | tuple) or not all(
         isinstance(entry, dict | FlowConfig) for entry in value
@@ -190,7 +192,7 @@ def _read(entry: dict[str, Any], number: int) -> FlowConfig:
 
 
 def _explain(error: Any) -> str:
-    """One line on what pydantic refuses in a flow."""
+    """Return one line on pydantic's error in a flow."""
     where = [str(part) for part in error["loc"]]
     keys = {field.alias or name: field for name, field in FlowConfig.model_fields.items()}
     if error["type"] == "value_error":

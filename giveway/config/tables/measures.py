@@ -10,7 +10,7 @@ from pydantic import Field
 from giveway.config.option import Section, is_number
 
 _KEYS = ("name", "line", "area", "interval")
-_FARTHEST = 1e7  # [m] a coordinate; beyond it a millimetre is lost in rounding
+_FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
 Place = tuple[float, float]
 
 
@@ -28,17 +28,17 @@ class MeasureConfig(Section):
         return self.line or self.area
 
     def settings(self) -> dict[str, Any]:
-        """Return the entries of a table of a TOML file."""
+        """Return the entries for a table of a TOML file."""
         kind = "line" if self.line else "area"
         places = [list(place) for place in self.places]
         return {"name": self.name, kind: places, "interval": self.interval}
 
 
 def read_measures(value: Any) -> tuple[MeasureConfig, ...]:
-    """The measures that a TOML file or a dictionary holds.
+    """Read the measures in a TOML file or a dictionary.
 
     Raises:
-        ValueError: one cannot be measured on; the message names it.
+        ValueError: a measure is not valid; the message names it.
     """
     if not isinstance(value, list | tuple) or not all(
         isinstance(entry, dict | MeasureConfig) for entry in value

@@ -45,10 +45,10 @@ class PeopleConfig(Section):
 
     @property
     def shares(self) -> dict[str, float]:
-        """The shares of all but adults."""
+        """The shares of all kinds of people except adults."""
         return {name: float(getattr(self, name)) for name in type(self).model_fields}
 
     @property
     def mixed(self) -> bool:
-        """Return whether anybody is to be told apart."""
+        """True if people differ in kind."""
         return any(self.shares.values())

@@ -58,10 +58,10 @@ class PerceptionConfig(Section):
 
     @property
     def plugged_in_sensor(self) -> bool:
-        """Return whether the sensor is somebody else's."""
+        """True if the sensor is a plug-in."""
         return self.sensor not in BUNDLED_SENSORS
 
     @property
     def plugged_in(self) -> bool:
-        """Return whether the model of people that is believed in is somebody else's."""
+        """True if the predicting pedestrian model is a plug-in."""
         return self.model not in BUNDLED_MODELS

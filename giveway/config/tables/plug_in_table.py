@@ -25,7 +25,7 @@ class PlugInTable(Section):
     @model_validator(mode="before")
     @classmethod
     def _known(cls, values: Any) -> Any:
-        """Refuse a name that is neither one of giveway's keys nor one of an installed package."""
+        """Refuse a name that is neither a key of giveway's nor a name of an installed package."""
         names = values if isinstance(values, Mapping) else {}
         for name in names:
             if name in cls.model_fields or is_reference(str(name)):
@@ -37,13 +37,13 @@ class PlugInTable(Section):
 
     @property
     def plugged_in(self) -> Mapping[str, Mapping[str, Any]]:
-        """The plug-ins that are named, with the options that are set."""
+        """The named plug-ins, each with its options."""
         extra = self.__pydantic_extra__
         return {name: {} if own is True else own for name, own in extra.items() if own}
 
 
 def _unknown(name: str, known: list[str], what: str) -> ValueError:
-    """The error that a key is no plug-in's name."""
+    """Return the error for a key that is no plug-in's name."""
     close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     some = f"one of {', '.join(known)}, or " if known else ""
     hint = f"did you mean '{close[0]}'?" if close else f"expected {some}module:Class of a package"

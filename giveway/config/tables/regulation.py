@@ -7,7 +7,7 @@ from giveway.config.reasons import MILLIMETRE, TYRES
 from giveway.config.tables.basics import DEFAULT_SPEED
 
 CORRIDOR_MARGIN = 0.25
-"""[m] The corridor of a vehicle is wider than its body by this much on each side."""
+"""Width [m] by which a vehicle's corridor exceeds its body on each side."""
 
 
 class RegulationConfig(Section):

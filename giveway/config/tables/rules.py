@@ -9,7 +9,7 @@ from giveway.config.tables.plug_in_table import PlugInTable
 from giveway.plug_ins.sockets import RULE, Socket
 
 OF_PRIORITY = frozenset({"crossings", "right_of_way", "merging"})
-"""The rules about who goes first; they hold by default if the controller keeps priority."""
+"""The rules of priority; by default they hold if the controller's declaration says so."""
 
 
 class RulesConfig(PlugInTable):
