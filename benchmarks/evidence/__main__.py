@@ -3,6 +3,8 @@
 Without a name it makes each page that is stale: whose code, seeds or samples have changed since.
 It can be ended at any time and goes on where it was. ``--list`` names all pages, ``--check`` the
 stale ones; ``--quick`` proves with a few seeds that everything can be made, and writes no page.
+``--confirm`` compares ten fixed runs with those of the time at which a page was made: where the
+code has changed and the drives have not, the page is not stale any more.
 ``--kept NAME`` makes a table of a long campaign, or of data that are not in the repository.
 """
 
@@ -15,11 +17,13 @@ import tempfile
 import time
 from pathlib import Path
 
-sys.path.extend(str(Path(__file__).resolve().parents[1] / room) for room in ("speed", "tuning"))
+sys.path.extend(
+    str(Path(__file__).resolve().parents[1] / room) for room in ("speed", "tuning", "tools")
+)
 
 from blocks import present_version, write_block
 from digests import HOUSE, digest_of, file_digest
-from ledger import enter, is_stale, listing, read_ledger
+from ledger import confirm, enter, is_stale, listing, read_ledger
 from pages import PAGES, Page
 from work import Command, Study
 
@@ -89,6 +93,7 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--quick", action="store_true", help="a few seeds; writes no page")
     parser.add_argument("--list", action="store_true", help="name all pages, and what is stale")
+    parser.add_argument("--confirm", action="store_true", help="stale pages with the same drives")
     parser.add_argument("--check", action="store_true", help="name stale pages only; 1 if any is")
     options = parser.parse_args()
     if strange := sorted(set(options.pages) - set(ours)):
@@ -104,6 +109,9 @@ def main() -> int:
     entries = read_ledger()
     if options.list:
         print("\n".join(listing(PAGES, entries)))
+        return 0
+    if options.confirm:
+        print("\n".join(confirm(PAGES)))
         return 0
     stale = [name for name, page in PAGES.items() if is_stale(page, entries)]
     if options.check:

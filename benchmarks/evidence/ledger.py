@@ -1,14 +1,22 @@
-"""What docs/evidence.json knows of each page: of which code it is, and how long it took."""
+"""What docs/evidence.json knows of each page: of which code it is, and how long it took.
+
+A change that leaves the drives as they are does not make a table wrong. So each page keeps a digest
+of ten fixed runs as well: where these still have the same bytes, ``--confirm`` enters the present
+code, and the page says so.
+"""
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import json
 from pathlib import Path
 from typing import Any
 
+import fingerprints
 from blocks import present_version
 from digests import HOUSE, digest_of
-from pages import Page
+from pages import DRIVING, Page
 
 LEDGER = HOUSE / "docs" / "evidence.json"
 
@@ -24,6 +32,19 @@ def read_ledger(file: Path = LEDGER) -> dict[str, dict[str, Any]]:
 def page_digest(page: Page) -> str:
     """Digest of a page's code, seeds, sample sizes and commands."""
     return digest_of(page.rooms, repr([(block.name, block.work) for block in page.blocks]))
+
+
+def rest_digest(page: Page) -> str:
+    """Digest of what ten fixed runs do not tell: samples, and rooms that are not about driving."""
+    rooms = set(page.rooms) - set(DRIVING)
+    return digest_of(rooms, repr([(block.name, block.work) for block in page.blocks]))
+
+
+@functools.cache
+def drives_digest() -> str:
+    """Digest of all columns of ten fixed runs of the present code; takes a minute or more."""
+    columns = {name: fingerprints.in_a_process(name) for name in fingerprints.RUNS}
+    return hashlib.sha256(json.dumps(columns, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def is_stale(page: Page, entries: dict[str, dict[str, Any]]) -> bool:
@@ -49,6 +70,36 @@ def enter(page: Page, minutes: float, file: Path = LEDGER, **inputs: str) -> Non
         "minutes": round(minutes, 1),
         **inputs,
     }
+    if set(DRIVING) <= set(page.rooms):
+        entries[page.name] |= {"rest": rest_digest(page), "drives": drives_digest()}
+    _write(entries, file)
+
+
+def confirm(pages: dict[str, Page], file: Path = LEDGER) -> list[str]:
+    """Enter the present code for stale pages whose samples and drives are still the same.
+
+    Args:
+        pages: All pages.
+        file: JSON file of all pages.
+
+    Returns:
+        Names of the pages that are confirmed.
+    """
+    entries = read_ledger(file)
+    commit, date = present_version()
+    confirmed = []
+    for page in pages.values():
+        entry = entries.get(page.name, {})
+        if not is_stale(page, entries) or entry.get("rest") != rest_digest(page):
+            continue
+        if entry["drives"] == drives_digest():
+            entry |= {"digest": page_digest(page), "confirmed": f"{commit} {date}"}
+            confirmed.append(page.name)
+    _write(entries, file)
+    return confirmed
+
+
+def _write(entries: dict[str, dict[str, Any]], file: Path) -> None:
     text = json.dumps(dict(sorted(entries.items())), indent=1)
     file.write_text(text + "\n", encoding="utf-8")
 
@@ -61,5 +112,7 @@ def listing(pages: dict[str, Page], entries: dict[str, dict[str, Any]]) -> list[
         version = f"{entry.get('commit', '-')} {entry.get('date', '')}"
         minutes = f"{entry['minutes']:.1f}" if "minutes" in entry else "-"
         state = "  kept" * page.kept + "  stale" * is_stale(page, entries)
+        if "confirmed" in entry:
+            state += f"  same drives at {entry['confirmed']}"
         lines.append(f"{page.name:18}{version:26}{minutes:>8}  {page.file}{state}")
     return lines

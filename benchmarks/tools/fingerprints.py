@@ -109,7 +109,8 @@ def _foreign(bundled: Path, folder: Path) -> Path:
     return path
 
 
-def _in_a_process(name: str) -> dict[str, str]:
+def in_a_process(name: str) -> dict[str, str]:
+    """What :func:`fingerprint` returns, from a process of its own; "failed" if it ended badly."""
     done = subprocess.run(
         [sys.executable, __file__, "--one", name], capture_output=True, text=True, check=False
     )
@@ -136,7 +137,7 @@ def main() -> None:
     before = json.loads(options.compare.read_text()) if options.compare else {}
     found, differ = {}, 0
     for name in options.only or RUNS:
-        found[name] = _in_a_process(name)
+        found[name] = in_a_process(name)
         verdict = found[name].get("failed") or f"{len(found[name])} columns"
         if options.compare:
             different = _differences(before.get(name, {}), found[name])

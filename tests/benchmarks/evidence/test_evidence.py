@@ -80,6 +80,25 @@ def test_a_page_is_stale_until_it_is_entered(tmp_path: Path) -> None:
     assert ledger.is_stale(seeds, entries)
 
 
+def test_other_code_with_the_same_drives_can_be_confirmed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page, file = PAGES["pid"], tmp_path / "evidence.json"
+    monkeypatch.setattr(ledger, "drives_digest", lambda: "of before")
+    ledger.enter(page, 1.0, file)
+    entries = ledger.read_ledger(file)
+    entries["pid"]["digest"] = "of other code"
+    file.write_text(json.dumps(entries), encoding="utf-8")
+    monkeypatch.setattr(ledger, "drives_digest", lambda: "of now")
+    assert ledger.confirm({"pid": page}, file) == []
+    monkeypatch.setattr(ledger, "drives_digest", lambda: "of before")
+    other_samples = page._replace(blocks=page.blocks[:1])
+    assert ledger.confirm({"pid": other_samples}, file) == []
+    assert ledger.confirm({"pid": page}, file) == ["pid"]
+    assert not ledger.is_stale(page, ledger.read_ledger(file))
+    assert "same drives at" in ledger.listing({"pid": page}, ledger.read_ledger(file))[1]
+
+
 def test_only_the_named_block_of_a_page_is_written() -> None:
     page = "a\n<!-- evidence: x -->\nold\n<!-- end -->\n<!-- evidence: y -->\nkept\n<!-- end -->\n"
     text = blocks.filled(page, "x", ["new"], "Commit 1.")
