@@ -1,4 +1,4 @@
-"""The controller of an ego, from the configuration."""
+"""Makes the controller of an ego from the configuration."""
 
 from __future__ import annotations
 
@@ -67,9 +67,9 @@ def filled(kind: type[Parameters], *tables: Section, **own: Any) -> Parameters:
     """Parameters of a controller, taken from the tables' options of the same names.
 
     Args:
-        kind: Dataclass of the parameters; a field that no table has keeps its default.
-        tables: Tables of the configuration; the first that has an option counts.
-        own: Parameters that are not taken from an option.
+        kind: Dataclass of the parameters. A field that no table has keeps its default.
+        tables: Tables of the configuration. The first one that has an option counts.
+        own: Parameters that are not taken from a table.
     """
     for field in dataclasses.fields(kind):
         for table in tables:
@@ -93,7 +93,7 @@ def _paper_mpc(config: EgoRunConfig, time_step: float) -> SpeedController:
 
 
 def _pid(config: EgoRunConfig, time_step: float) -> Pid:
-    """The paper's PID, with the force limit of the MPC."""
+    """The paper's PID, with the force limit of the vehicle."""
     pid = config.pid
     parameters = filled(
         PidParameters,
@@ -108,7 +108,7 @@ def _pid(config: EgoRunConfig, time_step: float) -> Pid:
 
 
 def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
-    """The well-tuned PID, with the actuator's limits of the MPC."""
+    """The tuned PID, with the limits of the vehicle's actuator."""
     own = config.own_options
     reference = filled(ReferenceParameters, config.regulation, own)
     parameters = filled(TunedPidParameters, own, config.vehicle, reference=reference)
@@ -116,7 +116,7 @@ def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
 
 
 def manoeuvres_of(style: StyleName, own: Section, margin: float = 0.0) -> ManoeuvreParameters:
-    """The planner's manoeuvres: what its style sets, unless the options say otherwise.
+    """The planner's manoeuvres: options that are set, and the driving style for the others.
 
     Args:
         style: Driving style.

@@ -1,4 +1,4 @@
-"""One vehicle that giveway drives: its FMU, its controller, its path."""
+"""The ego: one vehicle that giveway drives, with its FMU, its controller and its path."""
 
 import math
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ from giveway.run_data.rows import STOP_SPEED
 from giveway.run_data.tracks import EgoRow
 from pedestrian_model import Surroundings
 
-_STRAIGHT = 1.0  # time [s] for which other vehicles are predicted straight on; roads may bend then
+_STRAIGHT = 1.0  # time [s] for which other vehicles are predicted to go straight on
 
 
 class Ego:
@@ -45,13 +45,13 @@ class Ego:
         rules: Rules of the road that hold for it.
         goal: Position of the FMU [m] at which the drive is over.
         time_step: Length of a control step [s].
-        kerbs: Kerbs beside its path, or None if nobody asks for them.
-        slope: Slope of the path; None if it is level.
+        kerbs: Kerbs beside its path, or None if they are not needed.
+        slope: Slope of the path, or None if the path is level.
 
     Attributes:
         front: Station of the front bumper [m].
         pose: Centre of the front bumper [m] and heading of the body [rad].
-        systems: SUMO's ids of the signal systems whose states it is told.
+        systems: SUMO's ids of the signal systems whose states it needs.
         beside: Marks of the last vehicles, see
             :func:`~giveway.ego.perception.leader.vehicles_in_front`.
     """
@@ -87,7 +87,7 @@ class Ego:
             straight=round(_STRAIGHT / time_step) if controller.foresees else None,
         )
         self._origin = -shape.length / 2 if regulation.gap_from == "centre" else 0.0
-        self._kept = self._origin + regulation.safe_distance  # to who is in front of the bumper [m]
+        self._kept = self._origin + regulation.safe_distance  # distance [m] kept by the bumper
         safety = waiting.safety
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._kerbs = kerbs if self._guard is not None else None
@@ -109,35 +109,38 @@ class Ego:
 
     @property
     def foresees(self) -> bool:
-        """Return whether it predicts the crowd under each of its manoeuvres."""
+        """Return whether the ego predicts the crowd under each of its manoeuvres."""
         return self._people.foresight is not None
 
     @property
     def arrived(self) -> bool:
-        """Return whether it has driven its distance."""
+        """Return whether the ego has driven its distance."""
         return self.vehicle.position >= self.goal
 
     @property
     def watches(self) -> bool:
-        """Return whether it wants to be told what happens in SUMO."""
+        """Return whether the ego has to be updated after SUMO's steps."""
         return self.rules.watches or bool(self.systems)
 
     def update(self, time: float, told: Told) -> None:
-        """Take note of signals and traffic, once after each of SUMO's steps.
+        """Update signals and traffic, once after each of SUMO's steps.
 
         Args:
             time: SUMO's clock [s].
-            told: Signals and vehicles that matter to it.
+            told: Signals and vehicles that the ego needs to know about.
         """
         if self._kerbs is not None:
             self._kerbs.update(told.signals)
         self.rules.update(time, self.front, self.vehicle.speed, told)
 
     def check_pose(self, step: int) -> Pose:
-        """The pose, which SUMO must not be given if it is not finite (it hangs).
+        """Return the pose if it is finite; SUMO hangs if it is given one that is not.
+
+        Args:
+            step: Number of the step, for messages.
 
         Raises:
-            VehicleError: it is not finite.
+            VehicleError: the pose is not finite.
         """
         pose = self.pose
         if not all(map(math.isfinite, pose)):
@@ -157,10 +160,10 @@ class Ego:
 
         Args:
             row: Row of the ego among the vehicles.
-            poses: (N, m, 7) poses of all vehicles at steps 0 ... N-1.
-            truth: World as it is, which the sensor looks at; all else works on the percept.
+            poses: Poses (N, m, 7) of all vehicles at steps 0 ... N-1.
+            truth: World as it is, for the sensor and the tables. All else uses the percept.
             surroundings: Walls and lights that pedestrians heed.
-            person_ids: Number of each pedestrian of the truth, (n,).
+            person_ids: Id of each pedestrian of the truth, (n,).
         """
         own, seen, front = self._own, self._seen, self.front
         own.pose, own.speed, own.row = self.pose, self.vehicle.speed, row
@@ -184,13 +187,13 @@ class Ego:
         if vehicles is not None:
             spared = self._following.gap_relaxation(leader, vehicles, front, speed, seen.to_clear)
             seen.ahead = np.minimum(seen.ahead, vehicles + spared)
-        if rules.latest < math.inf:  # a plan may lead as far as the front bumper is allowed to
+        if rules.latest < math.inf:  # a plan may not lead beyond this station of the front bumper
             allowed = rules.latest + self._origin
             seen.ahead = np.minimum(seen.ahead, allowed + self.config.regulation.safe_distance)
         seen.leader, seen.stop, seen.stops_for = leader, rules.stop, rules.cause
 
     def decide(self, step: int, time: float, seen: Perceived) -> Decision:
-        """The force for the step from t_k on; kept for :meth:`advance`.
+        """Decide on the force for the step from t_k on, and keep it for :meth:`advance`.
 
         Args:
             step: Number k of the step, for messages.
@@ -247,7 +250,10 @@ class Ego:
         return shown
 
     def expected(self, seen: Perceived) -> Array | None:
-        """(N, n, 2) [m] positions that the decision expects at steps 1 ... N; reused later."""
+        """The positions (N, n, 2) [m] that the decision expects at steps 1 ... N, or None.
+
+        The array is reused later.
+        """
         return seen.predicted if seen.foresight is None else seen.foresight.best
 
     def advance(self) -> None:
@@ -260,12 +266,12 @@ class Ego:
         self.rules.advance(self.front, self.vehicle.speed, self._time_step)
 
     def _locate(self) -> None:
-        """Note where it is now: asked for several times at each instant."""
+        """Update the station and the pose from the FMU's position."""
         self.front = self.departure + self.vehicle.position
         self.pose = self.path.pose(self.front, self.shape.length)
 
     def outputs(self) -> tuple[Sequence[tuple[str, str, str]], Sequence[float]]:
-        """Return what is recorded of its FMU at this instant, and the grade of a sloping road."""
+        """Return the recorded variables of the FMU and their values, with the grade of a slope."""
         record, values = self.vehicle.record, self.vehicle.recorded
         if self._slope is None:
             return record, values
@@ -273,7 +279,7 @@ class Ego:
         return (*record, ROAD_GRADE), (*values, grade)
 
     def row(self, time: float, seen: Perceived, decision: Decision) -> EgoRow:
-        """The row of this instant for the tables."""
+        """Return the row of this instant for the tables."""
         front, cause = self.front, ""
         origin = front + self._origin
         if self.vehicle.speed < STOP_SPEED:

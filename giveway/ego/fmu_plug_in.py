@@ -1,4 +1,4 @@
-"""A controller FMU as a plug-in: from observations to its inputs, from its output to a command."""
+"""A controller FMU as a plug-in: observations become its inputs, its output becomes a command."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _TOLD: dict[str, Callable[[Observation], float]] = {
 
 
 class FmuPlugIn:
-    """Driven by an FMU, in a process of its own that starts with the first question.
+    """A controller that asks an FMU, in a separate process that starts with the first question.
 
     Args:
         prepared: Controller FMU, examined and unpacked.

@@ -13,7 +13,7 @@ from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
 from pedestrian_model import Crowd, CrowdPredictor, Surroundings
 
-_LIKELY = 0.75  # share of the largest position errors that plans count with
+_LIKELY = 0.75  # share of the largest position error that plans take into account
 
 
 class PeopleInFront:
@@ -23,7 +23,7 @@ class PeopleInFront:
         waiting: Ego before its departure.
         corridor: Corridor about the ego's path.
         shape: Length and width of its body [m].
-        kerbs: Kerbs beside its path; None if no safety layer asks for them.
+        kerbs: Kerbs beside its path, or None without a safety layer.
     """
 
     def __init__(
@@ -49,12 +49,12 @@ class PeopleInFront:
         own: OwnState,
         front: float,
     ) -> None:
-        """Fill in what is perceived of the pedestrians, now and over the horizon.
+        """Fill in the perceived pedestrians, now and over the horizon.
 
         Args:
-            seen: What the ego reacts to, with the poses of the vehicles.
-            truth: World as it is, which only the sensor and the tables look at.
-            person_ids: Number of each pedestrian of the truth, (n,).
+            seen: Object to fill in, with the poses of the vehicles.
+            truth: World as it is, for the sensor and the tables alone.
+            person_ids: Id of each pedestrian of the truth, (n,).
             surroundings: Walls and lights that pedestrians heed.
             own: State of the ego.
             front: Station of the front bumper [m].
@@ -85,7 +85,15 @@ class PeopleInFront:
         own: OwnState,
         front: float,
     ) -> None:
-        """Predict those who matter, or prepare the foresight; arguments of :meth:`look`."""
+        """Predict the people who matter, or prepare the foresight.
+
+        Args:
+            predictor: Predictor of the crowd.
+            seen: Object to fill in.
+            surroundings: Walls and lights that pedestrians heed.
+            own: State of the ego.
+            front: Station of the front bumper [m].
+        """
         people, numbers, _, errors = seen.percept
         foresight, speed = self.foresight, own.speed
         if foresight is None:

@@ -18,24 +18,24 @@ NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 
 @dataclass(slots=True)
 class Perceived:
-    """Everything that an ego reacts to at one instant; one object is refilled in place.
+    """Everything that an ego reacts to at one instant: one object, refilled in place.
 
     Attributes:
         percept: Pedestrians as the ego perceives them.
-        pedestrian: Station [m] of the closest perceived pedestrian in front; inf: nobody.
+        pedestrian: Station [m] of the closest perceived pedestrian in front; inf without one.
         closest: Station [m] of the closest pedestrian of the truth in front, for the tables.
         leader: Vehicle in front.
-        stop: Station [m] where the front bumper has to stop; inf: nowhere.
+        stop: Station [m] at which the front bumper has to stop; inf if it need not stop.
         stops_for: Cause of the stop, "light", "stop" or "yield"; empty without one.
-        ahead: (N,) stations [m] of the closest obstacle at steps 1 ... N.
-        predicted: (N, n, 2) positions [m] at steps 1 ... N, or None; the next look reuses them.
-        relevant: (n,) marks of the perceived people who are predicted; None if all are.
-        foresight: Prediction for a controller that foresees, if a person may come in front.
-        poses: (N, m, 7) poses of all vehicles at steps 0 ... N-1.
-        row: Row of the ego among them.
-        to_clear: Distance [m] to drive on to leave the crossings and junctions that it is on.
-        kerbs: (n, 3) kerbs of the people on sidewalks.
-        hasty: Numbers of the people who set out for the road too suddenly just now.
+        ahead: Stations (N,) [m] of the closest obstacle at steps 1 ... N.
+        predicted: Positions (N, n, 2) [m] at steps 1 ... N, or None. The next look reuses them.
+        relevant: Marks (n,) of the perceived people who are predicted, or None if all are.
+        foresight: Foresight for a controller that asks for it, or None if nobody can come in front.
+        poses: Poses (N, m, 7) of all vehicles at steps 0 ... N-1.
+        row: Row of the ego among the vehicles.
+        to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
+        kerbs: Kerbs (n, 3) of the people on sidewalks.
+        hasty: Ids of the people who violate the safety layer's assumption by a sudden start now.
     """
 
     percept: Percept = field(default_factory=lambda: Percept(Crowd.empty(), NOBODY))

@@ -1,4 +1,4 @@
-"""Preparing an ego before it departs: its vehicle FMU, its predictor and its safety layer."""
+"""Prepares an ego before it departs: its vehicle FMU, its predictor and its safety layer."""
 
 from contextlib import ExitStack
 from math import sqrt
@@ -15,8 +15,8 @@ from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import VehicleError
 from giveway.run_data.tracks import EgoTrack
 
-_MARGIN = 0.05  # Distance [m] between the front bumper and whoever may get there; docs/safety.md
-_WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
+_MARGIN = 0.05  # least distance [m] between the front bumper and a person; docs/safety.md
+_WITHIN = 2.0 * sqrt(2.0)  # largest position noise in standard deviations: two on each axis
 
 
 def make_waiting_ego(
@@ -51,7 +51,7 @@ def make_waiting_ego(
 
 
 def recorded_ego(config: EgoRunConfig, track: EgoTrack, time_step: float) -> WaitingEgo:
-    """An ego that will drive as it did in a run that is over.
+    """An ego that repeats its recorded drive of an earlier run.
 
     Args:
         config: Configuration of the ego.
@@ -64,7 +64,7 @@ def recorded_ego(config: EgoRunConfig, track: EgoTrack, time_step: float) -> Wai
 
 
 def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameters:
-    """The limits that the safety layer counts on; the body's width is not known yet.
+    """The limits that the safety layer assumes, still without the width of the ego's body.
 
     Args:
         config: Configuration of the ego.

@@ -1,4 +1,4 @@
-"""An ego that drives as it did in a run: no vehicle FMU, no controller."""
+"""An ego that repeats its recorded drive, without a vehicle FMU and a controller."""
 
 from pathlib import Path
 
@@ -8,10 +8,11 @@ from giveway.run_data.tracks import EgoTrack
 
 
 class RecordedVehicle(Vehicle):
-    """A vehicle whose motion is known.
+    """A vehicle that repeats a recorded motion.
 
     Args:
-        track: Recorded rows of the ego, from its departure on; at the end the vehicle stands.
+        track: Recorded rows of the ego, from its departure on. The last row holds beyond its end.
+        time_step: Control step [s].
     """
 
     def __init__(self, track: EgoTrack, time_step: float) -> None:
@@ -27,20 +28,20 @@ class RecordedVehicle(Vehicle):
         self.position = float(track.position[row])
         self.speed = float(track.speed[row])
         self.acceleration = float(track.acceleration[row])
-        self.stop_gap = float(track.stop_gap[row])  # [m] to where it had to stop; inf: nowhere
+        self.stop_gap = float(track.stop_gap[row])  # distance [m] to a demanded stop; inf without
 
     def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:  # noqa: ARG002
-        """Begin again; position and speed are those of the track."""
+        """Begin again at the first row of the track; the arguments are ignored."""
         self._row = 0
         self._show()
 
     def step(self, force: float = 0.0, grade: float = 0.0) -> None:  # noqa: ARG002
-        """Move on by one control step, whatever the force."""
+        """Go to the next row of the track; the arguments are ignored."""
         self._row = min(self._row + 1, len(self._track.time) - 1)
         self._show()
 
     def close(self) -> None:
-        """There is nothing to free."""
+        """Do nothing: there is nothing to free."""
 
 
 class NoController:
@@ -50,11 +51,11 @@ class NoController:
     foresees = False
 
     def reset(self) -> None:
-        """There is nothing to forget."""
+        """Do nothing: there is nothing to forget."""
 
     def control(self, observation: Observation) -> Decision:  # noqa: ARG002
-        """Nobody asks."""
+        """Raise an error, because a recorded ego asks no controller."""
         raise AssertionError("an ego whose motion is known asks no controller")
 
     def applied(self, force: float) -> None:
-        """Nobody tells."""
+        """Do nothing: a recorded ego has no safety layer."""

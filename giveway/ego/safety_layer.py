@@ -1,4 +1,4 @@
-"""The safety layer of one ego on its path."""
+"""The safety layer of one ego on its path: it replaces forces that are not safe."""
 
 from dataclasses import replace
 from typing import Any
@@ -14,12 +14,12 @@ from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath, body_pose, segment_at
 from pedestrian_model import Crowd
 
-_FINEST = 0.25  # [m] between poses: a chord of a bend of 5 m radius is 1.6 mm off
-MOST_POSES = 256  # of the front ahead
+_FINEST = 0.25  # least spacing [m] of poses; in a bend of 5 m radius its chord is 1.6 mm off
+MOST_POSES = 256  # largest number of poses of the front ahead
 
 
 class Guard:
-    """Watches over one ego's forces.
+    """The safety layer of one ego: it checks each force, and replaces it if it is not safe.
 
     Args:
         limits: Limits of pedestrians and of the brake.
@@ -52,15 +52,16 @@ class Guard:
         errors: Array | None = None,
         kerbs: Array = NO_KERBS,
     ) -> Decision | None:
-        """Return the decision of the safety layer, or None if it lets the controller's through.
+        """Return the decision of the safety layer, or None if the controller's force is safe.
 
         Args:
-            decision: the controller's.
-            front: the front bumper's station [m].
-            speed: the ego's [m/s].
-            crowd: the pedestrians as it sees them.
-            errors: (n,) [m] that their positions are off at most; None: as the limits say.
-            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.perception.kerbs.Kerbs.of`.
+            decision: Decision of the controller.
+            front: Station of the front bumper [m].
+            speed: Speed of the ego [m/s].
+            crowd: Pedestrians as the ego perceives them.
+            errors: Largest errors (n,) [m] of their positions, or None for the error of the limits.
+            kerbs: Kerbs (n, 3) of people on sidewalks, as
+                :meth:`giveway.ego.perception.kerbs.Kerbs.of` returns them.
         """
         layer = self._layer
         safe, verdict = watch(
@@ -96,7 +97,7 @@ def watch(
 
     Args:
         path: Vertices, stations and headings of the ego's path.
-        place: Station of the front bumper, length of the body, distance ahead that matters [m].
+        place: Station of the front bumper, length of the body and distance ahead that matters [m].
         poses: Scratch, (k, 4).
         force: Force [N] that the controller asks for.
         speed: Speed of the ego [m/s].
@@ -111,7 +112,7 @@ def watch(
 
 @inner
 def spacing_of(reach: float, most: int) -> float:
-    """The distance [m] between ``most`` poses, or fewer, that go as far as ``reach`` [m]."""
+    """The spacing [m] of at most ``most`` poses that cover a distance of ``reach`` [m]."""
     return max(_FINEST, reach / (most - 2))
 
 
@@ -126,10 +127,10 @@ def fill_front_poses(
     spacing: float,
     poses: Array,
 ) -> int:
-    """Fill ``poses`` with x, y, cos, sin at front, front + spacing, ...; how many there are.
+    """Fill ``poses`` with x, y, cos, sin at front, front + spacing, ..., and return their number.
 
-    Where the path is straight, from the rear bumper to ``reach`` [m] ahead of the front, one pose
-    says everything.
+    One pose is enough if the path is straight from the rear bumper to ``reach`` [m] ahead of the
+    front.
     """
     straight = segment_at(stations, front - length) == segment_at(stations, front + reach)
     count = 1 if straight else min(2 + int(reach / spacing), poses.shape[0])

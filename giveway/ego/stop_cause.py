@@ -1,23 +1,23 @@
-"""The cause for which a stationary ego is waiting."""
+"""Finds why a stationary ego is waiting, for the column ``waits_for``."""
 
 from controller import Decision
 from giveway.ego.percept import Perceived
 
-_NEAR = 3.0  # distance [m] beyond the one kept, within which an obstacle is what it waits for
-_FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
+_NEAR = 3.0  # distance [m] beyond the kept one, within which an obstacle is the cause
+_FREE = ("clear", "drive on")  # reasons of a planning controller with nobody in its way
 
 
 def waits_for(
     front: float, kept: float, seen: Perceived, decision: Decision, eases_off: bool
 ) -> str:
-    """Return why a stationary ego is waiting; it is empty when the ego drives off.
+    """Return why a stationary ego is waiting, or an empty text if the ego drives off.
 
     Args:
         front: Station of its front bumper [m].
-        kept: Distance [m] that the bumper keeps to whatever is in front.
-        seen: What the ego reacts to.
+        kept: Distance [m] that the bumper keeps to an obstacle.
+        seen: Percept, rules and predictions that the ego reacts to.
         decision: Decision of its controller.
-        eases_off: Whether it brakes less than a step before.
+        eases_off: Whether the ego brakes less than a step before.
     """
     place, cause = min(
         (seen.pedestrian - front - kept, "person"),

@@ -1,4 +1,4 @@
-"""An ego's vehicle FMU: from the configuration to one that is ready to start."""
+"""Opens and checks an ego's vehicle FMU, from the configuration."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ from giveway.errors import VehicleError
 from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EGO_COLUMNS
 
-_CHECK_FORCE = 4000.0  # force [N] of the self-check; the force limit if that is lower
+_CHECK_FORCE = 4000.0  # largest force [N] of the self-check
 _SAME_STEP = 1e-6  # relative tolerance for two equal step sizes
 _OTHER_SIZE = 2.0  # ratio of masses from which the defaults for a car no longer fit
 _sound: set[tuple[str, str, float, float, float]] = (
@@ -73,9 +73,9 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
 def open_for(
     config: EgoRunConfig, time_step: float, stack: ExitStack
 ) -> tuple[Vehicle, dict[str, object]]:
-    """The vehicle of one ego, and its description for the manifest.
+    """Open the vehicle of one ego, and return it with its description for the manifest.
 
-    An FMU that is not ours is first driven for some seconds in full and in half steps.
+    An FMU that is not giveway's is first driven for some seconds, in full and in smaller steps.
 
     Args:
         config: Configuration of the ego.
@@ -123,11 +123,10 @@ def _require_sound(
     config: EgoRunConfig,
     time_step: float,
 ) -> None:
-    """Drive an FMU for some seconds in its full steps and in smaller ones, once per process.
+    """Drive an FMU for some seconds in full steps and in smaller ones, once per process.
 
-    It is always isolated: a crash here would cost the rows of the run that is to come.
-
-    One that fails whatever its step is left to the run, which keeps the rows up to then.
+    The FMU is always isolated, so that a crash does not end this process. An FMU that fails with
+    every step is left to the run, which keeps the rows up to the failure.
 
     Raises:
         FmuError: its steps do not converge, or it goes the wrong way.
@@ -147,7 +146,7 @@ def _require_sound(
             start_speed=speed,
         )
     except FmuStartCrashError:
-        raise  # there will be no rows; and a hang is not to be waited for twice
+        raise  # the run would have no rows, and would wait for a hang again
     except FmuError:
         return
     if result.problem:
@@ -164,8 +163,8 @@ def _require_sound(
 def model_margin(config: EgoRunConfig, time_step: float) -> float:
     """The distance [m] kept in addition to the safe distance, for the identified model's error.
 
-    Over a horizon longer than the fit's it grows with the square of the horizon, as does the
-    distance driven under an acceleration that is not accounted for.
+    If the horizon is longer than that of the fit, the distance grows with its square, as does the
+    distance driven under an unmodelled acceleration.
 
     Args:
         config: Configuration of the ego.
@@ -181,7 +180,7 @@ def model_margin(config: EgoRunConfig, time_step: float) -> float:
 
 
 def identified_reaction_time(config: EgoRunConfig) -> float:
-    """The dead time and the lag of the actuator [s], as the profile knows them.
+    """The dead time plus the lag [s] of the actuator from the profile; 0 without a model.
 
     Args:
         config: Configuration of the ego.
@@ -219,9 +218,9 @@ def model_remark(config: EgoRunConfig, time_step: float) -> str:
 
 
 def _other_size(config: EgoRunConfig) -> str:
-    """The flags for a vehicle of another size than that of the defaults; empty for a car.
+    """The advice on flags for a vehicle of another size than the default car; empty for a car.
 
-    Forces that move 1000 kg as they should hardly brake a truck.
+    Forces that suit a car of 1000 kg hardly brake a truck.
     """
     usual = RunConfig()
     ratio = config.vehicle.mass / usual.vehicle.mass

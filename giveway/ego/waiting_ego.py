@@ -1,4 +1,4 @@
-"""An ego before it departs: its vehicle FMU is loaded, its controller is set up."""
+"""An ego before it departs, with its vehicle FMU loaded and its controller set up."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from pedestrian_model import CrowdPredictor
 
 @dataclass
 class WaitingEgo:
-    """An ego that has not departed yet: its vehicle FMU is loaded, its controller is set up.
+    """An ego that has not departed yet, with its vehicle FMU loaded and its controller set up.
 
     Attributes:
         config: Configuration of the ego.
@@ -43,7 +43,7 @@ class WaitingEgo:
 
     @property
     def recorded(self) -> bool:
-        """Return whether it will drive as it did in a run that is over."""
+        """Return whether the ego repeats its recorded drive of an earlier run."""
         return isinstance(self.vehicle, RecordedVehicle)
 
     def start(self, speed: float) -> None:
@@ -64,15 +64,15 @@ class WaitingEgo:
         return [*self.vehicle.warnings, *own]
 
     def close(self) -> None:
-        """End its controller, if that is a process; the vehicle is closed by its stack."""
+        """End its controller if that is a process. The exit stack closes the vehicle."""
         if isinstance(self.controller, PluggedIn):
             self.controller.close()
 
     @property
     def clearance(self) -> float:
-        """The distance that the safety layer keeps to pedestrians' bodies [m].
+        """The distance [m] that the safety layer keeps to pedestrians' bodies.
 
-        The allowance for errors of tracked positions is left out: it differs by person.
+        It does not cover errors of tracked positions, which differ by person.
         """
         if self.safety is None:
             return 0.0

@@ -1,4 +1,4 @@
-"""A battery of made-up scenes that tells whether a sensor keeps to the rules; it needs no SUMO.
+"""Checks that a sensor keeps to the protocol, by made-up scenes that need no SUMO.
 
 A dozen people walk past a car that drives by a parked car and a wall.
 """
@@ -21,10 +21,10 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import Pose
 from pedestrian_model import Crowd
 
-_STEPS = 60  # observations in each scene
+_STEPS = 60  # number of observations in each scene
 _PEOPLE = 12
-_SLOW = 5e-3  # Time [s] that an observation may take: a tenth of the control step
-_SAME = 1e-9  # Rounding [m]
+_SLOW = 5e-3  # longest permitted time [s] of an observation: a tenth of the control step
+_SAME = 1e-9  # tolerance [m] of equal positions
 _TURN, _SHIFT = 0.9, np.array([120.0, -45.0])  # [rad], [m]
 _SHAPE = VehicleShape(4.5, 1.8)
 _PARKED = 8.0, 4.0, 0.0, 0.0, 2.25, 2.25, 1.8  # x, y [m], heading, speed, front, rear, width
@@ -55,7 +55,7 @@ class _Scene:
         self.ids = np.ascontiguousarray(3 + 2 * np.arange(_PEOPLE)[::order])
 
     def _placed(self, points: Array) -> Array:
-        """Points [m] of the scene where they lie."""
+        """The points [m] of the scene, turned and shifted."""
         return np.asarray(self._turned(points) + self._shift)
 
     def _turned(self, vectors: Array) -> Array:
@@ -124,7 +124,7 @@ def check_sensor(
 
 
 class _Copied:
-    """A sensor that is shown arrays of its own, which nobody overwrites."""
+    """A sensor that gets copies of all arrays, which are not overwritten later."""
 
     def __init__(self, sensor: object) -> None:
         self._observe = sensor.observe  # type: ignore[attr-defined]
@@ -146,7 +146,7 @@ class _Battery:
         self._make, self._setup = make, setup
 
     def fresh(self) -> PluggedInSensor:
-        """A sensor that has seen nothing."""
+        """A new sensor."""
         return PluggedInSensor("it", lambda: self._make(self._setup))
 
     def _watch(

@@ -1,9 +1,9 @@
 """The corridor about the ego's path: people and vehicles in front, now and in the future.
 
-The paper speaks of "the closest pedestrian in front" without defining it. Our reading (an option):
-pedestrians whose body centre is ahead of the front bumper and at most ``half_width`` from the ego's
-path, at that instant. A vehicle is in front if a part of its outline is. If nothing is in front, or
-only beyond the sight of 100 m along the path, the distance is infinite.
+The paper does not define "the closest pedestrian in front". Here a pedestrian is in front if, at
+that instant, the body centre is ahead of the front bumper and at most ``half_width`` (an option)
+from the ego's path. A vehicle is in front if a part of its outline is. If nothing is in front
+within the sight distance of 100 m along the path, the distance is infinite.
 """
 
 import numpy as np
@@ -19,13 +19,14 @@ class Corridor:
     """The corridor about a path; its arrays are allocated once and reused in every step.
 
     Args:
-        path: the ego's.
-        half_width: [m].
-        horizon: N [steps].
-        time_step: [s].
-        walking_speed_limit: [m/s] that no pedestrian exceeds.
+        path: Path of the ego.
+        half_width: Half width of the corridor [m].
+        horizon: Prediction horizon N [steps].
+        time_step: Control step [s].
+        walking_speed_limit: Highest speed [m/s] of pedestrians.
         body_length: Body length of the ego [m].
-        straight: steps for which vehicles beside the path are taken to go straight on; None: N.
+        straight: Number of steps for which vehicles beside the path are predicted to go straight
+            on, or None for N.
     """
 
     def __init__(
@@ -44,23 +45,27 @@ class Corridor:
         self.time_step = time_step
         self.body_length = body_length
         self._straight = horizon if straight is None else straight
-        self._reach = walking_speed_limit * horizon * time_step  # [m] walked within the horizon
+        self._reach = walking_speed_limit * horizon * time_step  # longest walk [m] in the horizon
         self._ahead = np.full(horizon, np.inf)
         self._vehicles_ahead = np.full(horizon, np.inf)
         self._empty = np.full(horizon, np.inf)
 
     @property
     def empty(self) -> Array:
-        """The answer (N,) of :meth:`closest_predicted` when no pedestrian is ever in front."""
+        """The result (N,) of :meth:`closest_predicted` if no pedestrian is in front: inf."""
         return self._empty
 
     def closest_now(self, positions: Array, front: float) -> tuple[float, bool]:
         """Station of the closest pedestrian in front [m], and whether a prediction is needed.
 
-        No prediction is needed if no pedestrian can get in front within the horizon: because all
-        are farther from the path than the half width plus the distance that can be walked, or (on
-        a straight path, where stations change no faster than pedestrians walk) because they are
-        behind by more than that.
+        No prediction is needed if no pedestrian can get in front within the horizon. This is the
+        case if all are farther from the path than the half width plus the longest walk. On a
+        straight path, where stations change no faster than pedestrians walk, it is also the case
+        if they are that far behind the front.
+
+        Args:
+            positions: Positions (n, 2) [m] of pedestrians.
+            front: Station of the front bumper [m].
         """
         path = self.path
         closest, reachable = closest_in_sight(
@@ -69,12 +74,12 @@ class Corridor:
         return closest, reachable
 
     def closest_predicted(self, positions: Array, front: float, speed: float) -> Array:
-        """(N,) stations [m] of the closest predicted pedestrian in front at steps 1 ... N.
+        """The stations (N,) [m] of the closest predicted pedestrian in front at steps 1 ... N.
 
         Args:
-            positions: (N, n, 2) [m] predicted at steps 1 ... N.
-            front: the front bumper's station now [m].
-            speed: the ego's speed [m/s], held over the horizon as in the prediction.
+            positions: Predicted positions (N, n, 2) [m] at steps 1 ... N.
+            front: Station of the front bumper now [m].
+            speed: Speed of the ego [m/s], constant over the horizon as in the prediction.
         """
         path = self.path
         closest_ahead(
@@ -100,11 +105,11 @@ class Corridor:
         """The closest vehicle in front now, and the stations (N,) [m] of the closest at 1 ... N.
 
         Args:
-            poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
-            own: the ego's own row.
-            front: the front bumper's station now [m].
-            speed: the ego's speed [m/s], held over the horizon.
-            beside: Marks of those of the last rows whose lanes lead them past the path; or none.
+            poses: Poses (N, m, 7) of all vehicles at steps 0 ... N-1.
+            own: Row of the ego.
+            front: Station of the front bumper now [m].
+            speed: Speed of the ego [m/s], constant over the horizon.
+            beside: Marks (k,) of those of the last k vehicles whose lanes lead them past the path.
         """
         path, ahead = self.path, self._vehicles_ahead
         station, along = vehicles_in_front(
@@ -122,10 +127,10 @@ class Corridor:
         """Write the ego's poses at steps 0 ... N-1 under constant speed into ``poses[:, row]``.
 
         Args:
-            poses: (N, m, 7) vehicles of the prediction.
-            row: the ego's.
-            front: the front bumper's station now [m].
-            speed: the ego's speed [m/s].
+            poses: Poses (N, m, 7) of the predicted vehicles, changed.
+            row: Row of the ego.
+            front: Station of the front bumper now [m].
+            speed: Speed of the ego [m/s].
         """
         path = self.path
         fill_steady_poses(
@@ -192,15 +197,15 @@ def fill_poses(
     """Fill ``poses[:, row]`` with a body's centre, heading and speed at steps 0 ... N-1.
 
     Args:
-        vertices: Vertices of the path, as ``stations`` and ``headings``.
-        stations: see ``vertices``.
-        headings: see ``vertices``.
-        front: the front bumper's station now [m].
-        distance: (at least N,) [m] driven until each step.
-        speeds: (at least N,) [m/s] at each step.
+        vertices: Vertices [m] of the path.
+        stations: Stations [m] of the vertices.
+        headings: Headings [rad] of the path's segments.
+        front: Station of the front bumper now [m].
+        distance: Distances (N or more,) [m] driven until each step.
+        speeds: Speeds (N or more,) [m/s] at each step.
         length: Length of the body [m].
         row: Row to be filled.
-        poses: (N, m, 7).
+        poses: Poses (N, m, 7) of the vehicles.
     """
     for i in range(poses.shape[0]):
         station = front + distance[i]
@@ -218,7 +223,10 @@ def closest_in_front(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Station of the closest pedestrian in front; can any get there by walking ``reach``?"""
+    """Station [m] of the closest pedestrian in front, and whether any gets there by ``reach`` [m].
+
+    ``reach`` is the distance that a pedestrian can walk.
+    """
     if first == last and reach == 0.0:
         return closest_on_segment(vertices, stations, first, positions, front, half_width), False
     closest = np.inf
@@ -245,7 +253,7 @@ def closest_in_front(
 def closest_on_segment(
     vertices: Array, stations: Array, i: int, positions: Array, front: float, half_width: float
 ) -> float:
-    """The station of :func:`closest_in_front` where only segment i of the path counts."""
+    """The station [m] that :func:`closest_in_front` finds on segment i of the path alone."""
     closest, last = np.inf, len(vertices) - 2
     x_0, y_0 = vertices[i, 0], vertices[i, 1]
     length = stations[i + 1] - stations[i]
@@ -273,7 +281,7 @@ def closest_in_sight(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Search as :func:`closest_in_front` does, on the path within sight."""
+    """Search as :func:`closest_in_front` does, on the part of the path in sight."""
     first, last = window(stations, front, max(BEHIND, reach))
     return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
 

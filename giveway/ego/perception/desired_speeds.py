@@ -1,8 +1,8 @@
-"""The speeds at which people want to walk, learnt from their speeds as seen.
+"""Estimates the desired speeds of people from their perceived speeds.
 
-Others and the ego slow people down, hardly anything makes them faster than they like to be: the
-estimate rises to a faster pace soon, sinks to a slower one with patience, and whoever stands, or
-nearly does, says nothing.
+Other people and the ego slow people down, but hardly anything makes them walk faster than they want
+to. The estimate therefore rises quickly to a higher speed and falls slowly to a lower one. People
+who stand or nearly stand do not change it.
 """
 
 import math
@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
-_FASTER, _SLOWER = 0.25, 5.0  # [s] in which 63 % of a difference is learnt
-_WALKS = 0.5  # [m/s] from which on a pace tells what is wanted
+_FASTER, _SLOWER = 0.25, 5.0  # time constants [s] of the estimate's rise and fall
+_WALKS = 0.5  # least speed [m/s] that lowers the estimate
 
 
 class Pace:
-    """Learns the desired speed of people whom one ego sees, each by a number the person keeps.
+    """Estimates the desired speed of each person that one ego perceives, by person id.
 
     Args:
-        typical: [m/s] what is taken to be wanted to begin with.
-        time_step: [s] between two looks.
+        typical: Desired speed [m/s] that is assumed at first.
+        time_step: Time [s] between two looks.
     """
 
     def __init__(self, typical: float, time_step: float) -> None:
@@ -31,11 +31,11 @@ class Pace:
         self._known = np.zeros(0)
 
     def learn(self, crowd: Crowd, numbers: NDArray[np.int64]) -> Array:
-        """(n,) [m/s] the desired speeds, by now.
+        """Update and return the estimated desired speeds (n,) [m/s].
 
         Args:
-            crowd: n people as they are seen; not changed.
-            numbers: (n,) who they are.
+            crowd: Perceived people (n,); not changed.
+            numbers: Person ids (n,).
         """
         most = int(numbers.max(initial=-1)) + 1
         if most > len(self._known):

@@ -1,8 +1,8 @@
-"""The kerbs beside an ego's path, and who is on the sidewalk behind them.
+"""The kerbs beside an ego's path, and the people on the sidewalks behind them.
 
-The safety layer takes people on a sidewalk to set out for the road less suddenly than those who
-walk on it or on open ground (docs/safety.md). Beside a crossing nobody counts as being on a
-sidewalk, unless their light is red: there people are about to step on the road.
+The safety layer assumes that people on a sidewalk start towards the road less suddenly than people
+on the road or on open ground (docs/safety.md). People beside a crossing are about to step on the
+road, so they do not count as being on a sidewalk, unless their light is red.
 """
 
 import math
@@ -21,31 +21,32 @@ from giveway.sumo.signal_plans import ChangeOf, SignalChange, untold
 from pedestrian_model import Crowd
 
 NO_KERBS: Array = np.zeros((0, 3))
-"""Nobody is on a sidewalk."""
+"""The kerbs (0, 3) of people none of whom is on a sidewalk."""
 
-_NEAR = 10.0  # [m] from the path, to which kerbs are kept
-_PIECE = 2.0  # [m] of a kerb, at most
-_STRETCH = 20.0  # [m] of the path, for which kerbs are looked for at a time
-_FACING = 0.5  # cosine: the road is less than 60 degrees from the right angle to its kerb
-_BESIDE = 0.25  # [m] from the ego's side nobody is on a sidewalk, whatever the network says
-_MOUTH = 1.5  # [m] beside and before a crossing people are about to enter it
-_ON_LINE = 0.05  # [m]
-_SETS_OUT = 0.6  # [m/s^2] by which kerbs are compared: a_k of docs/safety.md
-_DEEPEST = _NEAR  # [m] from the kerb: so wide are sidewalks at most
-_LOOK, _LOOKS = 0.5, 3  # [s] and how many: where people are by then is looked at
-_SOON = 3.0  # [s] before it turns green, people are about to use a crossing
-_BEHIND, _AHEAD = 10.0, 60.0  # [m] of the path from the front bumper, beside which people matter
+_NEAR = 10.0  # distance [m] from the path, within which kerbs matter
+_PIECE = 2.0  # largest length [m] of a piece of kerb
+_STRETCH = 20.0  # length [m] of the stretches of path that are searched for kerbs
+_FACING = 0.5  # least cosine of the angle between the direction to the path and a kerb's normal
+_BESIDE = 0.25  # distance [m] from the ego's side, within which nobody counts as on a sidewalk
+_MOUTH = 1.5  # distance [m] to a crossing, within which people are about to enter it
+_ON_LINE = 0.05  # tolerance [m] of a point on a kerb's line
+_SETS_OUT = 0.6  # acceleration [m/s^2] by which kerbs are compared: a_k of docs/safety.md
+_DEEPEST = _NEAR  # largest width [m] of a sidewalk
+_LOOK, _LOOKS = 0.5, 3  # spacing [s] and number of the instants ahead that are examined
+_SOON = 3.0  # time [s] before green, within which people are about to use a crossing
+_BEHIND, _AHEAD = 10.0, 60.0  # stretch [m] behind and ahead of the bumper on which people matter
 
 
 class Kerbs:
     """The kerbs beside one ego's path.
 
     Args:
-        path: the ego's.
+        path: Path of the ego.
         width: Width of its body [m].
-        sidewalks: Sidewalks of the network, those that reach into some place.
+        sidewalks: Function that returns the sidewalks of the network that reach into an area.
         crossings: Crossings of the network.
-        change_of: the next change of a traffic light by its id; None: nobody can tell.
+        change_of: Function that returns the next change of a traffic light by its id, or None if
+            it is unknown.
 
     Attributes:
         systems: SUMO's ids of the traffic lights that govern the crossings.
@@ -86,7 +87,11 @@ class Kerbs:
         return bool(self._kerb.any())
 
     def update(self, states: Mapping[str, str]) -> None:
-        """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
+        """Update the states of the traffic lights.
+
+        Args:
+            states: State of each signal system by its id, one of SUMO's letters per movement.
+        """
         if self.systems:
             changes = {system: self._change_of(system) for system in self.systems}
             closed = np.array(
@@ -96,16 +101,16 @@ class Kerbs:
             self._opening = self._mouths[closed <= _SOON + _LOOKS * _LOOK]
 
     def of(self, position: Array, velocity: Array, front: float) -> Array:
-        """(n, 3) unit vectors to the kerbs of people on sidewalks, and how far [m]; 0 for others.
+        """The kerbs (n, 3) of people: unit vector to the kerb and distance [m]; 0 off sidewalks.
 
-        Where a sidewalk becomes narrower the nearest kerb may begin ahead of somebody who walks
-        along it. If all of the kerb near them is beyond its line, that line counts instead of its
-        beginning, should they take longer to get there.
+        Where a sidewalk becomes narrower, the nearest kerb may begin ahead of a person who walks
+        along it. The line of this kerb then counts instead of its beginning, if all kerbs near the
+        person are beyond the line and the person needs longer to reach it.
 
         Args:
-            position: (n, 2) [m] of the people.
-            velocity: (n, 2) [m/s] theirs.
-            front: station of the ego's front bumper [m].
+            position: Positions (n, 2) [m] of the people.
+            velocity: Velocities (n, 2) [m/s] of the people.
+            front: Station of the ego's front bumper [m].
         """
         found = np.zeros((len(position), 3))
         first, last = np.searchsorted(self._stations, (front - _BEHIND, front + _AHEAD))
@@ -114,17 +119,16 @@ class Kerbs:
         return found
 
     def kept(self, people: Crowd, kerbs: Array, whom: NDArray[np.bool_] | None) -> Array:
-        """Return ``kerbs`` (n, 3) with 0 for those who will soon be about to use a crossing.
+        """Return ``kerbs`` (n, 3) with 0 for people who will soon be about to use a crossing.
 
-        They get beside, before or on it, or are there when it is about to be open.
-
-        Plans take them for free to step on the road at once: else who gets there a few metres
-        before the ego would make it brake hard.
+        These people get close to a crossing, or are close to one that is about to open. Plans
+        assume that they may step on the road at once. Otherwise a person who gets there a few
+        metres ahead of the ego would make it brake hard.
 
         Args:
-            people: People as they are seen; where they want to go next counts, and their velocity.
-            kerbs: (m, 3) from :meth:`of`.
-            whom: (m,) of these are the people; None: all.
+            people: People (n,) as the ego perceives them. Their routes and velocities count.
+            kerbs: Kerbs (m, 3) from :meth:`of`.
+            whom: Marks (m,) of the rows of ``kerbs`` that belong to the people, or None for all.
         """
         kept = kerbs.copy() if whom is None else kerbs[whom]
         way = people.waypoints, people.waypoint_start, people.waypoint_index
@@ -134,7 +138,12 @@ class Kerbs:
 
 
 def kerb_lines(position: Array, kerbs: Array) -> Array:
-    """(n, 3) a x + b y = c [m] of people's kerbs, if these were straight, from :meth:`Kerbs.of`."""
+    """The lines (n, 3), a x + b y = c [m], of people's kerbs as straight lines.
+
+    Args:
+        position: Positions (n, 2) [m] of the people.
+        kerbs: Kerbs (n, 3) of the people, from :meth:`Kerbs.of`.
+    """
     if not len(kerbs):
         return NO_KERBS
     lines = kerbs.copy()
@@ -153,7 +162,7 @@ def _rings(area: shapely.Geometry) -> list[shapely.LinearRing]:
 
 
 def _pieces(ring: Array) -> Array:
-    """(k, 4) x0, y0, x1, y1 [m] of a ring's segments, each at most ``_PIECE`` long."""
+    """The segments (k, 4) of a ring, x0, y0, x1, y1 [m], each at most ``_PIECE`` long."""
     ways = np.diff(ring, axis=0)
     counts = np.maximum(1, np.ceil(np.hypot(ways[:, 0], ways[:, 1]) / _PIECE)).astype(np.int64)
     cut = [
@@ -163,7 +172,10 @@ def _pieces(ring: Array) -> Array:
 
 
 def _passed(line: shapely.LineString, edges: Array) -> tuple[NDArray[np.int64], Array]:
-    """Return the edges that a path passes, and the stations [m]; twice if it passes again."""
+    """Return the indices of the edges that a path passes, and the stations [m] where it does.
+
+    An edge that the path passes twice is listed twice.
+    """
     lines = shapely.STRtree(shapely.linestrings(edges.reshape(-1, 2, 2)))
     middles = shapely.points((edges[:, :2] + edges[:, 2:]) / 2.0)
     which, where = [np.empty(0, dtype=np.int64)], [np.empty(0)]
@@ -186,7 +198,10 @@ def _near(crossings: Sequence[Crossing], line: shapely.LineString) -> list[Cross
 
 
 def _mouths(crossings: Sequence[Crossing]) -> Array:
-    """Return for each crossing a kerb, the unit vector over it, length, half width [m], (k, 6)."""
+    """Return the crossings as rows (k, 6): kerb, unit vector to the other kerb, length, half width.
+
+    Kerb, length and half width are in metres.
+    """
     rows = []
     for crossing in crossings:
         kerb, other = crossing.ends
@@ -198,12 +213,12 @@ def _mouths(crossings: Sequence[Crossing]) -> Array:
 def _closed_for(
     crossing: Crossing, states: Mapping[str, str], change: SignalChange | None
 ) -> float:
-    """Return how long [s] people will have a red light at a crossing, or 0."""
+    """Return the time [s] for which people will have red at a crossing; 0 if it is open."""
     state = states.get(crossing.system, "")
     if not state or is_open(state, crossing.link, zebra=crossing.zebra):
         return 0.0
     if change is None or not is_open(change.state, crossing.link, zebra=crossing.zebra):
-        return math.inf  # as far as anybody knows
+        return math.inf  # no change to green is known
     return change.time
 
 
@@ -216,15 +231,15 @@ def fill_kerbs(
     mouths: Array,
     found: Array,
 ) -> None:
-    """Fill ``found`` (n, 3) as in :meth:`Kerbs.of`.
+    """Fill ``found`` as :meth:`Kerbs.of` returns it.
 
     Args:
-        position: (n, 2) [m].
-        velocity: (n, 2) [m/s].
-        edges: (k, 4) [m] of sidewalks, which are on the left of each.
-        is_kerb: (k,) whether the road is on the right.
-        mouths: (c, 6) see :func:`_mouths`.
-        found: (n, 3).
+        position: Positions (n, 2) [m] of the people.
+        velocity: Velocities (n, 2) [m/s] of the people.
+        edges: Edges (k, 4) [m] of sidewalks, which are on the left of each edge.
+        is_kerb: Whether the road is on the right of each edge, (k,).
+        mouths: Crossings (c, 6), as :func:`_mouths` returns them.
+        found: Kerbs (n, 3), filled.
     """
     for p in range(position.shape[0]):
         x, y = position[p, 0], position[p, 1]
@@ -256,7 +271,7 @@ def fill_kerbs(
 def heed_line(
     i: int, edges: Array, is_kerb: NDArray[np.bool_], here: Array, velocity: Array, kerb: Array
 ) -> None:
-    """Let the line of edge ``i`` be the ``kerb`` (3,), see :meth:`Kerbs.of`, or leave it."""
+    """Replace ``kerb`` (3,) by the line of edge ``i`` if that line counts, see :meth:`Kerbs.of`."""
     e_x, e_y = edges[i, 2] - edges[i, 0], edges[i, 3] - edges[i, 1]
     length = np.sqrt(e_x * e_x + e_y * e_y)
     n_x, n_y = e_y / length, -e_x / length
@@ -285,9 +300,17 @@ def drop_kerbs(
     mouths: Array,
     kerbs: Array,
 ) -> None:
-    """Set to 0 the ``kerbs`` (n, 3) as in :meth:`Kerbs.kept`.
+    """Set rows of ``kerbs`` to 0 as :meth:`Kerbs.kept` does.
 
-    The other arrays are those of a crowd, and the mouths see :func:`_mouths`.
+    Args:
+        position: Positions (n, 2) [m] of the people.
+        velocity: Velocities (n, 2) [m/s] of the people.
+        desired_speed: Desired speeds (n,) [m/s] of the people.
+        waypoints: Way-points (w, 2) [m] of all people, one after the other.
+        start: Index (n + 1,) of each person's first way-point.
+        index: Number (n,) of each person's next way-point.
+        mouths: Crossings (c, 6), as :func:`_mouths` returns them.
+        kerbs: Kerbs (n, 3), changed.
     """
     for p in range(len(kerbs)):
         if kerbs[p, 2] <= 0.0:
@@ -299,7 +322,7 @@ def drop_kerbs(
             continue
         for look in range(1, _LOOKS + 1):
             left = desired_speed[p] * _LOOK
-            while left > 0.0:  # along the way, from one way-point to the next
+            while left > 0.0:  # along the route, from one way-point to the next
                 to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
                 far = np.sqrt(to_x * to_x + to_y * to_y)
                 share = 1.0 if far <= left else left / far
@@ -318,14 +341,19 @@ def drop_kerbs(
 
 @inner
 def arrival(depth: float, pace: float) -> float:
-    """The time [s] in which somebody who sets out, and nears a kerb at ``pace`` [m/s], is there."""
+    """The time [s] after which a person who starts towards a kerb reaches it.
+
+    Args:
+        depth: Distance [m] to the kerb.
+        pace: Speed [m/s] towards the kerb.
+    """
     faster = np.sqrt(max(0.0, pace * pace + 2.0 * _SETS_OUT * depth))
     return float((faster - pace) / _SETS_OUT)
 
 
 @inner
 def in_mouth(x: float, y: float, mouths: Array) -> bool:
-    """Return whether somebody is beside, before or on a crossing."""
+    """Return whether the point (x, y) [m] is beside, before or on a crossing."""
     for i in range(mouths.shape[0]):
         d_x, d_y = x - mouths[i, 0], y - mouths[i, 1]
         u = d_x * mouths[i, 2] + d_y * mouths[i, 3]

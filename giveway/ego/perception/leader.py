@@ -1,6 +1,6 @@
-"""The closest vehicle in front.
+"""The closest vehicle in front of the ego.
 
-What is in front defines :mod:`giveway.ego.perception.corridor`.
+:mod:`giveway.ego.perception.corridor` defines what is in front.
 """
 
 from math import inf
@@ -13,17 +13,17 @@ from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import body_pose, project, segment_at
 
-_ONCOMING = -0.8  # cosine of the angle to the ego's path there
-_PARALLEL = 0.95  # likewise: 18 degrees, as a body in a bend lies askew
-_OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
-_FINEST_OUTLINE = 0.1  # [m] and at least
+_ONCOMING = -0.8  # cosine of the angle to the ego's path, below which a vehicle is oncoming
+_PARALLEL = 0.95  # cosine of this angle (18 degrees), above which a vehicle drives the same way
+_OUTLINE = 1.0  # largest spacing [m] of the examined points of a vehicle's outline
+_FINEST_OUTLINE = 0.1  # least spacing [m] of these points
 
 
 class Leader(NamedTuple):
     """The closest vehicle in front."""
 
-    station: float  # [m] of its closest point; inf: none
-    speed: float  # [m/s] along the ego's path, at least 0
+    station: float  # station [m] of its closest point; inf without a vehicle
+    speed: float  # speed [m/s] along the ego's path, at least 0
 
 
 NO_LEADER = Leader(inf, 0.0)
@@ -40,12 +40,12 @@ def outline_in_front(
     front: float,
     half_width: float,
 ) -> float:
-    """Station of the closest point of a vehicle's outline in front; inf: none is."""
+    """Station [m] of the closest point of a vehicle's outline in front; inf if none is."""
     cos, sin = np.cos(vehicle[2]), np.sin(vehicle[2])
     rear, length, half = -vehicle[5], vehicle[4] + vehicle[5], vehicle[6] / 2.0
     apart = max(
         _FINEST_OUTLINE, min(_OUTLINE, half_width)
-    )  # so that no vehicle slips through the corridor
+    )  # no larger than the corridor, so that no vehicle is missed
     along = max(1, int(np.ceil(length / apart)))
     closest = np.inf
     for i in range(along + 1):
@@ -72,13 +72,12 @@ def vehicles_in_front(
 ) -> tuple[float, float]:
     """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
 
-    A vehicle that is in the corridor now is predicted to follow the path at its present speed, any
-    other to go straight on for ``straight`` steps. So one ahead in a bend stays ahead, and one
-    from the side arrives. Where N is longer than these steps, vehicles along the path beside it,
-    the same way or oncoming, are predicted to keep to their own lane, and what comes from the side
-    beyond the path's end is no matter. Whoever is ``beside`` (of the last vehicles) is predicted to
-    keep to the lane that leads it past the path. A vehicle in the corridor behind the front bumper
-    stays behind: it does not drive through the ego.
+    A vehicle in the corridor is predicted to follow the path at its present speed. So a vehicle
+    ahead in a bend stays ahead. Any other vehicle is predicted to go straight on for ``straight``
+    steps. So a vehicle from the side arrives. If N is larger than ``straight``, vehicles beside the
+    path that drive the same way or oncoming are predicted to keep their lane, and vehicles from the
+    side beyond the path's end are ignored. Vehicles marked in ``beside`` keep the lane that leads
+    them past the path. A vehicle in the corridor behind the front bumper stays behind.
 
     Args:
         path: Vertices, stations and headings of the ego's path.
@@ -86,8 +85,8 @@ def vehicles_in_front(
         own: Row of the ego.
         motion: Station of its front bumper [m], its travel in a step [m], and the step [s].
         corridor: Half of its width [m], and the steps ``straight``.
-        beside: Marks of the last vehicles.
-        ahead: Stations [m] of the closest vehicle at steps 1 ... N, filled.
+        beside: Marks (k,) of those of the last k vehicles that pass beside the path.
+        ahead: Stations (N,) [m] of the closest vehicle at steps 1 ... N, filled.
     """
     (vertices, stations, headings), (front, advance, time_step) = path, motion
     half_width, straight = corridor
@@ -120,7 +119,7 @@ def vehicles_in_front(
             i = segment_at(stations, nearest_to_it)
             aligned = np.cos(vehicle[2] - headings[i])
             if aligned < _ONCOMING or aligned > _PARALLEL:
-                continue  # it is on a lane beside ours, which bends as ours does
+                continue  # it keeps a lane beside the ego's, which bends as the ego's does
         reach = min(N, straight) * (advance + abs(vehicle[3]) * time_step) + size + half_width
         if away > reach:
             continue  # it cannot meet the ego within the horizon

@@ -1,4 +1,4 @@
-"""An ego's path as its controller sees it: from the front bumper on, computed when asked for."""
+"""The path ahead of an ego's front bumper, as its controller may ask for it."""
 
 from functools import cached_property
 
@@ -8,17 +8,17 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 
 HALF = 2.5
-"""[m] before and behind a place, whose mean headings give the curvature there."""
+"""Half of the length [m] of path over which a curvature is averaged."""
 
 
 class PathView:
-    """A :class:`controller.PathAhead`.
+    """The path ahead of the ego, a :class:`controller.PathAhead`.
 
     Args:
-        path: the ego's.
+        path: Path of the ego.
 
     Attributes:
-        station: Station of the front bumper [m]; the ego keeps it up to date.
+        station: Station of the front bumper [m], which the ego updates.
     """
 
     def __init__(self, path: EgoPath) -> None:
@@ -27,9 +27,9 @@ class PathView:
 
     @cached_property
     def _turned(self) -> tuple[Array, Array]:
-        """Stations [m], and the heading's integral up to there [rad.m]."""
+        """Stations [m], and the integral of the heading up to each [rad.m]."""
         headings = np.unwrap(self._path.headings)
-        beyond = 3.0 * HALF  # it goes on straight
+        beyond = 3.0 * HALF  # length of the straight continuations
         at = np.concatenate([[-beyond], self._path.stations, [self._path.length + beyond]])
         steps = np.diff(at) * np.concatenate([headings[:1], headings, headings[-1:]])
         return at, np.concatenate([[0.0], np.cumsum(steps)])
@@ -39,7 +39,10 @@ class PathView:
         return max(0.0, self._path.length - self.station)
 
     def poses(self, distances: Array) -> Array:
-        """(k, 3) x, y [m] and heading [rad] at ``distances`` (k,) [m] ahead; straight beyond it."""
+        """The poses (k, 3), x, y [m] and heading [rad], at ``distances`` (k,) [m] ahead.
+
+        The path goes on straight beyond its end.
+        """
         path, at = self._path, self.station + distances
         segment = np.searchsorted(path.stations[1:-1], at, side="right")
         along, heading = at - path.stations[segment], path.headings[segment]
@@ -48,10 +51,10 @@ class PathView:
         return np.column_stack([x, y, heading])
 
     def curvature(self, distances: Array) -> Array:
-        """Return the curvature at ``distances`` (k,) [m] ahead, the mean over 5 m, (k,) [1/m].
+        """Return the mean curvatures (k,) [1/m] over 5 m at ``distances`` (k,) [m] ahead.
 
-        A polyline turns in its corners only: what counts is how the mean headings of the 2.5 m
-        before and behind a place differ.
+        A polyline turns in its corners only. The mean headings of the 2.5 m before and behind a
+        point are therefore compared.
         """
         at = np.clip(self.station + distances, -HALF, self._path.length + HALF)
         before, here, behind = (

@@ -1,4 +1,4 @@
-"""Somebody else's sensor: made from the configuration, shown copies, its answers checked."""
+"""The wrapper of a sensor of another package: it shows copies of the truth and checks answers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pedestrian_model import Crowd
 
 
 def sensor_of(config: EgoRunConfig, time_step: float) -> PluggedInSensor | None:
-    """The sensor of one ego by its configured name; None for giveway's own.
+    """The sensor of another package for one ego, or None if giveway's own is configured.
 
     Args:
         config: Configuration of the ego.
@@ -61,9 +61,9 @@ def maker(config: EgoRunConfig) -> Callable[[SensorSetup], object]:
 
 
 class PluggedInSensor:
-    """A sensor of another package as the run asks any sensor.
+    """A sensor of another package, which the run asks like giveway's own.
 
-    It is shown copies, which it may overwrite. What it answers is checked before anything uses it.
+    The sensor gets copies, which it may overwrite. Its answers are checked before they are used.
 
     Args:
         name: Name of the sensor and of its ego, for messages.
@@ -83,14 +83,14 @@ class PluggedInSensor:
             raise self._unusable(sensor, "an object with a method observe", "made")
         self._sensor = sensor
         self._room: Crowd | None = None  # memory for the copy of the people
-        self._known = np.zeros(0, dtype=np.bool_)  # by person id: it has been shown
+        self._known = np.zeros(0, dtype=np.bool_)  # by person id: whether the sensor was shown it
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         """Return the checked percept of the sensor.
 
         Args:
             truth: World as it is; the sensor is shown a copy.
-            person_ids: Number of each pedestrian in ``truth.people``, (n,).
+            person_ids: Id of each pedestrian in ``truth.people``, (n,).
             ego: State of the ego.
 
         Raises:
@@ -111,7 +111,7 @@ class PluggedInSensor:
         return self._checked(answer)
 
     def _checked(self, answer: Any) -> Percept:
-        """The answer, if everything in it can be used."""
+        """Return the answer if all of it can be used, or raise a `SensorError`."""
         if not (isinstance(answer, Percept) and isinstance(answer.people, Crowd)):
             raise self._unusable(answer, "a Percept of a Crowd")
         people, ids, n = answer.people, answer.person_ids, len(answer.people)

@@ -20,13 +20,13 @@ Ids = NDArray[np.int64]
 
 
 class Percept(NamedTuple):
-    """The pedestrians that an ego perceives; the rows are its own, not those of the truth.
+    """The pedestrians that an ego perceives. Its rows differ from those of the truth.
 
     Attributes:
-        people: Perceived pedestrians, n of them: where they are expected to be now.
-        person_ids: Number of each perceived person, (n,); a person keeps it during the run.
-        age: Time [s] since each was last seen, (n,); None if all are seen at this instant.
-        position_bound: Largest error [m] of each position, (n,); None if the sensor claims none.
+        people: Perceived pedestrians (n,), at the positions where they are expected to be now.
+        person_ids: Id (n,) of each perceived person, which the person keeps during the run.
+        age: Time (n,) [s] since each person was last seen, or None if all are seen now.
+        position_bound: Largest error (n,) [m] of each position, or None if the sensor claims none.
     """
 
     people: Crowd
@@ -37,7 +37,7 @@ class Percept(NamedTuple):
 
 @dataclass(slots=True)
 class OwnState:
-    """The ego's own state; one object per ego is refilled in place.
+    """The ego's own state: one object per ego, refilled in place.
 
     Attributes:
         pose: Centre of the front bumper [m] and heading of the body [rad].
@@ -67,16 +67,16 @@ class SensorSetup:
     ego_id: str
 
     def random(self) -> np.random.Generator:
-        """A generator of random numbers that only this ego's sensor draws from."""
+        """Return a generator of random numbers for this ego's sensor alone."""
         return np.random.default_rng((self.seed, _STREAM, *self.ego_id.encode()))
 
 
-_STREAM = 0x5E25  # tells a sensor's draws from others of the same seed
+_STREAM = 0x5E25  # key of the random stream of sensors, which differs from all others
 
 
 @runtime_checkable
 class Sensor(Protocol):
-    """Looks at the truth and tells what an ego perceives of it.
+    """A sensor: it looks at the truth and returns what an ego perceives of it.
 
     A person may be missing from an answer, appear late, vanish and come back.
     """
@@ -86,7 +86,7 @@ class Sensor(Protocol):
 
         Args:
             truth: World as it is.
-            person_ids: Number of each pedestrian in ``truth.people``, (n,).
+            person_ids: Id of each pedestrian in ``truth.people``, (n,).
             ego: State of the ego that carries the sensor.
         """
         ...
@@ -96,7 +96,7 @@ class Refinement(Protocol):
     """A member of the chain behind a sensor: noise, tracker, desired speeds, goals."""
 
     def refine(self, percept: Percept) -> Percept:
-        """The percept after this member of the chain; the given arrays are not written."""
+        """The percept after this member of the chain. The given arrays are not changed."""
         ...
 
 
@@ -113,7 +113,7 @@ class OwnArrays:
         self._copy: Crowd | None = None
 
     def of(self, people: Crowd) -> Crowd:
-        """The copy of these people; the same object as before if they are the same object."""
+        """The copy of these people; the same copy again for the same object."""
         if self._copy is None or people is not self._source:
             own = {name: getattr(people, name).copy() for name in self._names}
             self._source, self._copy = people, replace(people, **own)

@@ -1,4 +1,4 @@
-"""Members of the chain behind a sensor that are stated in a few lines: noise, speeds, goals."""
+"""The short members of the chain behind a sensor: noise, desired speeds, goals."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -16,10 +16,10 @@ _STANDS = 0.1  # Speed [m/s] below which a person has no heading and is expected
 
 
 class PositionNoise:
-    """Moves each perceived position by noise that is drawn anew at each instant.
+    """Adds noise to each perceived position, drawn anew at each instant.
 
     Args:
-        deviation: Standard deviation on each axis [m], cut off at twice that.
+        deviation: Standard deviation [m] on each axis. Noise is cut off at twice this value.
         seed: Seed of the draws.
     """
 
@@ -33,7 +33,7 @@ class PositionNoise:
         return np.random.default_rng(self._seed)
 
     def refine(self, percept: Percept) -> Percept:
-        """The percept with noise on its positions; a bound that the sensor claims grows by it."""
+        """The percept with noise on its positions. Bounds that the sensor claims grow by it."""
         people = percept.people
         if not len(people):
             return percept
@@ -46,11 +46,11 @@ class PositionNoise:
 
 
 class DesiredSpeeds:
-    """Replaces desired speeds, which no sensor sees, by a typical or by a learnt one.
+    """Replaces desired speeds, which no sensor sees, by a typical or an estimated one.
 
     Args:
-        typical: Desired speed [m/s] that is expected of a person who is new.
-        pace: Estimator that learns from walking speeds; None if everybody stays typical.
+        typical: Desired speed [m/s] that is assumed of a new person.
+        pace: Estimator of desired speeds, or None to keep the typical one.
     """
 
     def __init__(self, typical: float, pace: Pace | None) -> None:
@@ -70,7 +70,7 @@ class DesiredSpeeds:
 
 
 class HeadingGoals:
-    """Replaces the ways of all people by straight ones along their present headings."""
+    """Replaces the routes of all people by straight ones along their present headings."""
 
     def refine(self, percept: Percept) -> Percept:
         """The percept in which everybody walks straight on and standing people stay."""
@@ -79,7 +79,7 @@ class HeadingGoals:
 
 
 def _walking_on(crowd: Crowd) -> Crowd:
-    """The crowd with straight ways; nothing else differs."""
+    """The crowd with straight routes. Nothing else differs."""
     n = len(crowd)
     speed = np.hypot(crowd.velocity[:, 0], crowd.velocity[:, 1])
     reach = np.where(speed > _STANDS, _FAR / np.maximum(speed, _STANDS), 0.0)

@@ -1,7 +1,7 @@
 """The perception of one ego: its sensor, and the chain of refinements behind it.
 
-Prediction, rules, controllers and the safety layer work on the percept that leaves the chain;
-tables and metrics work on the truth.
+Prediction, rules, controllers and the safety layer use the percept that leaves the chain. Tables
+and metrics use the truth.
 """
 
 from giveway.config import EgoRunConfig
@@ -13,27 +13,27 @@ from giveway.ego.perception.refinements import DesiredSpeeds, HeadingGoals, Posi
 from giveway.ego.perception.tracking import Tracker
 from giveway.ego.perception.truth import Truth
 
-_STREAM = 0x5EE  # tells these draws from others of the same seed
+_STREAM = 0x5EE  # key of the random stream of position noise, which differs from all others
 
 
 class AllPeople:
-    """The sensor that perceives everybody exactly."""
+    """The sensor that perceives all people exactly."""
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:  # noqa: ARG002
-        """Everybody, in the very arrays of the truth."""
+        """Return all people, in the arrays of the truth itself."""
         return Percept(truth.people, person_ids)
 
 
 class Perception:
-    """One ego's sensor and the chain behind it, which is a sensor again.
+    """One ego's sensor with the chain behind it, used as one sensor.
 
-    Each observation draws new noise, from a generator of this ego's own: equal runs perceive the
-    same, whatever other egos there are. A tracker makes the most of noisy positions and desired
-    speeds are learnt, unless the tracker is switched off; the paper's controllers have none.
+    Each observation draws new noise from a generator of this ego. Equal runs therefore perceive the
+    same, with any other egos. If the tracker is on, positions are filtered and desired speeds are
+    estimated. It is off by default for the paper's controllers.
 
     Args:
         config: Configuration of the ego.
-        acceleration: Largest acceleration [m/s^2] of a person that the tracker counts on.
+        acceleration: Largest acceleration [m/s^2] of a person that the tracker assumes.
         time_step: Time between two observations [s].
     """
 
@@ -59,8 +59,8 @@ class Perception:
         """Return what the ego perceives; the next call overwrites it.
 
         Args:
-            truth: World as it is; not changed. Arrays are shared where they are seen as they are.
-            person_ids: Number of each pedestrian in ``truth.people``, (n,).
+            truth: World as it is; not changed. Its arrays are shared if they are perceived exactly.
+            person_ids: Id of each pedestrian in ``truth.people``, (n,).
             ego: State of the ego.
         """
         percept = self._sensor.observe(truth, person_ids, ego)

@@ -1,11 +1,11 @@
-"""Sudden starts: people who leave a sidewalk faster than an ego's safety layer assumes."""
+"""Finds sudden starts: people who leave a sidewalk faster than the safety layer assumes."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
 
-_ROUNDING = 1e-6  # [m/s^2]
+_ROUNDING = 1e-6  # tolerance [m/s^2]
 
 Numbers = NDArray[np.int64]
 
@@ -14,8 +14,8 @@ class SettingOut:
     """Compares people's velocities from step to step.
 
     Args:
-        limit: Limit of their acceleration towards the kerb [m/s^2].
-        time_step: [s].
+        limit: Largest assumed acceleration [m/s^2] of people towards the kerb.
+        time_step: Control step [s].
     """
 
     def __init__(self, limit: float, time_step: float) -> None:
@@ -24,12 +24,12 @@ class SettingOut:
         self._velocity = self._kerbs = np.empty((0, 2))
 
     def beyond(self, numbers: Numbers, velocity: Array, kerbs: Array) -> Numbers:
-        """Return who was on a sidewalk a step ago and has accelerated harder since then.
+        """Return the ids of people who accelerated harder since the last step, from a sidewalk.
 
         Args:
-            numbers: (n,) one for each person that it keeps.
-            velocity: (n, 2) [m/s].
-            kerbs: (n, 3) see :meth:`giveway.ego.perception.kerbs.Kerbs.of`.
+            numbers: Person ids (n,).
+            velocity: Velocities (n, 2) [m/s].
+            kerbs: Kerbs (n, 3), as :meth:`giveway.ego.perception.kerbs.Kerbs.of` returns them.
         """
         _, before, now = np.intersect1d(self._who, numbers, assume_unique=True, return_indices=True)
         more = ((velocity[now] - self._velocity[before]) * self._kerbs[before]).sum(axis=1)

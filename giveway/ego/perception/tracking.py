@@ -1,13 +1,14 @@
-"""The positions of people, estimated with bounds from positions of bounded error.
+"""Estimates people's positions, with bounds, from positions of bounded error.
 
-Set-membership estimation (Schweppe, IEEE TAC 1968), with boxes: who was within a box is, a step
-later, within the box moved by the step's way and widened by what the way may differ; who is seen is
-within the error's box about that place; so both hold. A promise needs that bound. Planning needs
-the likeliest place instead: a running mean of the same, kept within the bound.
+The method is set-membership estimation (Schweppe, IEEE TAC 1968) with boxes. A person within a box
+is, one step later, within the box moved by the step's displacement and widened by its possible
+error. A perceived person is also within the box of the perception error. The intersection of both
+is the new box. The safety layer needs this bound. Planning needs the likeliest position, which is a
+running mean, kept within the bound.
 
-Velocities are seen exactly. Between two instants with velocities v and v', who accelerates by at
-most a_max goes within a_max dt^2 / 4 of dt (v + v') / 2: the largest area between v(t) and its
-chord.
+Velocities are perceived exactly. A person with velocities v and v' at two instants and an
+acceleration of at most a_max moves by dt (v + v') / 2, with an error of at most a_max dt^2 / 4 on
+each axis: the largest area between v(t) and its chord.
 """
 
 import numpy as np
@@ -16,24 +17,24 @@ from numpy.typing import NDArray
 from giveway.ego.perception.protocol import OwnArrays, Percept
 from giveway.geometry.kernel import Array, kernel
 
-_LEAST = 0.02  # of an observation's weight in the mean: what is older than 50 steps fades
-_COLUMNS = 9  # low x, y; high x, y; the estimate x, y [m]; velocity [m/s]; observations
+_LEAST = 0.02  # least weight of a new position in the mean, reached after 50 observations
+_COLUMNS = 9  # low x, y; high x, y; estimate x, y [m]; velocity [m/s]; number of observations
 
 
 class Tracker:
-    """Follows people whom one ego sees, each by the number that the person keeps.
+    """Tracks the people that one ego perceives, by person id.
 
     Args:
-        error: Largest error [m] of a position in x and in y, where the sensor claims no bound.
-        acceleration: a_max [m/s^2] of people.
-        time_step: dt [s] between two looks.
+        error: Largest error [m] of a position on each axis if the sensor claims no bound.
+        acceleration: Largest acceleration a_max [m/s^2] of people.
+        time_step: Time dt [s] between two looks.
     """
 
     def __init__(self, error: float, acceleration: float, time_step: float) -> None:
         self._error, self._time_step = error, time_step
         self._slack = 0.25 * acceleration * time_step * time_step
         self._known = np.zeros((0, _COLUMNS))
-        self._seen = np.zeros(0, dtype=np.int64)  # at which look each was seen last
+        self._seen = np.zeros(0, dtype=np.int64)  # number of the last look at each person
         self._look = 1
         self._errors = np.zeros(0)
         self._own = OwnArrays("position")
@@ -83,7 +84,19 @@ def _track(
     seen: NDArray[np.int64],
     errors: Array,
 ) -> None:
-    """Overwrite positions and ``errors`` (of each axis) by estimates and their bounds."""
+    """Overwrite positions by estimates, and ``errors`` by the bounds of their distances.
+
+    Args:
+        position: Positions (n, 2) [m], changed.
+        velocity: Velocities (n, 2) [m/s].
+        numbers: Person ids (n,).
+        look: Number of this look.
+        slack: Largest error [m] of a step's displacement on each axis.
+        time_step: Time [s] between two looks.
+        known: State of each person by id, changed; see ``_COLUMNS``.
+        seen: Number of the last look at each person by id, changed.
+        errors: Largest errors (n,) [m] on each axis; filled with those of the estimates.
+    """
     for row in range(len(numbers)):
         mine, error = known[numbers[row]], errors[row]
         lost = seen[numbers[row]] != look - 1
@@ -95,7 +108,7 @@ def _track(
             mine[2 + axis] = min(mine[2 + axis] + way + slack, place + error)
             mine[4 + axis] += way
             mine[6 + axis] = v
-            lost = lost or mine[axis] > mine[2 + axis]  # moved as nobody does
+            lost = lost or mine[axis] > mine[2 + axis]  # the bounds contradict each other
         mine[8] = 1.0 if lost else mine[8] + 1.0
         off = 0.0
         for axis in range(2):

@@ -1,4 +1,4 @@
-"""The truth that sensors are shown: nothing but sensors, recorder and metrics may use it."""
+"""The truth that sensors are shown. Only sensors, recorder and metrics may use it."""
 
 from dataclasses import dataclass
 
@@ -10,13 +10,13 @@ from pedestrian_model import Crowd
 
 @dataclass(slots=True)
 class Truth:
-    """The world round the egos at one instant; the run refills one object in place.
+    """The world around the egos at one instant; the run refills one object in place.
 
     Attributes:
-        people: Pedestrians within the zone, n of them.
-        vehicles: Poses of all vehicles, (m, 7): x, y [m], heading [rad], speed [m/s], distances [m]
+        people: Pedestrians (n,) within the zone.
+        vehicles: Poses (m, 7) of all vehicles: x, y [m], heading [rad], speed [m/s], distances [m]
             from the reference point to the front and to the rear, width [m].
-        outlines: Static outlines that may hide people, (k, 4): x0, y0, x1, y1 [m]; k may be 0.
+        outlines: Static outlines (k, 4) that may hide people: x0, y0, x1, y1 [m]; k may be 0.
         time: SUMO's clock [s].
     """
 
