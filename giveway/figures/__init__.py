@@ -1,4 +1,4 @@
-"""Pictures of runs; importing this imports matplotlib, never pyplot and no display."""
+"""The pictures of runs; importing them needs matplotlib, but neither pyplot nor a display."""
 
 from giveway.figures.influence_figure import influence_figure
 from giveway.figures.reference import reference_figure

@@ -1,4 +1,4 @@
-"""Conflicts as points on a map: colour, lightness and shape say how severe each was."""
+"""Conflicts as points on a map: colour, lightness and shape show the severity."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from giveway.figures.style import BLACK, ORANGE, VERMILION
 from giveway.metrics import SEVERITIES
 
 Conflict = tuple[str, float, float]
-"""Severity, and where: network x and y [m]."""
+"""Severity of a conflict, and its place x and y [m] in the network."""
 
 _MARKS = dict(
     zip(SEVERITIES, (("o", ORANGE, 26), ("^", VERMILION, 40), ("X", BLACK, 60)), strict=True)

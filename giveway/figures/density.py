@@ -18,12 +18,12 @@ def density_figure(
     conflicts: Sequence[Conflict] = (),
     title: str = "",
 ) -> Figure:
-    """Mean density on a grid, the measures' outlines, and the conflicts of all egos, to scale.
+    """Draw the mean density on a grid, the measures and all egos' conflicts, to scale.
 
     Args:
         found: Density to draw.
         measures: Measures to draw as lines.
-        conflicts: Severity and place of each.
+        conflicts: Severity and place of each conflict.
         title: Title of the figure.
     """
     aspect = (found.top - found.bottom) / (found.right - found.left)

@@ -1,4 +1,4 @@
-"""The influence figure: the force by which the vehicle keeps a standing pedestrian away."""
+"""The influence figure: the vehicle's force on a standing pedestrian."""
 
 from collections.abc import Callable, Sequence
 
@@ -15,16 +15,17 @@ from giveway.figures.style import BLACK, BLUE, keep_panels, styled
 from giveway.geometry.bodies import VehicleShape
 
 Influence = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
-"""Points (k, 2) [m] and the vehicle's speed [m/s] to the forces (k, 2) [N] on persons there."""
+"""Function from points (k, 2) [m] and vehicle speed [m/s] to forces (k, 2) [N] on persons there."""
 
-LEVELS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0)  # [N]
-DRAWN = (10.0, 100.0, 1000.0)  # [N]
+# Levels [N] of the filled contours
+LEVELS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0)
+DRAWN = (10.0, 100.0, 1000.0)  # Levels [N] of the contours that are drawn as lines
 # Force [N] of the longest arrow, about 80 kg x 5 m/s^2: the model's largest force on a person
 LONGEST_ARROW = 400.0
-FAINTEST_ARROW = 20.0  # [N]
-RESOLUTION = 0.1  # [m] of the contours
-ARROW_SPACING = 0.8  # [m]
-SIDE_MARGIN, REAR_MARGIN, FRONT_MARGIN = 4.5, 4.0, 4.5  # [m] shown around the vehicle
+FAINTEST_ARROW = 20.0  # Smallest force [N] that has an arrow
+RESOLUTION = 0.1  # Grid width [m] of the contours
+ARROW_SPACING = 0.8  # Distance [m] between arrows
+SIDE_MARGIN, REAR_MARGIN, FRONT_MARGIN = 4.5, 4.0, 4.5  # Margins [m] around the vehicle
 FRONT_MARGIN_PER_SPEED = 1.4  # Growth [m per m/s] of the margin in front with the speed
 
 
@@ -40,10 +41,10 @@ def influence_figure(
 
     Figure 2 of Yang & Özgüner 2019, seen from the vehicle: x ahead of its centre, y to its left.
 
-    Args:
-        influence: The model; its vehicle's centre must be at (0, 0), its heading 0.
+    In figure 2 of Yang & Özgüner 2019, x is ahead of the vehicle's centre and y to its left.
+        influence: Function of the model; the vehicle's centre must be at (0, 0), its heading 0.
         speeds: Speeds of the vehicle [m/s].
-        shape: The vehicle's rectangle; the paper's 5 m x 2 m if left out.
+        shape: Rectangle of the vehicle, or None for the paper's 5 m x 2 m.
         title: Title of the whole figure.
 
     Raises:
@@ -59,7 +60,7 @@ def influence_figure(
 
     columns = min(len(speeds), 2)
     rows = -(-len(speeds) // columns)
-    panel = 4.6  # [in] wide
+    panel = 4.6  # width [in]
     height = 0.9 * panel * (y[1] - y[0]) / (x[1] - x[0]) + 0.4
     figure = Figure(figsize=(columns * panel + 1.1, rows * height + 0.7), layout="compressed")
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
@@ -90,7 +91,7 @@ def influence_figure(
 def _sample(
     influence: Influence, speed: float, x: NDArray[np.float64], y: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Forces on a grid: (rows, columns, 2) [N]."""
+    """Return the forces (rows, columns, 2) [N] on a grid."""
     across, up = np.meshgrid(x, y)
     points = np.column_stack((across.ravel(), up.ravel()))
     return influence(points, speed).reshape(*across.shape, 2)
@@ -101,7 +102,7 @@ def _draw_magnitude(
 ) -> tuple[QuadContourSet, QuadContourSet]:
     xs = np.linspace(*x, round((x[1] - x[0]) / RESOLUTION) + 1)
     ys = np.linspace(*y, round((y[1] - y[0]) / RESOLUTION) + 1)
-    # A magnitude of exactly 0 has no logarithm; far below the lowest level it stays blank.
+    # A magnitude of 0 has no logarithm; a value far below the lowest level stays blank.
     magnitude = np.maximum(np.linalg.norm(_sample(influence, speed, xs, ys), axis=2), 1e-6)
     filled = axes.contourf(
         xs, ys, magnitude, levels=LEVELS, norm=LogNorm(LEVELS[0], LEVELS[-1]), cmap="YlOrBr",
@@ -121,7 +122,7 @@ def _draw_arrows(
 ) -> Quiver:
     xs = np.arange(x[0] + ARROW_SPACING / 2, x[1], ARROW_SPACING)
     half = np.arange(ARROW_SPACING / 2, y[1], ARROW_SPACING)
-    ys = np.concatenate((-half[::-1], half))  # as many to the left as to the right
+    ys = np.concatenate((-half[::-1], half))  # equally far to the left and to the right
     across, up = np.meshgrid(xs, ys)
     force = _sample(influence, speed, xs, ys)
     magnitude = np.linalg.norm(force, axis=2)

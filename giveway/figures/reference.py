@@ -1,4 +1,4 @@
-"""The reference figure: the speed that a controller aims at over the gap in front of it."""
+"""The reference figure: the speed that a controller aims at, over the gap in front."""
 
 from collections.abc import Callable, Sequence
 
@@ -8,11 +8,11 @@ from matplotlib.figure import Figure
 from giveway.figures.style import BLACK, BLUE, GREY, quiet_grid, styled
 
 ReferenceCurve = Callable[[float], float]
-"""A gap [m] to the reference speed [m/s] at it."""
+"""Function from a gap [m] to the reference speed [m/s]."""
 
 _SHOWN = 1.25  # Length of the axis, as multiples of the distance from which the speed is v_r
-_RESOLUTION = 0.02  # [m]
-_LOOKS = ((BLACK, (0, (4, 2))), (BLUE, "-"))  # Line styles: as many curves as can be told apart
+_RESOLUTION = 0.02  # Distance [m] between points of the curve
+_LOOKS = ((BLACK, (0, (4, 2))), (BLUE, "-"))  # Line styles, as many as curves are possible
 
 
 @styled

@@ -1,4 +1,4 @@
-"""The road underneath a picture: lanes, crossings, and the lights as coloured stop lines."""
+"""The road underneath a picture: lanes, crossings, and traffic lights as coloured stop lines."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from giveway.run_data.tracks import SignalTrack
 
 Road = Sequence[NDArray[np.float64]]
-"""Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""
+"""Lines (k, 2) [m] to draw underneath; a line that ends where it starts is a filled area."""
 
 STRIPE = 0.5  # Length [m] of a painted stripe, and of the gap behind it
 LONGEST = 20.0  # Largest length [m] of a crossing that is drawn outside of the view
-UNPAINTED = "#CFCFCF"  # Colour of a crossing's ground, so that white stripes are seen
+UNPAINTED = "#CFCFCF"  # Colour of a crossing's ground, on which white stripes are visible
 LIGHTS = {"G": "#009E73", "y": "#E69F00", "r": "#D7191C", "": GREY}
 
 
 def draw_road(axes: Axes, road: Road) -> None:
-    """Areas in light grey, lines in grey."""
+    """Draw areas in light grey and lines in grey."""
     for line in road:
         if len(line) > 2 and np.array_equal(line[0], line[-1]):
             axes.add_patch(Polygon(line, facecolor=LIGHT_GREY, edgecolor="white", zorder=0))
@@ -43,7 +43,7 @@ def draw_marks(axes: Axes, marks: RoadMarks, states: Mapping[str, str] | None, v
     Args:
         axes: Axes to draw into.
         marks: Crossings and stop lines.
-        states: Traffic light states by id. None: stop lines are grey.
+        states: State of each traffic light by its id, or None for grey stop lines.
         view: Rectangle to show; everything outside is left out.
     """
     marks = marks.within(
@@ -73,7 +73,7 @@ def draw_marks(axes: Axes, marks: RoadMarks, states: Mapping[str, str] | None, v
 
 
 def states_at(signals: SignalTrack | None, time: float) -> dict[str, str]:
-    """The latest state on record of each light at ``time`` [s]."""
+    """Return the latest recorded state of each light at ``time`` [s]."""
     if signals is None:
         return {}
     until = signals.time <= time + 1e-9
@@ -81,7 +81,7 @@ def states_at(signals: SignalTrack | None, time: float) -> dict[str, str]:
 
 
 def bands(zebra: Zebra, *, whole: bool = False) -> list[NDArray[np.float64]]:
-    """The stripes (4, 2) [m] of a crossing, or its outline as the only one."""
+    """Return the stripes (4, 2) [m] of a crossing, or only its outline."""
     start, end = np.array(zebra.ends)
     length = float(np.hypot(*(end - start)))
     if length <= 0.0:

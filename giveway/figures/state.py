@@ -1,7 +1,7 @@
-"""The state figure: the ego's speed, gap and force over time, and which controller acted.
+"""The state figure: the ego's speed, gap and force over time, and the acting controller.
 
-After the state figure of Yang & Özgüner 2019 (section 5): one column per run, there the MPC on
-the left and the PID on the right.
+It follows the state figure of Yang & Özgüner 2019 (section 5), with one column per run: there the
+MPC on the left and the PID on the right.
 """
 
 from collections.abc import Sequence
@@ -80,13 +80,13 @@ def state_figure(
 ) -> Figure:
     """Draw speed, gap and force of one run, or of several side by side on the same scales.
 
-    Where there are vehicles, stops or stop lines, a panel of its own has the distances to them. A
-    bar above the speed says what the ego stands for.
+    If there are vehicles, stops or stop lines, a further panel shows the distances to them. A bar
+    above the speed shows why the ego waits.
 
     Args:
         runs: Track of the ego, or pairs of a label and a track.
         safe_distance: Distance d_safe [m], drawn into the gap's panel.
-        buffer_distance: Distance d_buffer [m], drawn on top of it unless 0.
+        buffer_distance: Distance d_buffer [m], drawn on top of it if it is not 0.
         stop_lines: Positions [m] of the front bumper, as in the track, at which lights hold it.
         title: Title of the whole figure.
 
@@ -130,10 +130,10 @@ def state_figure(
 
 
 def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """Return the controllers that acted, with begin and end [s] of each uninterrupted phase.
+    """Return the acting controllers, with beginning and end [s] of each uninterrupted phase.
 
-    A command holds until the next instant, so that the last one is not carried out. A run of one
-    instant is shown ``SINGLE_INSTANT`` to either side.
+    A command holds until the next instant, so the last one is not carried out. A run of one instant
+    is shown ``SINGLE_INSTANT`` to either side.
     """
     edges = np.flatnonzero(ego.controller[1:] != ego.controller[:-1]) + 1
     starts = np.concatenate(([0], edges))
@@ -149,7 +149,7 @@ def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
 
 
 def shade_phases(axes: Axes, ego: EgoTrack) -> None:
-    """Colour the background by the controller that acted."""
+    """Colour the background by the acting controller."""
     for acting, start, end in phases(ego):
         colour, opacity = SHADES[acting]
         axes.axvspan(start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0)
@@ -165,7 +165,7 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 
 def draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
-    """Draw the gap to the pedestrian in front, a stroke for each person, and the safe distances."""
+    """Draw the gap to the pedestrian in front, a line for each person, and the safe distances."""
     draw_safe_distances(axes, safe_distance, buffer_distance)
     if not np.isfinite(ego.gap).any():
         axes.text(
@@ -173,7 +173,7 @@ def draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: f
         )  # fmt: skip
     time, gap = strokes(ego, ego.gap, FASTEST_WALK)
     axes.plot(time, gap, color=GREEN, label="gap", zorder=3)
-    # A single instant has no line: it is drawn as a point.
+    # A single instant is drawn as a point, since it has no line.
     around = np.concatenate(([False], np.isfinite(gap), [False]))
     alone = around[1:-1] & ~around[:-2] & ~around[2:]
     axes.plot(time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
@@ -182,12 +182,12 @@ def draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: f
 def strokes(
     ego: EgoTrack, distance: NDArray[np.float64], fastest: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Times and distances [m] to draw, with nan wherever another one is in front from there on.
+    """Return times and distances [m] to draw, separated by nan where another object comes in front.
 
     Args:
         ego: Ego from which the distances are measured.
-        distance: (T,) [m] Distance to what is in front; inf if nothing is.
-        fastest: [m/s] at which one and the same may move along the way.
+        distance: Distance (T,) [m] to the object in front, or inf without one.
+        fastest: Largest speed [m/s] of an object along the path.
     """
     known = np.where(np.isfinite(distance), distance, np.nan)
     elapsed = np.diff(ego.time)
@@ -212,7 +212,7 @@ def _draw_distances(axes: Axes, ego: EgoTrack, stop_lines: Sequence[float]) -> N
 
 
 def waits(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """Return the causes of waiting, with begin and end [s] of each uninterrupted wait."""
+    """Return the causes of waiting, with beginning and end [s] of each uninterrupted wait."""
     edges = np.flatnonzero(ego.waits_for[1:] != ego.waits_for[:-1]) + 1
     starts = np.concatenate(([0], edges))
     ends = np.append(edges, ego.time.size - 1)
@@ -224,7 +224,7 @@ def waits(ego: EgoTrack) -> list[tuple[str, float, float]]:
 
 
 def _draw_waits(axes: Axes, ego: EgoTrack) -> None:
-    """A bar along the panel's upper edge wherever the ego stands, in the colour of the cause."""
+    """Draw a bar along the upper edge while the ego stands, in the colour of the cause."""
     found = waits(ego)
     if not found:
         return
@@ -236,7 +236,7 @@ def _draw_waits(axes: Axes, ego: EgoTrack) -> None:
 
 
 def draw_safe_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:
-    """Lines at d_safe, and at d_safe + d_buffer where there is a buffer."""
+    """Draw lines at d_safe and, if there is a buffer, at d_safe + d_buffer."""
     axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
     if buffer_distance > 0.0:
         axes.axhline(
@@ -246,7 +246,7 @@ def draw_safe_distances(axes: Axes, safe_distance: float, buffer_distance: float
 
 
 def draw_force(axes: Axes, ego: EgoTrack) -> None:
-    """The force [kN] over time, zero as a line."""
+    """Draw the force [kN] over time, and a line at zero."""
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.step(
         ego.time, ego.force / 1000.0, where="post", color=VERMILION, label="force",
@@ -259,7 +259,7 @@ def _marker(ego: EgoTrack) -> str:
 
 
 def _scale(grid: NDArray[Any], egos: Sequence[EgoTrack], distance: float) -> None:
-    """One scale for all runs, zero always on it, so that heights can be compared."""
+    """Set one scale for all runs that includes zero, so that heights can be compared."""
     scale_time_and_speed(grid[0, 0], egos)
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
     grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=distance))
@@ -270,7 +270,7 @@ def _scale(grid: NDArray[Any], egos: Sequence[EgoTrack], distance: float) -> Non
 
 
 def scale_force(axes: Axes, egos: Sequence[EgoTrack]) -> None:
-    """Limits of a panel of forces in which all runs and zero have room."""
+    """Set the limits of a panel of forces, so that all runs and zero have room."""
     weakest = min(min(0.0, ego.force.min()) for ego in egos) / 1000.0
     strongest = max(max(0.0, ego.force.max()) for ego in egos) / 1000.0
     room = 0.08 * max(strongest - weakest, 0.1)
@@ -278,13 +278,13 @@ def scale_force(axes: Axes, egos: Sequence[EgoTrack]) -> None:
 
 
 def scale_time_and_speed(axes: Axes, egos: Sequence[EgoTrack]) -> None:
-    """Limits of a panel of speeds over time in which all runs have room."""
+    """Set the limits of a panel of speeds over time, so that all runs have room."""
     start = min(float(ego.time[0]) for ego in egos)
     end = max(float(ego.time[-1]) for ego in egos)
     margin = SINGLE_INSTANT if end == start else 0.0
     fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
     axes.set_xlim(start - margin, end + margin)
-    room = 1.2 if any(waits(ego) for ego in egos) else 1.1  # for the bars of waits
+    room = 1.2 if any(waits(ego) for ego in egos) else 1.1  # room for the bars of waits
     axes.set_ylim(0.0, room * max(fastest, 1.0))
 
 

@@ -1,7 +1,7 @@
-"""The style of giveway's pictures, whatever the user's matplotlib is configured to.
+"""The style of giveway's pictures, which does not depend on the user's matplotlib settings.
 
-Colours are Okabe & Ito's (2008), told apart by all common kinds of colour vision; what is shaded
-differs in lightness as well, for print in black and white.
+The colours are those of Okabe & Ito (2008), which people with all common kinds of colour vision can
+tell apart. Shaded parts differ in lightness as well, for print in black and white.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ LIGHT_GREY = "#ECECEC"
 _STYLE = {
     "axes.axisbelow": True,
     "axes.edgecolor": GREY,
-    "axes.formatter.useoffset": False,  # whole coordinates, also far from the origin
+    "axes.formatter.useoffset": False,  # whole coordinates, even far from the origin
     "axes.labelsize": 9,
     "axes.linewidth": 0.8,
     "axes.spines.right": False,
@@ -56,12 +56,12 @@ Result = TypeVar("Result")
 
 
 def house_style() -> AbstractContextManager[None]:
-    """The library's own defaults and ours on top, until the context is left."""
+    """Return a context with matplotlib's own defaults and giveway's on top."""
     return style.context(["default", _STYLE])
 
 
 def styled(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Have a function draw in the house style."""
+    """Let a function draw in the house style."""
 
     @wraps(draw)
     def wrapper(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
@@ -72,7 +72,7 @@ def styled(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
 
 
 class NotebookFigure(Figure):
-    """A figure that notebooks show, whatever backend matplotlib has there."""
+    """A figure that notebooks show, with any backend of matplotlib."""
 
     def _repr_png_(self) -> bytes:
         picture = BytesIO()
@@ -82,34 +82,34 @@ class NotebookFigure(Figure):
 
 
 def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
-    """Write a picture whose bytes depend on nothing but what it shows.
+    """Write a picture whose bytes depend only on its content.
 
-    Except for an SVG with panels of equal scale: its ids are hashes of positions whose last digit
-    matplotlib's layout solver does not settle.
+    An exception is an SVG with panels of equal scale: its ids are hashes of positions, whose last
+    digit varies in matplotlib's layout solver.
 
     Args:
         figure: Figure to write.
-        path: Its suffix says the format: .png, .svg or .pdf.
+        path: Path of the picture; its suffix is the format: .png, .svg or .pdf.
         dpi: Pixels per inch of a PNG.
 
     Raises:
         OSError: the file cannot be written.
     """
-    # The formats' own defaults are a creation date and, for SVG, random element ids.
+    # By default, the formats have a creation date and, for SVG, random element ids.
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with house_style():
         figure.savefig(path, dpi=dpi, metadata=undated.get(path.suffix.lower(), {}))
 
 
 def quiet_grid(axes: Axes) -> None:
-    """A grid that helps to read values and is otherwise not noticed."""
+    """Draw a light grid that helps to read values."""
     axes.grid(color=BLACK, alpha=0.08, linewidth=0.7)
 
 
 def keep_panels(
     grid: NDArray[Any], count: int, *, x: str = "x [m]", y: str = "y [m]"
 ) -> list[Axes]:
-    """The first ``count`` map panels of a grid with shared axes, labelled along its outside."""
+    """Return the first ``count`` map panels of a grid, labelled along the outside."""
     columns = grid.shape[1]
     panels: list[Axes] = list(grid.flat)
     for axes in panels[count:]:

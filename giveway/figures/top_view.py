@@ -1,6 +1,6 @@
 """The top view: the trajectories of ego and pedestrians, and snapshots of the encounter.
 
-After the screenshots figure of Yang & Özgüner 2019 (section 5).
+It follows the screenshots figure of Yang & Özgüner 2019 (section 5).
 """
 
 from collections.abc import Sequence
@@ -31,19 +31,19 @@ from giveway.run_data.road_marks import UNMARKED, RoadMarks
 from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, SignalTrack
 
 TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
-"""Its last third is too light for a line on white."""
+"""Colours of time, without the last third, which is too light for a line on white."""
 SNAPSHOTS = 6
 ENCOUNTER = 10.0  # Distance [m] to a pedestrian below which snapshots are taken
-MARGIN = 2.0  # [m] around all trajectories
+MARGIN = 2.0  # Margin [m] around all trajectories
 SURROUNDINGS = 8.0  # Distance [m] shown around the ego's positions in the snapshots
 # Longest side [m] of a shared view; on longer drives the view follows the ego
 LARGEST_PART = 70.0
-VIEW = (50.0, 32.0)  # [m] width and height of a view that follows the ego
+VIEW = (50.0, 32.0)  # Width and height [m] of a view that follows the ego
 TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity tick
 # Corners of the ego's nose, as parts of its length and width
 NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])
 SEGMENTS = 150  # Largest number of segments per trajectory
-# Time [s] without a record after which a trajectory begins anew: SUMO moved the person
+# Time [s] without a record after which a trajectory begins anew, since SUMO moved the person
 PAUSE = 2.5
 
 
@@ -62,27 +62,26 @@ def top_view_figure(
     conflicts: Sequence[Conflict] = (),
     title: str = "",
 ) -> Figure:
-    """Whole trajectories coloured by time, and the scene at some instants, all to scale.
+    """Draw whole trajectories coloured by time, and the scene at some instants, to scale.
 
     Args:
         ego: Track of the ego.
         crowd: Track of the crowd; may be empty.
         shape: Rectangle of the ego.
         body_radius: Radius of a pedestrian [m].
-        times: Times of the snapshots [s], each taken at the nearest control instant. Left out: six
-            over
-            the time in which a pedestrian is within 10 m of the ego, one of them at the closest
-            approach and the others evenly.
-        background: Other vehicles, drawn in the snapshots; from their latest instant on they are
-            taken to drive straight on.
+        times: Times of the snapshots [s], each taken at the nearest control instant. With None
+            there are six over the time in which a pedestrian is within 10 m of the ego: one at the
+            closest approach, the others evenly.
+        background: Other vehicles, drawn in the snapshots. After their latest instant they are
+            assumed to drive straight on.
         road: Areas and lines to draw underneath.
         marks: Crossings and stop lines.
-        signals: States of the lights; in a snapshot stop lines have the colour of the instant.
+        signals: States of the lights; in a snapshot, stop lines have the colour of that instant.
         conflicts: Conflicts to mark among the trajectories.
         title: Title of the whole figure.
 
     Raises:
-        ValueError: the ego's track is empty, or ``times`` is.
+        ValueError: the ego's track or ``times`` is empty.
     """
     if not ego.time.size:
         raise ValueError("top view: the run has no instants; pass tracks of at least one")
@@ -132,10 +131,10 @@ def top_view_figure(
 def crowd_view_figure(
     time: NDArray[np.float64], crowd: CrowdTrack, *, road: Road | None = None, title: str = ""
 ) -> Figure:
-    """The trajectories of a run without an ego, coloured by time, to scale.
+    """Draw the trajectories of a run without an ego, coloured by time, to scale.
 
     Args:
-        time: (T,) [s] Control instants.
+        time: Control instants (T,) [s].
         crowd: Track of the crowd.
         road: Areas and lines to draw underneath.
         title: Title of the figure.
@@ -165,7 +164,7 @@ def _colours(time: NDArray[np.float64]) -> Normalize:
 
 
 def rectangle(ego: EgoTrack, k: int, shape: VehicleShape) -> NDArray[np.float64]:
-    """The ego's corners at instant k, front left first, counter-clockwise: (4, 2) [m]."""
+    """Return the ego's corners (4, 2) [m] at instant k, front left first, counter-clockwise."""
     front = np.array((ego.front_x[k], ego.front_y[k]))
     return _corners(front, float(ego.heading[k]), shape.length, shape.width)
 
@@ -183,7 +182,7 @@ def _corners(
 def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:
     """Return the first instant of the smallest distance to a pedestrian, or None without people.
 
-    Somebody inside the rectangle is the closer the deeper.
+    If a person is inside the rectangle, the distance is negative.
     """
     if not crowd.x.size:
         return None
@@ -197,9 +196,9 @@ def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> i
 
 
 def _encounter(ego: EgoTrack, crowd: CrowdTrack, closest: int | None) -> NDArray[np.int64]:
-    """Instants over the encounter, the closest approach among them.
+    """Return instants over the encounter, with the closest approach among them.
 
-    Over the whole run if no pedestrian came close.
+    They are spread over the whole run if no pedestrian came close.
     """
     step = crowd.step
     apart = np.hypot(crowd.x - ego.front_x[step], crowd.y - ego.front_y[step])
@@ -219,13 +218,13 @@ def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
 
 
 def _arrange(whole: Box, parts: Sequence[Box]) -> tuple[Figure, Axes, list[Axes]]:
-    """A tall overview stands next to the snapshots, a flat one above them."""
+    """Arrange the views: a tall overview beside the snapshots, a flat one above them."""
     part, count = parts[0], len(parts)
     together = all(each == part for each in parts)
     side_by_side = whole.aspect > 0.6
     columns = min(count, 2 if side_by_side or together else 3)
     rows = -(-count // columns)
-    snapshots_width = 6.6 if side_by_side else 9.5  # [in]
+    snapshots_width = 6.6 if side_by_side else 9.5  # width [in]
     snapshots_height = rows * (snapshots_width / max(columns, 2) * part.aspect + 0.3) + 0.4
     figure = NotebookFigure(layout="constrained")
     if side_by_side:
@@ -248,7 +247,7 @@ def _arrange(whole: Box, parts: Sequence[Box]) -> tuple[Figure, Axes, list[Axes]
 
 
 def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> None:
-    """Other vehicles at ``time`` [s], as light rectangles."""
+    """Draw the other vehicles at ``time`` [s], as light rectangles."""
     known = background.time[background.time <= time + 1e-9]
     if not known.size:
         return
@@ -268,7 +267,7 @@ def _draw_pedestrian_trajectories(
 ) -> LineCollection:
     """Draw trajectories as short lines in the colours of time.
 
-    Circles mark where they begin.
+    Circles mark their beginnings.
     """
     groups = PedestrianGroups(crowd)
     places = np.column_stack((crowd.x, crowd.y))[groups.order]
@@ -293,7 +292,7 @@ def _draw_pedestrian_trajectories(
 
 
 def _draw_ego_trajectory(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
-    """The ego's trajectory in the colours of time."""
+    """Draw the ego's trajectory in the colours of time."""
     kept = _thinned(0, ego.time.size - 1)
     front = np.column_stack((ego.front_x, ego.front_y))[kept]
     driven = LineCollection(
@@ -312,7 +311,7 @@ def _thinned(first: int, last: int) -> NDArray[np.int64]:
 def _draw_scene(
     axes: Axes, k: int, corners: NDArray[np.float64], crowd: CrowdTrack, body_radius: float
 ) -> None:
-    """The ego as a rectangle with a nose, pedestrians as circles of true size with ticks."""
+    """Draw the ego as a rectangle with a nose, and pedestrians as circles with ticks."""
     axes.add_patch(Polygon(corners, facecolor="#404040", edgecolor=BLACK, zorder=2, label="ego"))
     _, rear_left, rear_right, front_right = corners
     along, across = front_right - rear_right, rear_left - rear_right

@@ -1,4 +1,4 @@
-"""Predictions against recorded trajectories: growth of the error, tracks, where errors are made."""
+"""The pictures of a validation: growth of the error, predicted tracks, places of errors."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -35,14 +35,14 @@ _LOOKS: dict[str, tuple[str, Any]] = {  # Label and colour of each predictor in 
     "goalCV": (GREEN, (0, (5, 1))),
 }
 _OTHER: tuple[str, Any] = (ORANGE, (0, (1, 1)))
-_REACH = 8.0  # Distance [m] shown round the vehicle
-_CELL = 1.0  # [m]
+_REACH = 8.0  # Distance [m] shown around the vehicle
+_CELL = 1.0  # Cell size [m]
 _FEWEST = 3  # Smallest number of errors in a cell that is coloured
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A mean over time with its interval, (H,) each [m]."""
+    """A mean error over time with its interval, (H,) [m] each."""
 
     mean: Array
     low: Array
@@ -51,7 +51,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """The pose of a vehicle: x, y [m], heading [rad], and its size round that point [m]."""
+    """The pose of a vehicle: x, y [m], heading [rad], and its size around that point [m]."""
 
     x: float
     y: float
@@ -61,7 +61,7 @@ class Body:
     width: float
 
     def patch(self, axes: Axes, **looks: Any) -> Rectangle:
-        """Its outline."""
+        """Return the outline as a patch."""
         turned = Affine2D().rotate(self.heading).translate(self.x, self.y)
         outline = Rectangle(
             (-self.rear, -self.width / 2), self.front + self.rear, self.width, **looks
@@ -72,10 +72,10 @@ class Body:
 
 @styled
 def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title: str) -> Figure:
-    """The displacement error over the horizon, one panel per group of pedestrians.
+    """Draw the displacement error over the horizon, one panel per group of pedestrians.
 
     Args:
-        time: (H,) [s] Prediction time ahead.
+        time: Prediction times ahead (H,) [s].
         panels: Curves of each panel, one per predictor.
         title: Title of the whole figure.
     """
@@ -101,12 +101,12 @@ def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title:
 def tracks_figure(
     observed: Array, predicted: Mapping[str, Array], vehicle: Sequence[Body], title: str
 ) -> Figure:
-    """Draw what was predicted for one window, and what was observed.
+    """Draw the predicted and the observed tracks of one window.
 
     Args:
-        observed: (H + 1, n, 2) [m] Observed positions, from the start on.
-        predicted: Predicted trajectories of each predictor, in the same form.
-        vehicle: Poses at the start, on the way and at the end; may be empty.
+        observed: Observed positions (H + 1, n, 2) [m], from the start on.
+        predicted: Predicted positions of each predictor, in the same shape.
+        vehicle: Poses of the vehicle at the start, on the way and at the end; may be empty.
         title: Title of the figure.
     """
     figure = Figure(figsize=(6.4, 5.4), layout="constrained")
@@ -133,12 +133,12 @@ def tracks_figure(
 
 @styled
 def places_figure(place: Array, errors: Mapping[str, Array], body: Body, title: str) -> Figure:
-    """The mean final error by where the pedestrian is, seen from the vehicle.
+    """Draw the mean final error by the pedestrian's place, seen from the vehicle.
 
     Args:
-        place: (R, 2) [m] Place before and left of the vehicle; nan without one.
-        errors: (R,) [m] Errors by predictor; nan without one.
-        body: Body of the vehicle, at the origin.
+        place: Place (R, 2) [m] ahead and to the left of the vehicle, or nan without a vehicle.
+        errors: Errors (R,) [m] by predictor, or nan without an error.
+        body: Body of the vehicle at the origin.
         title: Title of the whole figure.
     """
     edges = np.arange(-_REACH, _REACH + _CELL / 2, _CELL)

@@ -1,4 +1,4 @@
-"""The response of a vehicle FMU: the picture of a check, and that of an identification."""
+"""The response of a vehicle FMU: the pictures of a check and of an identification."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ DASHES = (0, (4, 2))
 MODEL: dict[str, Any] = {"color": BLACK, "linewidth": 0.9, "linestyle": DASHES, "zorder": 4}
 MEASURED: dict[str, Any] = {"color": BLUE, "zorder": 3}
 FINER: dict[str, Any] = {"color": ORANGE, "linewidth": 2.6, "zorder": 2.5}
-EXACT = 1e-6  # Position error [m] below which only rounding is left, which is not drawn
+EXACT = 1e-6  # Position error [m] below which there is only rounding, which is not drawn
 LARGEST = 1e30  # Largest value that matplotlib can draw; diverging FMUs exceed it
 ROWS = ("Force [kN]", "Speed [m/s]", "Acceleration [m/s²]", "Position [m]")
 
@@ -35,8 +35,8 @@ def check_figure(report: CheckReport, *, title: str = "") -> Figure | None:
 
     The result is None if there are no drives.
 
-    On the left the step response and that of the controller's model, on the right the same drive
-    with the FMU's steps and with finer ones, as far as they ran.
+    On the left are the step response and the response of the controller's model. On the right is
+    the same drive with the FMU's steps and with finer ones, as far as they went.
     """
     columns: list[tuple[str, list[tuple[Trace, dict[str, Any]]]]] = []
     if "response" in report.traces:
@@ -103,7 +103,7 @@ def _draw_force(axes: Axes, trace: Trace) -> None:
 
 @styled
 def identification_figure(found: Identification, *, title: str = "") -> Figure:
-    """Measured against fitted: the drive held out, all tests, errors at the horizon."""
+    """Draw measured and fitted motion: the test left out of the fit, all tests, final errors."""
     figure = Figure(figsize=(9.4, 6.4), layout="constrained")
     left, right = figure.subfigures(1, 2, width_ratios=(1.9, 1.0), squeeze=False)[0]
     force, speed, acceleration = left.subplots(3, 1, sharex=True)

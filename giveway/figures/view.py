@@ -1,4 +1,4 @@
-"""The rectangle of the plane that a picture shows."""
+"""The rectangular part of the plane that a picture shows."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Largest ratio of height to width of the overview; of width to height it is twice this
+# Largest ratio of height to width of the overview; that of width to height is twice as large
 SLENDEREST = 2.2
 
 
 class Box(NamedTuple):
-    """Limits of a view [m]."""
+    """The limits of a view [m]."""
 
     left: float
     bottom: float
@@ -24,19 +24,19 @@ class Box(NamedTuple):
 
     @classmethod
     def around(cls, points: NDArray[np.float64], margin: float) -> Box:
-        """The points (n, 2) [m] with a margin [m] around them."""
+        """Return the box of the points (n, 2) [m] with a margin [m] around them."""
         left, bottom = points.min(axis=0) - margin
         right, top = points.max(axis=0) + margin
         return cls(float(left), float(bottom), float(right), float(top))
 
     @classmethod
     def centred(cls, middle: NDArray[np.float64], size: tuple[float, float]) -> Box:
-        """Width and height [m] around a point (2,) [m]."""
+        """Return a box of a width and height [m] around a point (2,) [m]."""
         half = np.array(size) / 2.0
         return cls(*(middle - half).tolist(), *(middle + half).tolist())
 
     def less_slender(self) -> Box:
-        """Return the same view, widened if too slender to be drawn next to or above others."""
+        """Return the same view, widened if it is too slender for its place in the picture."""
         width, height = self.right - self.left, self.top - self.bottom
         more_x = max(0.0, height / SLENDEREST - width) / 2.0
         more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0
@@ -44,16 +44,16 @@ class Box(NamedTuple):
 
     @property
     def size(self) -> tuple[float, float]:
-        """Width and height [m]."""
+        """The width and height [m]."""
         return self.right - self.left, self.top - self.bottom
 
     @property
     def aspect(self) -> float:
-        """Height over width."""
+        """The ratio of height to width."""
         return (self.top - self.bottom) / (self.right - self.left)
 
     def touches(self, points: NDArray[np.float64]) -> bool:
-        """True if the bounding box of the points meets this one."""
+        """Return whether the bounding box of the points meets this box."""
         low, high = points.min(axis=0), points.max(axis=0)
         apart = high[0] < self.left or low[0] > self.right
         return bool(not (apart or high[1] < self.bottom or low[1] > self.top))

@@ -1,1 +1,1 @@
-"""The report of a study: pictures, tables and words in one HTML file."""
+"""The report of a study: pictures, tables and sentences in one HTML file."""

@@ -1,7 +1,7 @@
-"""The choice of runs for a report: examples of pairs, and the most notable runs.
+"""The choice of runs for a report: examples of pairs, and the most extreme runs.
 
-The choice is not random: the same study gives the same runs, and of equal ones the first in the
-study.
+The choice is not random: the same study gives the same runs. Of equal ones, the first in the study
+is chosen.
 """
 
 from dataclasses import dataclass
@@ -17,19 +17,19 @@ from giveway.studies.statistics import metric
 
 @dataclass(frozen=True)
 class ExamplePair:
-    """Two runs on the same crowd, side by side.
+    """Two runs on the same crowd that are shown side by side.
 
     Attributes:
-        reason: Reason to show it: median (with a stop), best, worst or stop-and-wait.
-        context: Label of the other factors' levels; empty without any.
-        ego: Its id; empty where a run has none.
+        reason: Reason to show the pair: median (with a stop), best, worst or stop-and-wait.
+        context: Label of the other factors' levels; empty without other factors.
+        ego: Id of the ego; empty in runs without an ego.
         treatment: Label of the compared level.
         baseline: Label of the level that is subtracted.
         seed: Seed of both runs.
         run: Id of the treatment's run.
         run_baseline: Id of the baseline's run.
-        metric: Name of the one by which the pair was chosen.
-        difference: treatment minus baseline, in the metric's unit.
+        metric: Name of the metric by which the pair was chosen.
+        difference: Treatment minus baseline, in the metric's unit.
     """
 
     reason: str
@@ -46,13 +46,13 @@ class ExamplePair:
 
 @dataclass(frozen=True)
 class WorstRun:
-    """A run that is worth looking at.
+    """A run that is extreme in one respect.
 
     Attributes:
         reason: Heading of its table.
-        run: Id of the run; of a pair, the treatment's.
-        partner: Id of the baseline's run of a pair; else empty.
-        cell: Label of its levels.
+        run: Id of the run, or of the treatment's run of a pair.
+        partner: Id of the baseline's run of a pair, else empty.
+        cell: Label of the cell's levels.
         ego: Id of the ego; may be empty.
         metric: Name of the metric that is extreme.
         value: Value of the metric, or the pair's difference.
@@ -77,11 +77,11 @@ FASTER = "Faster than the baseline by most"
 
 
 def worst_runs(study: StudyFolder, count: int = 5) -> list[WorstRun]:
-    """The runs that are extreme in safety or time, at most ``count`` for each reason.
+    """Return the runs that are extreme in safety or time, at most ``count`` for each reason.
 
     Args:
-        study: Its runs, design and definition are read.
-        count: Count per reason.
+        study: Folder of the study.
+        count: Largest number of runs for each reason.
     """
     return [
         *_extreme(study, CLOSEST, "minimum_clearance", count, sign=1.0),
@@ -93,15 +93,15 @@ def worst_runs(study: StudyFolder, count: int = 5) -> list[WorstRun]:
 
 
 def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
-    """Pairs that show what the differences are made of: median, best, worst, one that waits.
+    """Return pairs that show typical differences: median, best, worst, and one with waiting.
 
-    They are of the first context, ego and treatment that have pairs; the waiting pair is of a
-    later context where the first has none. The median is that of the pairs in which at least one
-    car stops, as far as there are any: in the others hardly anything happens. A pair is shown once.
+    They come from the first context, ego and treatment with pairs. The pair with waiting comes from
+    a later context if the first has none. The median is that of the pairs in which at least one car
+    stops, if there are any, because in the others hardly anything happens. A pair is shown once.
 
     Args:
-        study: Its runs, design and definition are read.
-        count: Largest number of them.
+        study: Folder of the study.
+        count: Largest number of pairs.
     """
     pairs = paired(study)
     name = deciding_metric(pairs)
@@ -132,7 +132,7 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
 def _add(
     chosen: list[ExamplePair], reason: str, table: pd.DataFrame, by: str, cost: pd.Series
 ) -> None:
-    """The pair of least cost, if there is one that has not been chosen."""
+    """Add the pair of the lowest cost that has not been chosen yet, if there is one."""
     free = ~table["run"].isin([pair.run for pair in chosen])
     best = _smallest(cost.where(free).to_numpy(float), 1)
     chosen += [_example(reason, table.iloc[place], by) for place in best]
@@ -141,7 +141,7 @@ def _add(
 def deciding_metric(pairs: pd.DataFrame) -> str:
     """Return the metric to choose by: the completion time.
 
-    It is the total wait if no pair has reached its goal on both sides.
+    It is the total waiting time if no pair has reached its goal on both sides.
     """
     reached = pairs["completion_time" + DIFFERENCE].notna()
     return "completion_time" if reached.any() else "total_wait"
@@ -165,9 +165,9 @@ def _example(reason: str, row: pd.Series, name: str) -> ExamplePair:
 def _extreme(
     study: StudyFolder, reason: str, name: str, count: int, *, sign: float
 ) -> list[WorstRun]:
-    """Return the runs with the smallest (+1) or largest (-1) numbers.
+    """Return the runs with the smallest (sign +1) or largest (sign -1) numbers.
 
-    The largest must be above zero.
+    The largest numbers must be above zero.
     """
     values = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cost = np.where((values > 0.0) | (sign > 0.0), sign * values, np.nan)
@@ -183,7 +183,7 @@ def _extreme(
 
 
 def _differing(study: StudyFolder, reason: str, count: int, *, sign: float) -> list[WorstRun]:
-    """The pairs with the most negative (+1) or positive (-1) differences."""
+    """Return the pairs with the most negative (sign +1) or positive (sign -1) differences."""
     pairs = paired(study)
     name = deciding_metric(pairs)
     values = pairs[name + DIFFERENCE].to_numpy(float)
@@ -200,6 +200,6 @@ def _differing(study: StudyFolder, reason: str, count: int, *, sign: float) -> l
 
 
 def _smallest(cost: NDArray[np.float64], count: int) -> list[int]:
-    """Return the indices of the ``count`` smallest finite values, the first of equal ones."""
+    """Return the indices of the ``count`` smallest finite values; of equal ones, the first."""
     order = np.argsort(cost, kind="stable")
     return [int(place) for place in order if np.isfinite(cost[place])][: max(count, 0)]

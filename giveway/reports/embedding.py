@@ -1,4 +1,4 @@
-"""Pictures for a page: SVG with the page's colours and fonts, and ids that do not clash."""
+"""Pictures for a page: SVG with the page's colours and fonts, and unique ids."""
 
 import re
 from io import BytesIO
@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from giveway.figures.style import house_style
 
-# Black becomes the page's text colour, white its background: a dark page has light lines.
+# Black becomes the page's text colour, white its background, so that a dark page has light lines.
 _COLOURS = {
     "#000000": "currentColor",
     "#505050": "var(--muted)",
@@ -21,11 +21,11 @@ _DIGITS = re.compile(r"-?\d+\.\d{3,}")
 
 
 def inline_svg(figure: Figure, prefix: str) -> str:
-    """The figure as an ``<svg>`` element.
+    """Return the figure as an ``<svg>`` element.
 
     Args:
         figure: Figure to draw.
-        prefix: Prefix for the ids within; letters and digits, unique in the page.
+        prefix: Prefix of the ids in it; letters and digits, unique in the page.
     """
     stream = BytesIO()
     with house_style(), rc_context({"svg.fonttype": "none"}):

@@ -26,10 +26,10 @@ class Drive:
     """The drive of one ego in a run.
 
     Attributes:
-        ego: Its id.
+        ego: Id of the ego.
         track: Track of the run.
-        safe_distance: d_safe [m].
-        buffer_distance: d_buffer [m].
+        safe_distance: Safe distance d_safe [m].
+        buffer_distance: Buffer distance d_buffer [m].
     """
 
     ego: str
@@ -39,7 +39,7 @@ class Drive:
 
 
 def drives_of(result: RunResult) -> list[Drive]:
-    """The drives of a run's egos."""
+    """Return the drives of a run's egos."""
     return [
         Drive(ego.id, ego.track, ego.config.regulation.safe_distance, ego.config.buffer_distance)
         for ego in result.egos
@@ -49,11 +49,11 @@ def drives_of(result: RunResult) -> list[Drive]:
 def example_pictures(
     pairs: Sequence[ExamplePair], drives: Callable[[str], Sequence[Drive]]
 ) -> tuple[list[tuple[ExamplePair, Picture]], list[str]]:
-    """A picture of each pair, and a sentence for each that could not be made again.
+    """Return a picture of each pair, and a sentence for each pair that could not be made again.
 
     Args:
         pairs: Pairs to draw.
-        drives: gives those of a run of the study, by its id.
+        drives: Function that returns the drives of a run by its id.
     """
     drawn, missing = [], []
     for number, pair in enumerate(pairs, start=1):

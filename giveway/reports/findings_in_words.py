@@ -1,6 +1,6 @@
-"""A study in words: what was compared, how many runs there are, what was found.
+"""A study in sentences: what was compared, the number of runs, the findings.
 
-Every sentence is made from the study's numbers.
+Every sentence follows from the study's numbers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,12 +30,12 @@ from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import metric
 
 METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
-# Largest number of sentences about a metric; further groups are counted in one
+# Largest number of sentences on a metric; further groups are counted in one
 MOST_SENTENCES = 4
 
 
 def lead(study: StudyFolder) -> str:
-    """Say what was compared, on how many crowds."""
+    """Return the sentence on what was compared, and on how many crowds."""
     runs = study.runs
     compared = study.definition.comparison.factor
     seeds = sorted(set(runs["seed"]))
@@ -55,7 +55,7 @@ def lead(study: StudyFolder) -> str:
 
 
 def facts(study: StudyFolder) -> list[tuple[str, str]]:
-    """The study's size at a glance."""
+    """Return the size of the study as labels and numbers."""
     runs = study.runs
     failed = len(study.failures)
     pairs = int(study.situations["pairs"].sum()) if len(study.situations) else 0
@@ -69,7 +69,7 @@ def facts(study: StudyFolder) -> list[tuple[str, str]]:
 
 
 def findings(study: StudyFolder) -> list[str]:
-    """The main results, most important first."""
+    """Return the main results, the most important first."""
     sentences = [sentence for name in METRICS_IN_WORDS for sentence in _of_metric(study, name)]
     sentences += _overlaps(study)
     sentences += _overall(study)
@@ -77,7 +77,7 @@ def findings(study: StudyFolder) -> list[str]:
 
 
 def cautions(study: StudyFolder) -> list[str]:
-    """Return the remarks that a reader needs before believing the findings."""
+    """Return the remarks that a reader needs to judge the findings."""
     sentences = []
     failed = len(study.failures)
     if failed:
@@ -103,7 +103,7 @@ def cautions(study: StudyFolder) -> list[str]:
 
 
 def _too_few(study: StudyFolder) -> str:
-    """A sentence if so few pairs were compared that no difference could have been shown."""
+    """Return a sentence if the pairs are too few to show any difference."""
     frame = study.comparison[study.comparison["verdict"] != "N.A."]
     level = 1.0 - study.definition.comparison.confidence
     most = int(frame["n"].max()) if len(frame) else 0
@@ -117,7 +117,7 @@ def _too_few(study: StudyFolder) -> str:
 
 
 def _of_metric(study: StudyFolder, name: str) -> list[str]:
-    """Sentences on one metric in the general situation: one per group, or the counts."""
+    """Return sentences on one metric in the general situation: one per group, or the counts."""
     frame = study.comparison
     frame = frame[(frame["situation"] == "general") & (frame["metric"] == name)]
     verdicts = frame["verdict"].astype(str).to_list()
@@ -130,7 +130,7 @@ def _of_metric(study: StudyFolder, name: str) -> list[str]:
 
 
 def _sentence(study: StudyFolder, name: str, rows: Sequence[Mapping[Any, Any]]) -> str:
-    """One treatment in all contexts: better and worse with numbers, the others by name."""
+    """Return a sentence on one treatment: contexts with a difference by number, others by name."""
     known, baseline = metric(name), _quoted(baseline_label(study))
     treatment = _quoted(level_label(rows[0]["treatment"])) + shown_ego(level_label(rows[0]["ego"]))
     label = known.label[0].upper() + known.label[1:]
@@ -185,7 +185,7 @@ def _counted(name: str, verdicts: list[str]) -> str:
 
 
 def _overlaps(study: StudyFolder) -> list[str]:
-    """Say in how many runs a pedestrian touched the vehicle, level by level."""
+    """Return in how many runs a pedestrian touched the vehicle, level by level."""
     runs = study.runs
     numbers = pd.to_numeric(runs["overlaps"], errors="coerce")
     if not (numbers > 0).any():
@@ -225,12 +225,12 @@ def _overall(study: StudyFolder) -> list[str]:
 
 
 def _have_ego(study: StudyFolder) -> bool:
-    """True if the runs drive an ego, as far as those with a result tell."""
+    """Return whether the runs have an ego, judging by those with a result."""
     return bool(study.runs["mean_speed"].notna().any()) or bool(len(study.failures))
 
 
 def _quoted(level: str) -> str:
-    """A level's label in a sentence: in quotation marks if it is not a single word."""
+    """Return a level's label for a sentence: in quotation marks if it is not a single word."""
     return level if level and not set(level) & set(" ,;:") else f"“{level}”"
 
 

@@ -1,4 +1,4 @@
-"""Runs that a report keeps, so that the next report need not make them again."""
+"""The runs that a report keeps, so that the next report need not make them again."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ _COLUMNS = tuple(field.name for field in fields(EgoTrack))
 class KeptRuns:
     """Pages and drives of runs, in the folder ``replays`` of a study.
 
-    A list beside them names, for each run, the key of its record, the code that drew its page, and
-    the SHA-256 of both files; whatever does not fit its line is not used.
+    A list beside them has, for each run, the key of its record, the code that drew its page, and
+    the SHA-256 of both files. Files that do not match their line are not used.
 
     Args:
         study: Study that has the runs.
@@ -47,21 +47,21 @@ class KeptRuns:
         self._list = kept if isinstance(kept, dict) else {}
 
     def has(self, run: str) -> bool:
-        """True if page and drives of a run exist and were made from the study's record."""
+        """Return whether page and drives of a run exist and were made from the study's record."""
         try:
             return bool(self._list.get(run) == self._line(run))
         except OSError:
             return False
 
     def page(self, run: str) -> Path:
-        """The page that plays a run."""
+        """Return the path of the page that plays a run."""
         return self._folder / f"{run}.html"
 
     def drives(self, run: str) -> list[Drive]:
-        """The drives of a run's egos.
+        """Return the drives of a run's egos.
 
         Raises:
-            LookupError: they are not kept.
+            LookupError: the drives are not kept.
         """
         try:
             with np.load(self._drives(run), allow_pickle=False) as kept:
@@ -91,7 +91,7 @@ class KeptRuns:
             self._write()
 
     def only(self, runs: Iterable[str]) -> None:
-        """Remove what is kept of all other runs.
+        """Remove the files of all other runs.
 
         Raises:
             ResultsError: the folder cannot be written.

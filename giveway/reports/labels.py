@@ -18,23 +18,23 @@ def contexts(study: StudyFolder) -> list[Context]:
 
 
 def compared_labels(study: StudyFolder) -> list[str]:
-    """The labels of the compared factor's levels, the baseline's among them."""
+    """Return the labels of the compared factor's levels, including the baseline's."""
     return [level.label for level in study.design.factor(study.definition.comparison.factor).levels]
 
 
 def baseline_label(study: StudyFolder) -> str:
-    """The label of the level that is subtracted."""
+    """Return the label of the baseline level."""
     return baseline_level(study.design, study.definition.comparison).label
 
 
 def treatment_labels(study: StudyFolder) -> list[str]:
-    """The labels of the levels that are compared with the baseline."""
+    """Return the labels of the levels that are compared with the baseline."""
     baseline = baseline_label(study)
     return [label for label in compared_labels(study) if label != baseline]
 
 
 def level_label(value: object) -> str:
-    """The label of the level whose value stands in a frame, whatever type it was read as."""
+    """Return the label of a level from its value in a frame, of whatever type."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):
@@ -45,6 +45,6 @@ def level_label(value: object) -> str:
 
 
 def context_key(study: StudyFolder, row: Mapping[Any, Any]) -> tuple[str, ...]:
-    """The ``Context.key`` of a row of a table."""
+    """Return the ``Context.key`` of a row of a table."""
     names = other_factors(study.design, study.definition.comparison)
     return tuple(level_label(row[name]) for name in names)

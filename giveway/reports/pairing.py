@@ -1,4 +1,4 @@
-"""The statistics' pairs as one table with the ids of the runs, as a report needs them."""
+"""The pairs of runs as one table with the ids of the runs, as a report needs them."""
 
 from functools import lru_cache
 
@@ -20,10 +20,10 @@ _HEAD = ("context", "ego", "treatment", "baseline", "seed", "run", "run_baseline
 
 @lru_cache(maxsize=1)
 def paired(study: StudyFolder) -> pd.DataFrame:
-    """One row per pair of runs that differ in nothing but the level that is compared.
+    """Return one row per pair of runs that differ only in the compared level.
 
-    Pairs stand in the order of contexts, treatments, egos and seeds. A report asks for them ten
-    times: those of one study are remembered.
+    Pairs are in the order of contexts, treatments, egos and seeds. The pairs of one study are
+    remembered, since a report needs them about ten times.
 
     Returns:
         A frame with ``context`` (label), ``ego``, ``treatment``, ``baseline`` (labels), ``seed``,

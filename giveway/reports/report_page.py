@@ -1,4 +1,4 @@
-"""The report of a study: one HTML file that needs nothing else, and the pictures as files."""
+"""The report of a study: one self-contained HTML file, and the pictures as files."""
 
 import json
 import os
@@ -45,10 +45,10 @@ class Drawn:
     """A picture in the page.
 
     Attributes:
-        picture: Picture with its caption; its name is its id in the page.
+        picture: Picture with its caption; its name is its id on the page.
         title: Title above it; may be empty.
         svg: Picture as SVG for the page.
-        links: Label and address of replays that belong to it.
+        links: Label and address of the replays that belong to it.
     """
 
     picture: Picture
@@ -60,7 +60,7 @@ class Drawn:
 def shown_runs(
     study: StudyFolder, *, examples: int | None = None, worst: int | None = None
 ) -> list[str]:
-    """The ids of the runs that a report of the same arguments names, each once."""
+    """Return the ids of the runs that a report with the same arguments names, each once."""
     examples, worst = _as_many(study, examples, worst)
     ids = [run for pair in example_pairs(study, examples) for run in (pair.run, pair.run_baseline)]
     ids += [run for row in worst_runs(study, worst) for run in (row.run, row.partner) if run]
@@ -68,11 +68,10 @@ def shown_runs(
 
 
 def _as_many(study: StudyFolder, examples: int | None, worst: int | None) -> tuple[int, int]:
-    """The numbers of pairs and runs that a report shows.
+    """Return the numbers of example pairs and extreme runs that a report shows.
 
-    The runs shown are made again.
+    They grow with the study up to 150 runs, since the runs shown are made again.
 
-    A study of 150 runs or more has the most.
     """
     runs = len(study.runs)
     if examples is None:
@@ -94,20 +93,20 @@ def write_report(
     Both replace existing ones.
 
     Args:
-        study: Its folder, read.
-        examples: Pairs of which speed, gap and force are drawn, at most; None: as befits the
+        study: Folder of the study.
+        examples: Largest number of example pairs that are drawn, or None to choose it by the
             study's size.
-        worst: runs that are listed, for each reason; None: as befits the study's size.
-        drives: gives those of a run, by its id, for the examples; None: there are no examples.
-        replay: gives the page that plays a run, by its id, or None; None: no links.
-        target: The file to write; None: ``report.html`` in the study's folder. Figures go to
-            the folder ``figures`` of the study.
+        worst: Number of runs listed for each reason, or None to choose it by the study's size.
+        drives: Function that returns the drives of a run by its id, or None for no examples.
+        replay: Function that returns the page that plays a run by its id, or None for no links.
+        target: File to write, or None for ``report.html`` in the study's folder. Figures go to the
+            folder ``figures`` of the study.
 
     Returns:
         The file that was written.
 
     Raises:
-        ResultsError: it cannot be written.
+        ResultsError: the report cannot be written.
     """
     target = study.path / REPORT if target is None else target
     folder = study.path / FIGURES
@@ -141,7 +140,7 @@ def write_report(
 def _replays(
     runs: Iterable[str], replay: Callable[[str], Path | None] | None, target: Path
 ) -> dict[str, str]:
-    """Addresses of replays as seen from the report."""
+    """Return the addresses of replays, relative to the report."""
     found = {}
     for run in runs:
         page = None if replay is None else replay(run)
@@ -152,7 +151,7 @@ def _replays(
 
 
 def _clear(folder: Path) -> None:
-    """Make the folder of the figures, and remove those of a former report."""
+    """Make the folder of the figures, and remove the figures of a former report."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in _NAMES:
         for suffix in _FORMATS:
@@ -165,8 +164,8 @@ def _drawn(
 ) -> Drawn:
     """Write the picture's files, and draw it for the page."""
     picture.figure.draw_without_rendering()
-    with house_style():  # it has no layout engine; the user's settings may have one
-        picture.figure.set_layout_engine(None)  # the arrangement is found once, for all formats
+    with house_style():  # no layout engine, which the user's settings may have chosen
+        picture.figure.set_layout_engine(None)  # the arrangement is computed once, for all formats
     for suffix in _FORMATS:
         save_figure(picture.figure, folder / f"{picture.name}{suffix}")
     svg = Markup(inline_svg(picture.figure, picture.name.replace("_", "")))
@@ -268,7 +267,7 @@ def _glossary() -> list[dict[str, str]]:
 
 
 def _factors(study: StudyFolder) -> list[tuple[str, str, str]]:
-    """Name, levels and meaning of what was varied."""
+    """Return name, levels and meaning of each factor."""
     known = {".".join(option.location): option.field.description or "" for option in options()}
     return [
         (

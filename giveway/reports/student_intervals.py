@@ -1,17 +1,17 @@
-"""Student's intervals of means, as far as they are possible."""
+"""Student's intervals of means, without impossible values."""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit  # all of scipy.stats takes a second to load
+from scipy.special import stdtrit  # a part of scipy.stats that loads quickly
 
 
 def possible(interval: tuple[float, float], least: float = 0.0) -> tuple[float, float]:
-    """An interval of a mean without what cannot be: neither times nor clearances are below 0.
+    """Return an interval of a mean without impossible values: no time is negative.
 
-    Student's interval knows no bounds. Where bodies overlapped, ``least``, the least value that was
-    measured, is below 0 and bounds it instead.
+    Student's interval has no bounds. If bodies overlapped, the smallest measured value ``least`` is
+    negative and is the bound instead.
     """
     low, high = interval
     return max(low, min(least, 0.0)), high
@@ -20,7 +20,7 @@ def possible(interval: tuple[float, float], least: float = 0.0) -> tuple[float, 
 def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:
     """Return Student's interval of a mean.
 
-    It is the mean itself if there is one value, or all are equal.
+    It is the mean itself if there is only one value, or all values are equal.
     """
     mean = float(values.mean())
     if values.size < 2:

@@ -1,4 +1,4 @@
-"""The pictures of a study: what each one shows of the tables; ``giveway.figures`` draws it."""
+"""The pictures of a study and their content from the tables; ``giveway.figures`` draws them."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -39,7 +39,7 @@ from giveway.studies.statistics import SITUATIONS, metric
 ROWS_PER_PICTURE = 8
 PANELS_PER_PICTURE = 16
 FEWEST_SPREAD = 10
-"""Runs of a cell, fewer of which have no 5th and 95th percentile to speak of."""
+"""Smallest number of runs in a cell for a 5th and 95th percentile."""
 FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
 SPREADS = {
     "time and comfort": ("completion_time", "longest_wait", "rms_jerk"),
@@ -56,8 +56,8 @@ class Picture:
 
     Attributes:
         name: Name of its files, without suffix; unique within the study.
-        section: Section of the report that it belongs to.
-        caption: One or two sentences beneath it.
+        section: Section of the report to which it belongs.
+        caption: Caption of one or two sentences.
         alt: Description for readers who do not see the picture.
         figure: The picture.
     """
@@ -70,7 +70,7 @@ class Picture:
 
 
 def study_pictures(study: StudyFolder) -> Iterator[Picture]:
-    """Every picture of a study for which its tables have numbers."""
+    """Yield every picture of a study for which its tables have numbers."""
     if study.runs.empty:
         return
     yield from _histograms(study)
@@ -143,7 +143,7 @@ def _panel(
 
 
 def _in_words(rows: Sequence[tuple[str, Sequence[Differences]]], names: dict[str, str]) -> str:
-    """The means of the panels, row by row."""
+    """Return the means of the panels in words, row by row."""
     said = []
     for label, panels in rows:
         for situation, panel in zip(names, panels, strict=True):
@@ -250,7 +250,7 @@ def _spread(study: StudyFolder, name: str, cells: Sequence[int]) -> Distribution
 
 
 def _by_cell(study: StudyFolder, name: str) -> dict[int, NDArray[np.float64]]:
-    """A metric's finite numbers of every cell."""
+    """Return a metric's finite numbers for each cell."""
     numbers = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cell = study.runs["cell"].to_numpy()
     kept = np.isfinite(numbers)

@@ -1,4 +1,4 @@
-"""The report of a study, with the runs that it shows made again and played on pages."""
+"""The report of a study with replays: the runs that it shows are made again."""
 
 import tempfile
 import time
@@ -26,11 +26,11 @@ def write_report_of(
     """Write figures, replays and ``report.html`` into the study's folder.
 
     Args:
-        study: Its folder.
-        replays: Make the runs that the report shows once more, for pages that play them and
-            for the examples of speed and gap; those that a former report has made are kept.
-        tell: takes one line at each step.
-        trusted: Code, as module:Class, that the study may have imported.
+        study: Folder of the study.
+        replays: True to make again the runs that the report shows, for replays and for the examples
+            of speed and gap. Runs that a former report has made are kept.
+        tell: Function that takes one line at each step.
+        trusted: Code, as module:Class, that the study may import.
 
     Raises:
         GivewayError: the disk is full.
@@ -65,7 +65,7 @@ def _make(
     """Make runs again, and keep their pages and drives.
 
     Returns:
-        Why some of them cannot be made any more.
+        The errors of the runs that cannot be made again, by their ids.
     """
     lost: dict[str, GivewayError] = {}
     begun = time.monotonic()
@@ -87,10 +87,10 @@ def _make(
 
 
 def _whole(result: RunResult) -> RunResult:
-    """A run that was not cut off, which a report would show as if it had ended there.
+    """Return a run if it was not cut off; a report would show it as if it had ended there.
 
     Raises:
-        KeyboardInterrupt: the user has ended it, and means the report.
+        KeyboardInterrupt: the user has cut it off, and wants to end the report.
     """
     if result.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt

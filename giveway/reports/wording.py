@@ -24,12 +24,12 @@ def shown_ego(ego: object) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """A number and what it counts: "1 run", "2,000 runs"."""
+    """Return a number and what it counts: "1 run", "2,000 runs"."""
     return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def quantity(value: float, unit: str, digits: int = 2) -> str:
-    """A number with its unit: "−0.57 s"."""
+    """Return a number with its unit: "−0.57 s"."""
     text = number(value, digits)
     return f"{text} {pretty_unit(unit)}" if unit and math.isfinite(value) else text
 
@@ -43,5 +43,5 @@ def interval(low: float, high: float, unit: str = "") -> str:
 
 
 def share(value: float) -> str:
-    """A share in per cent."""
+    """Return a share in per cent."""
     return f"{100.0 * value:.1f} %" if math.isfinite(value) else "–"

@@ -1,4 +1,4 @@
-"""Contexts: groups of a study's cells that differ in the level of the compared factor alone."""
+"""Contexts: groups of a study's cells that differ only in the level of the compared factor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Context:
     """One combination of the levels of the factors that are not compared.
 
     Attributes:
-        levels: Level of each other factor; empty if one factor alone is varied.
+        levels: Level of each other factor; empty if only one factor is varied.
         cells: Number of the cell, by the label of the compared level.
     """
 
@@ -26,7 +26,7 @@ class Context:
 
     @property
     def label(self) -> str:
-        """Factor by factor, as in "crowd.pedestrians = 30"."""
+        """The levels, factor by factor, as in "crowd.pedestrians = 30"."""
         return ", ".join(f"{name} = {level.label}" for name, level in self.levels.items())
 
     @property
@@ -58,12 +58,12 @@ def contexts(design: Design, comparison: Comparison) -> list[Context]:
 
 
 def other_factors(design: Design, comparison: Comparison) -> list[str]:
-    """The names of the factors that make the context."""
+    """Return the names of the factors that make the context."""
     return [factor.name for factor in design.factors if factor.name != comparison.factor]
 
 
 def baseline_level(design: Design, comparison: Comparison) -> Level:
-    """Return the level that is subtracted: the one named, or the factor's last.
+    """Return the baseline level: the one that is named, or the factor's last.
 
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.
@@ -82,9 +82,9 @@ def baseline_level(design: Design, comparison: Comparison) -> Level:
 
 
 def short_name(factor: str) -> str:
-    """An option's name without its table's: "pedestrians" of "crowd.pedestrians".
+    """Return an option's name without its table's: "pedestrians" for "crowd.pedestrians".
 
-    SUMO's seed keeps its table's name: "seed" is that of the crowd.
+    SUMO's seed keeps its table's name, since "seed" is the crowd's.
     """
     table, dot, key = factor.partition(".")
     plain = dot and table.isidentifier() and key.isidentifier() and key != "seed"

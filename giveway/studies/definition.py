@@ -1,4 +1,4 @@
-"""The study file: what is varied, how often it is run, what is compared."""
+"""The study file: the varied factors, the number of runs, the comparison."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class StudyDefinition(Section):
     precision: Precision | None = None
 
     def placed(self, settings: dict[str, Any]) -> dict[str, Any]:
-        """``settings`` with the paths of those files that exist in the study's folder."""
+        """Return ``settings`` with the paths of those files that exist in the study's folder."""
         return anchored(deepcopy(settings), Path(self.folder))
 
     @model_validator(mode="after")
@@ -115,7 +115,7 @@ def read_definition(path: Path) -> StudyDefinition:
 
 
 def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
-    """The study in a TOML text.
+    """Return the study in a TOML text.
 
     Args:
         text: Text of the file.
@@ -123,7 +123,8 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
         folder: Folder to which relative paths refer.
 
     Raises:
-        ConfigError: one line that names the key, its value and what was expected.
+        ConfigError: the study is not valid; the message names the key, its value and what was
+            expected.
     """
     return _placed(parse_toml(text, origin), origin, folder)
 
@@ -133,20 +134,21 @@ def _placed(values: dict[str, Any], origin: str, folder: Path) -> StudyDefinitio
 
 
 def make_definition(values: dict[str, Any], origin: str) -> StudyDefinition:
-    """The study in a dictionary with the keys of a study's TOML file.
+    """Return the study in a dictionary with the keys of a study's TOML file.
 
     Args:
-        values: File names in it are relative to the working folder.
-        origin: Origin of it, for messages.
+        values: Keys and values; file names in it are relative to the working folder.
+        origin: Origin of the dictionary, for messages.
 
     Raises:
-        ConfigError: one line that names the key, its value and what was expected.
+        ConfigError: the study is not valid; the message names the key, its value and what was
+            expected.
     """
     return _placed(values, origin, Path.cwd())
 
 
 def changed(definition: StudyDefinition, changes: dict[str, Any], origin: str) -> StudyDefinition:
-    """The study with some keys changed.
+    """Return the study with some keys changed.
 
     Raises:
         ConfigError: the result is not a valid study.
@@ -162,7 +164,7 @@ def _validated(values: dict[str, Any], origin: str) -> StudyDefinition:
 
 
 def _folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
-    """The folder that relative file names refer to, if the study names any file."""
+    """Return the folder to which relative file names refer, if the study names any file."""
     named = values.get("folder", "")
     varied = (values.get("run"), values.get("factors"))
     if isinstance(named, str) and (named or any(_holds_file_of(folder, v) for v in varied)):
@@ -171,7 +173,7 @@ def _folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
 
 
 def _holds_file_of(folder: Path, values: Any) -> bool:
-    """True if a text in ``values`` names a file or folder in ``folder``."""
+    """Return whether a text in ``values`` names a file or folder in ``folder``."""
     if isinstance(values, dict):
         return any(_holds_file_of(folder, value) for value in values.values())
     if isinstance(values, list):
@@ -180,15 +182,15 @@ def _holds_file_of(folder: Path, values: Any) -> bool:
         return False
     try:
         return bool(anchored({"scenario": values}, folder)["scenario"] != values)
-    except OSError:  # a text too long for a name
+    except OSError:  # the text is too long for a name
         return False
 
 
 def dump_definition(definition: StudyDefinition) -> str:
-    """The study as TOML, from which :func:`parse_definition` makes the same cells.
+    """Return the study as TOML, from which :func:`parse_definition` makes the same cells.
 
-    Factors keep their order, on which the numbers of the cells depend. TOML wants tables after
-    plain lists, which would change that order; hence each level is an inline table.
+    Factors keep their order, on which the numbers of the cells depend. TOML demands tables after
+    plain lists, which would change that order; therefore each level is an inline table.
     """
     values = definition.model_dump(mode="json", exclude_none=True)
     document = tomlkit.document()

@@ -42,8 +42,8 @@ _RESERVED = frozenset(
 }  # columns of the tables
 
 _NAMED = frozenset(socket.options for socket in TABLES)
-"""The tables whose keys are the names of plug-ins."""
-_NOTHING = "none"  # an empty text or list, as a label
+"""Tables whose keys are the names of plug-ins."""
+_NOTHING = "none"  # Label of an empty text or list
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,9 @@ class Level:
     """One value of a factor.
 
     Attributes:
-        label: Name of it in tables and pictures.
-        value: The option's value; the label, for a level that has a name.
-        settings: Options that it sets.
+        label: Name in tables and pictures.
+        value: Value of the option, or the label if the level has a name.
+        settings: Options that the level sets.
     """
 
     label: str
@@ -63,12 +63,12 @@ class Level:
 
 @dataclass(frozen=True)
 class Factor:
-    """Something that the study varies.
+    """A factor that the study varies.
 
     Attributes:
-        name: An option, as ``crowd.pedestrians``, or a name of the user's.
-        levels: Its values.
-        unit: Unit of an option; None without a unit.
+        name: Name of an option, as ``crowd.pedestrians``, or a name of the user's.
+        levels: Levels of the factor.
+        unit: Unit of an option, or None without a unit.
     """
 
     name: str
@@ -76,7 +76,7 @@ class Factor:
     unit: str | None = None
 
     def level(self, label: object) -> Level | None:
-        """The level that is called ``label``, or has that value."""
+        """Return the level with the label or value ``label``, or None."""
         wanted = label_of(label)
         return next((level for level in self.levels if level.label == wanted), None)
 
@@ -95,11 +95,11 @@ class Cell:
 
     @property
     def label(self) -> str:
-        """Factor by factor, as in "crowd.pedestrians = 30, controller = mpc"."""
+        """The levels, factor by factor, as in "crowd.pedestrians = 30, controller = mpc"."""
         return ", ".join(f"{name} = {level.label}" for name, level in self.levels.items())
 
     def layer(self, origin: str, definition: StudyDefinition) -> Layer:
-        """Its settings on top of those that all cells share."""
+        """Return the cell's settings, on top of those that all cells share."""
         layers = [Layer(origin, definition.placed(definition.run))]
         layers += [Layer(origin, level.settings) for level in self.levels.values()]
         name = f"{origin}: cell {self.number} ({self.label})"
@@ -108,16 +108,16 @@ class Cell:
 
 @dataclass(frozen=True)
 class Design:
-    """Factors and the cells that are run."""
+    """The factors of a study and the cells that are run."""
 
     factors: tuple[Factor, ...]
     cells: tuple[Cell, ...]
 
     def factor(self, name: str) -> Factor:
-        """The factor of that name.
+        """Return the factor of that name.
 
         Raises:
-            ConfigError: there is none.
+            ConfigError: there is no such factor.
         """
         for factor in self.factors:
             if factor.name == name:
@@ -127,11 +127,11 @@ class Design:
 
 
 def design(definition: StudyDefinition, origin: str) -> Design:
-    """The cells of a study: every combination, or those that it lists.
+    """Return the cells of a study: every combination, or those that it lists.
 
     Args:
-        definition: The study.
-        origin: Its file, for messages.
+        definition: Definition of the study.
+        origin: File of the study, for messages.
 
     Raises:
         ConfigError: a factor or a cell cannot be used.
@@ -231,7 +231,7 @@ def _named_factor(
 
 
 def _plugged_location(table: str, key: str) -> tuple[str, ...]:
-    """Return the location of a plug-in's option; those of a rule or metric are below its name."""
+    """Return the location of a plug-in's option; for a rule or metric it is below the name."""
     name, _, own = key.rpartition(".")
     is_option = table in _NAMED and name and ":" not in own
     return (table, name, own) if is_option else (table, key)
@@ -279,7 +279,7 @@ def _factor(name: str, levels: list[Level], place: str, unit: str | None = None)
 def _only(
     factors: tuple[Factor, ...], wanted: Mapping[str, Sequence[Any]], origin: str
 ) -> tuple[Factor, ...]:
-    """Return the factors with the wanted levels alone, in the study's order.
+    """Return the factors with only the wanted levels, in the study's order.
 
     Raises:
         ConfigError: there is no such factor or level.
@@ -303,7 +303,7 @@ def _only(
 
 
 def _listed(entry: dict[str, Any], factors: tuple[Factor, ...], place: str) -> dict[str, Level]:
-    """The levels that one entry of ``cells`` names."""
+    """Return the levels that one entry of ``cells`` names."""
     flat = {
         f"{key}.{inner}" if isinstance(value, dict) else key: item
         for key, value in entry.items()

@@ -1,6 +1,6 @@
-"""Hashes of everything a run's numbers depend on: its settings, its input files, the code.
+"""The hashes of everything on which a run's numbers depend: settings, input files, code.
 
-Two runs with one key have the same rows, byte for byte; that is what lets a study be resumed.
+Two runs with the same key have the same rows, byte for byte. Therefore a study can be resumed.
 """
 
 import functools
@@ -32,21 +32,21 @@ _NOT_NUMBERS = (
     "studies",
     "validation",
 )
-"""Parts of giveway that look at results only: a change there leaves every record valid."""
+"""Parts of giveway that only read results: a change there leaves every record valid."""
 _NAMING_FILES = (
     ("vehicle", "fmu"),
     ("vehicle", "profile"),
     ("crowd", "preset"),
     ("perception", "preset"),
 )
-# Files that make the rows, in packages otherwise left out
+# Files that make the rows, in packages that are otherwise left out
 _ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})
 _IRRELEVANT_VERSIONS = frozenset({"platform", "machine", "pandas", "python"})
 
 
 @functools.cache
 def software_identity() -> str:
-    """Changes with whatever code can change a number: giveway's, and the libraries' versions."""
+    """Return a text that changes with all code that can change a number: giveway and libraries."""
     root = Path(__file__).resolve().parent.parent.parent
     digest = hashlib.sha256()
     for room in ("giveway", *ROOMS):
@@ -62,7 +62,7 @@ def software_identity() -> str:
 
 
 def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
-    """SHA-256 of every file that the run reads: the scenario's, FMUs, profiles, presets."""
+    """Return the SHA-256 of every file that the run reads: scenario, FMUs, profiles, presets."""
     hashes = {f"scenario {name}": hash_ for name, hash_ in scenario_hashes(scenario).items()}
     hashes |= {name: _hash(file) for name, file in _own_files(config)}
     return hashes | code_hashes(config)
@@ -71,10 +71,10 @@ def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
 def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str:
     """Return a hash of everything but the seed.
 
-    The content of the files matters, their place does not.
+    It depends on the content of the files, but not on their paths.
 
     Args:
-        config: The effective configuration; its seed is left out.
+        config: Effective configuration; its seed is left out.
         inputs: Hashes of the input files from :func:`input_hashes`.
         software: Identity of the code from :func:`software_identity`.
     """
@@ -93,12 +93,12 @@ def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str
 
 
 def run_key(digest: str, seed: int) -> str:
-    """The key of one run of a cell."""
+    """Return the key of one run of a cell."""
     return hashlib.sha256(f"{digest} {seed}".encode()).hexdigest()[:32]
 
 
 def require_same(task: Task) -> None:
-    """Make sure that this process computes what was planned, perhaps elsewhere or much later.
+    """Make sure that this process makes the planned run, perhaps elsewhere or much later.
 
     Raises:
         ConfigError: another version of giveway or a library runs here, or a file differs.
@@ -143,12 +143,12 @@ def _scenario_files_of(scenario: Scenario, _stamps: object) -> tuple[tuple[str, 
 
 
 def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """The files that a run reads apart from its scenario."""
+    """Return the files that a run reads apart from its scenario."""
     return [*_vehicle_files(config), *_preset_files(config), *_option_files(config)]
 
 
 def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """The pedestrian model's parameters: of the crowd, and as each ego expects it."""
+    """Return the preset files of the pedestrian model: of the crowd, and as each ego expects it."""
     named = [("preset of the crowd", config.crowd.preset)]
     named += [
         (f"preset that {ego.ego_id} predicts with", ego.perception.preset)
@@ -193,7 +193,7 @@ def _hash(file: Path) -> str:
 
 
 def _stamp(file: Path) -> tuple[int, int]:
-    """Time and size, which change with the file."""
+    """Return the time and size of a file, which change with it."""
     status = file.stat()
     return status.st_mtime_ns, status.st_size
 

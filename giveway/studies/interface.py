@@ -1,4 +1,4 @@
-"""The Python API of studies: one call, and its tables as frames."""
+"""The Python API of studies: one call, and tables as frames."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ def study(
     force: bool = False,
     watcher: Callable[[StudyProgress], None] | None = None,
 ) -> StudyFolder:
-    """Run a study: many paired runs in processes of their own, compared.
+    """Run a study: many paired runs in separate processes, and their comparison.
 
     Args:
         definition: A dictionary with the keys of a study's TOML file (``factors`` at least; 20
             seeds unless ``replications`` says more), a bundled study's name, or a .toml file.
-        out: Its folder; None: ``results/study_NAME``.
-        jobs: Worker processes; None: one per processor.
+        out: Folder of the study, or None for ``results/study_NAME``.
+        jobs: Number of worker processes, or None for one per processor.
         resume: True to continue the study in the folder.
         force: True to replace the content of the folder.
-        watcher: called after every run.
+        watcher: Function that is called after every run.
 
     Returns:
         The study: ``runs``, ``levels``, ``comparison`` and ``failures`` are frames with the columns

@@ -1,4 +1,4 @@
-"""Planning a study: settings, key and order of every run, before any of them is made."""
+"""The plan of a study: settings, key and order of every run, before any of them is made."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -20,11 +20,11 @@ from sumo_scenarios import Scenario
 
 @dataclass(frozen=True)
 class PlannedCell:
-    """A cell whose scenario and settings have been found to fit.
+    """A cell whose scenario and settings fit each other.
 
     Attributes:
         cell: Levels and number.
-        config: The effective configuration of its first run.
+        config: Effective configuration of its first run.
         inputs: SHA-256 of each file that its runs read.
         digest: Hash of everything that its runs have in common.
     """
@@ -37,35 +37,35 @@ class PlannedCell:
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """One run: its cell and its seed."""
+    """A planned run: its cell and its seed."""
 
     planned: PlannedCell
     seed: int
 
     @property
     def id(self) -> str:
-        """Its name within the study."""
+        """The run's name within the study."""
         return run_id(self.planned.cell.number, self.seed)
 
     @property
     def key(self) -> str:
-        """The key of its record."""
+        """The key of the run's record."""
         return run_key(self.planned.digest, self.seed)
 
     @property
     def config(self) -> RunConfig:
-        """Its effective configuration."""
+        """The run's effective configuration."""
         return self.planned.config.model_copy(update={"seed": self.seed})
 
     def task(self) -> Task:
-        """The task that a worker needs to make it."""
+        """Return the task that a worker needs to make the run."""
         text = self.config.model_dump_json()
         return Task(self.id, self.key, text, self.planned.inputs, software_identity())
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The cells of a study and the seeds of each."""
+    """The cells of a study and their seeds."""
 
     definition: StudyDefinition
     design: Design
@@ -73,15 +73,15 @@ class Plan:
 
     @property
     def seeds(self) -> range:
-        """Return the seeds of every cell.
+        """The seeds of every cell.
 
-        With [precision] these are the most there may be.
+        With [precision] these are the most that may be run.
         """
         first = self.definition.first_seed
         return range(first, first + self.definition.replications)
 
     def runs(self, seeds: range) -> Iterator[PlannedRun]:
-        """The runs of all cells seed by seed, so that finished runs are always paired."""
+        """Yield the runs of all cells seed by seed, so that finished runs are always paired."""
         for seed in seeds:
             for planned in self.cells:
                 yield PlannedRun(planned, seed)
@@ -91,11 +91,11 @@ class Plan:
 
 
 def plan(definition: StudyDefinition, origin: str) -> Plan:
-    """Look at every cell's scenario and vehicles, and give every run its key.
+    """Check every cell's scenario and vehicles, and give every run its key.
 
     Args:
-        definition: The study.
-        origin: Its file, for messages.
+        definition: Definition of the study.
+        origin: File of the study, for messages.
 
     Raises:
         GivewayError: a cell cannot be run; the message names it.
@@ -120,7 +120,7 @@ def _require_own_names(designed: Design, cells: Iterable[PlannedCell], origin: s
 
 
 def _with_comparison(definition: StudyDefinition, designed: Design, origin: str) -> StudyDefinition:
-    """``definition`` with the factor and the baseline that its comparison leaves open."""
+    """Return ``definition`` with the factor and the baseline that its comparison leaves open."""
     names = [factor.name for factor in designed.factors]
     wanted = definition.comparison
     chosen = "factor" in wanted.model_fields_set or wanted.factor in names
@@ -168,7 +168,7 @@ def _require_people(cell: Cell, config: RunConfig, scenario: Scenario) -> None:
     """Make sure that a study that varies the crowd has pedestrians in each of its cells.
 
     Raises:
-        ConfigError: neither giveway nor the scenario has anybody walk in this one.
+        ConfigError: neither giveway nor the scenario adds pedestrians in a cell.
     """
     varied = any("crowd" in level.settings for level in cell.levels.values())
     if not varied or config.crowd.adds_people:

@@ -1,4 +1,4 @@
-"""The record of one run in a study: its summary rows, or why it has none."""
+"""The record of one run in a study: its summary rows, or the reason why it has none."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def run_id(cell: int, seed: int) -> str:
 
 @dataclass(frozen=True)
 class Task:
-    """One run to be made, in any process, on any machine.
+    """A run to be made, in any process, on any machine.
 
     Attributes:
-        run: Id in its study, such as ``c2-s17`` (cell 2, seed 17).
-        key: Content hash of everything that can change a number of it.
-        config: The effective configuration as JSON.
+        run: Id of the run in its study, such as ``c2-s17`` (cell 2, seed 17).
+        key: Hash of everything that can change a number of the run.
+        config: Effective configuration as JSON.
         inputs: SHA-256 of each input file, by its name; a worker on another machine checks them.
         software: Identity of the code that planned it; a worker must be the same.
     """
@@ -42,7 +42,7 @@ class Task:
 
     @cached_property
     def run_config(self) -> RunConfig:
-        """The configuration, read once."""
+        """Return the configuration, which is read once."""
         return RunConfig.model_validate_json(self.config)
 
 
@@ -51,13 +51,13 @@ class Computing:
     """The execution of a run, which may differ between two equal studies.
 
     Attributes:
-        seconds: Wall clock of the run, set-up and metrics included.
+        seconds: Wall clock time [s] of the run, with set-up and metrics.
         attempts: Number of attempts.
         worker: Host and process id.
-        memory: Resident set of the worker after the run [MB].
-        control_median: Median time of one control step, prediction and controller [ms].
-        control_max: The longest one [ms]; the run's first step is left out of both.
-        twin: Part of the seconds spent on following the run and on its twin; nan without a twin.
+        memory: Memory [MB] that the worker holds after the run.
+        control_median: Median time [ms] of a control step, for prediction and controller.
+        control_max: Largest time [ms] of a control step. The first step is left out of both.
+        twin: Part of the seconds for the follow-up and the counterfactual run; nan without one.
     """
 
     seconds: float = math.nan
@@ -71,15 +71,15 @@ class Computing:
 
 @dataclass(frozen=True)
 class RunRecord:
-    """One finished run.
+    """The record of one finished run.
 
     Attributes:
-        run: Id in its study.
-        key: Content hash of everything that can change a number of it.
+        run: Id of the run in its study.
+        key: Hash of everything that can change a number of the run.
         ending: Ending as in the summary: completed, time limit, ..., failed, crashed.
-        rows: One per ego: the columns of ``summary.csv``; one row of the run's head without egos.
-        remarks: notes on what is unusual about the run.
-        failure: One line: why it failed or crashed, and where; empty if it did not.
+        rows: Rows with the columns of ``summary.csv``, one per ego, or one without egos.
+        remarks: Remarks on what is unusual about the run.
+        failure: Reason and place of a failure or crash, in one line; empty if it did not fail.
         computing: Execution of the run.
         columns: Columns of the rows that metrics of other packages have added.
     """
@@ -95,13 +95,14 @@ class RunRecord:
 
     @property
     def failed(self) -> bool:
-        """True if it has no result."""
+        """True if the run has no result."""
         return bool(self.failure)
 
     def called(self, run: str) -> RunRecord:
-        """The same record under another name: as the study numbers its cells now.
+        """Return the same record under the name that the run has in the present study.
 
-        Cells with equal settings share their records, and a level that is added moves numbers.
+        Cells with equal settings share their records, and an additional level changes the numbers
+        of cells.
         """
         return self if self.run == run else replace(self, run=run)
 
@@ -114,19 +115,19 @@ class RunRecord:
 
     @classmethod
     def from_json(cls, text: str) -> RunRecord:
-        """The record that :meth:`to_json` has written.
+        """Return the record from the text of :meth:`to_json`.
 
         Raises:
-            ValueError: the text is not one.
+            ValueError: the text is not a record.
         """
         return cls.from_values(json.loads(text))
 
     @classmethod
     def from_values(cls, values: dict[str, Any]) -> RunRecord:
-        """Make the record from JSON that has been read already, and empty ``values``.
+        """Return the record from JSON values that have been read already; ``values`` is emptied.
 
         Raises:
-            ValueError: they are not those of a record.
+            ValueError: they are not the values of a record.
         """
         try:
             computing = Computing(**{k: _number(v) for k, v in values.pop("computing").items()})

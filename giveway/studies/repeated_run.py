@@ -1,4 +1,4 @@
-"""One run of a study once more, with everything that a single run leaves behind."""
+"""The repetition of one run of a study, with all the files of a single run."""
 
 import math
 from collections.abc import Collection
@@ -20,22 +20,22 @@ PREDICTIONS = 0.25  # Time [s] between two predicted positions that are kept
 
 
 class OtherNumbersError(GivewayError):
-    """A run that was made again does not give the study's row; its results are written."""
+    """A repeated run does not give the study's row; its results are written anyway."""
 
 
 def checked_run(
     study: StudyFolder, run_id: str, *, predictions: bool = False, trusted: Collection[str] = ()
 ) -> CheckedRun:
-    """A run of a study, ready to be made again.
+    """Return a run of a study, ready to be made again.
 
     Args:
         study: Study that has the run.
-        run_id: Such as ``c2-s17``.
-        predictions: The predicted positions are to be kept, for the replay.
-        trusted: Code, as module:Class, that the study may have imported.
+        run_id: Id of the run, such as ``c2-s17``.
+        predictions: True to keep the predicted positions, for the replay.
+        trusted: Code, as module:Class, that the study may import.
 
     Raises:
-        GivewayError: there is no such run, or its scenario is no longer there.
+        GivewayError: there is no such run, or its scenario no longer exists.
     """
     cell, seed = study.cell_of(run_id)
     origin = str(study.path / "study.toml")
@@ -57,21 +57,21 @@ def rerun(
     watcher: Watcher | None = None,
     journal: Path | None = None,
 ) -> RunResult:
-    """Make one run of a study once more, in this process.
+    """Make one run of a study again, in this process.
 
     Args:
-        study: Its folder.
-        run_id: Such as ``c2-s17``.
-        out: Folder for its results; None writes nothing.
-        checked: The run, where it is known already; None: as :func:`checked_run` gives it.
-        force: Replace the results that are there.
-        pictures: also draw the state figure and the top view.
-        watcher: told of every control step.
-        journal: An empty folder for the rows, to be read should this process die.
+        study: Folder of the study.
+        run_id: Id of the run, such as ``c2-s17``.
+        out: Folder for the results, or None to write nothing.
+        checked: The run, or None to find it by :func:`checked_run`.
+        force: True to replace existing results.
+        pictures: True to draw also the state figure and the top view.
+        watcher: Watcher that is told about every control step.
+        journal: Empty folder for the rows, which can be read if this process dies.
 
     Raises:
-        OtherNumbersError: its numbers are not the study's.
-        GivewayError: it cannot be made, or fails.
+        OtherNumbersError: the numbers differ from the study's.
+        GivewayError: the run cannot be made, or fails.
     """
     result = run_checked(
         checked or checked_run(study, run_id),
@@ -91,7 +91,7 @@ def require_same_rows(result: RunResult, record: RunRecord, study: StudyFolder) 
     """Make sure that a run gives the numbers of its record.
 
     Raises:
-        OtherNumbersError: it does not; the message names the first difference.
+        OtherNumbersError: a number differs; the message names the first one.
     """
     rows = rows_of(result)
     if len(rows) != len(record.rows):

@@ -1,4 +1,4 @@
-"""A study from its definition to its tables: plan, compute what is missing, keep, compare."""
+"""The run of a study: plan, compute the missing runs, keep them, compare."""
 
 import json
 import math
@@ -49,15 +49,15 @@ class StudyInterruptedError(GivewayError):
 class StudyProgress:
     """The progress of a study."""
 
-    total: int  # Number of runs, as far as known
-    kept: int  # Number of runs kept from former sessions
-    made: int  # Number of runs made in this session
-    failed: int  # Number of failed runs among kept and made ones
+    total: int  # number of runs, if it is known
+    kept: int  # number of runs kept from former sessions
+    made: int  # number of runs made in this session
+    failed: int  # number of failed runs among both
     latest: RunRecord | None
 
     @property
     def finished(self) -> int:
-        """Runs that are on disk."""
+        """The number of runs that are on disk."""
         return self.kept + self.made
 
 
@@ -73,15 +73,15 @@ def run_study(
 
     Args:
         definition: Definition of the study.
-        origin: Its file, for messages.
-        out: Its folder.
-        options: Options of computing it.
-        watcher: told of every finished run.
-        tell: takes one line for each kept file that is broken, and when the runs of another
-            giveway are made again; None: to standard error.
+        origin: File of the study, for messages.
+        out: Folder of the study.
+        options: Options of the computation.
+        watcher: Function that is told about every finished run.
+        tell: Function that takes one line for each kept file that is broken, and when runs of
+            another giveway version are made again. None for standard error.
 
     Raises:
-        GivewayError: it cannot be run, or was ended; every finished run is kept.
+        GivewayError: the study cannot be run, or was ended; every finished run is kept.
     """
     options = options or StudyOptions()
     planned = plan(definition, origin)
@@ -102,7 +102,7 @@ def run_study(
 
 
 class _Session:
-    """One process's work on a study."""
+    """The work of one process on a study."""
 
     def __init__(
         self,
@@ -160,13 +160,13 @@ class _Session:
 
     def end(self) -> None:
         """Write the tables, then mark the study as complete."""
-        # the precision reached has fixed the number of seeds
+        # the precision that was reached has fixed the number of seeds
         self._write_manifest(complete=False)
         write_tables(StudyFolder(self._out), whole=True)
         self._write_manifest(complete=True)
 
     def write_partial_tables(self) -> None:
-        """Write the tables that are made quickly, after an interruption."""
+        """Write the tables that are quickly made, after an interruption."""
         if self._begun:
             self._seeds = self._plan.seeds
             self._write_manifest(complete=False)
@@ -220,7 +220,7 @@ class _Session:
         self._watcher(StudyProgress(total, self._kept, self._made, self._failed, record))
 
     def _precise(self) -> bool:
-        """True if the seeds so far determine the difference precisely enough."""
+        """Return whether the seeds so far determine the difference precisely enough."""
         definition, design = self._plan.definition, self._plan.design
         assert definition.precision is not None
         made = [
@@ -262,11 +262,11 @@ class _Session:
 def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, float]]:
     """Estimate the time [s] that a study will take, from two runs of each cell.
 
-    Nothing of these runs is kept.
+    These runs are not kept.
 
     Returns:
-        The whole time on the workers that ``options`` ask for, and the seconds of one run by the
-        number of its cell; nan where it failed, which the whole time leaves out.
+        The whole time on the workers of ``options``, and the seconds of one run by the number of
+        its cell. They are nan if the run failed, and the whole time leaves that cell out.
     """
     seeds = planned.seeds
     tasks = [run.task() for seed in seeds[:2] for run in planned.runs(range(seed, seed + 1))]

@@ -1,4 +1,4 @@
-"""The files of studies: those that come with giveway by their names, and a user's own."""
+"""The files of studies: the bundled ones by name, and a user's own."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -9,7 +9,7 @@ _FOLDER = "bundled"
 
 
 def bundled_studies() -> tuple[str, ...]:
-    """The names of the studies that come with giveway."""
+    """Return the names of the bundled studies."""
     folder = files("giveway.studies") / _FOLDER
     return tuple(
         sorted(
@@ -21,10 +21,10 @@ def bundled_studies() -> tuple[str, ...]:
 
 
 def find_study(name: str | Path) -> Path:
-    """The file of a bundled study, or the user's own .toml file.
+    """Return the file of a bundled study, or the user's own .toml file.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is no such study.
     """
     path = Path(name)
     if path.suffix == ".toml":

@@ -1,4 +1,4 @@
-"""Options of computing a study, which its results do not depend on."""
+"""The options of a study's computation, on which its results do not depend."""
 
 from dataclasses import dataclass
 
@@ -9,19 +9,19 @@ from giveway.studies.execution import HANG_LIMIT, Executor, cluster_executor, lo
 
 @dataclass(frozen=True)
 class StudyOptions:
-    """The user's wishes apart from the study itself.
+    """The options that a user sets apart from the study itself.
 
     Attributes:
-        jobs: Number of worker processes on this machine. None: one per processor that we may use.
-        cluster: Address of a Dask scheduler instead, or "local:N".
+        jobs: Number of worker processes on this machine, or None for one per available processor.
+        cluster: Address of a Dask scheduler to use instead, or "local:N".
         resume: True to continue the study in the folder.
         force: True to replace the content of the folder.
-        retry_failed: Make failed runs again.
-        hang_limit: [s] without progress after which a run's worker is killed.
-        run_limit: [s] of wall clock that one run may take; None: no limit.
+        retry_failed: True to make failed runs again.
+        hang_limit: Time [s] without progress after which a run's worker is killed.
+        run_limit: Wall clock time [s] of one run, or None for no limit.
 
     Raises:
-        ConfigError: two of them contradict each other.
+        ConfigError: two options contradict each other.
     """
 
     jobs: int | None = None
@@ -45,7 +45,7 @@ class StudyOptions:
             )
 
     def executor(self) -> Executor:
-        """The executor that makes the runs.
+        """Return the executor that makes the runs.
 
         Raises:
             WorkerError: a number or an address cannot be used.

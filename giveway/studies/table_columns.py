@@ -4,7 +4,7 @@ from giveway.run_data.columns import Column
 
 
 def numbers_of(columns: tuple[Column, ...]) -> list[str]:
-    """The names of those columns that hold numbers that need not be whole."""
+    """Return the names of the columns with numbers that need not be whole."""
     return [column.name for column in columns if column.type == "number"]
 
 

@@ -1,4 +1,4 @@
-"""Studies without a file: what is varied comes from the command line or from Python."""
+"""Studies without a file: the factors come from the command line or from Python."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
     """Return the study of all combinations of some options' values.
 
     Args:
-        variations: like ``controller_options.conflict_weight=0.3,0.6``.
-        settings: A TOML file with the other settings of every run; None: giveway's own.
+        variations: Texts like ``controller_options.conflict_weight=0.3,0.6``.
+        settings: TOML file with the other settings of every run, or None for giveway's defaults.
 
     Raises:
-        ConfigError: a variation is none, or the file cannot be used.
+        ConfigError: a text is no variation, or the file cannot be used.
     """
     factors: dict[str, list[Any]] = {}
     for variation in variations:
@@ -42,7 +42,7 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
 
 
 def chosen(choices: Sequence[str]) -> dict[str, list[Any]]:
-    """The levels, by factor, that texts like ``controller=mpc`` choose.
+    """Return the levels, by factor, that texts like ``controller=mpc`` choose.
 
     Raises:
         ConfigError: a text chooses nothing.
@@ -71,10 +71,10 @@ def _parsed(variation: str) -> tuple[str, list[Any]]:
 
 
 def study_of(study: Mapping[str, Any] | str | Path) -> tuple[StudyDefinition, str]:
-    """Return the study that a caller of the Python API means, and its origin for messages.
+    """Return the study that a caller of the Python API names, and its origin for messages.
 
     Raises:
-        ConfigError: it is none.
+        ConfigError: there is no such study.
     """
     from giveway.studies.definition import read_definition
     from giveway.studies.study_files import find_study

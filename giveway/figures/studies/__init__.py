@@ -1,1 +1,1 @@
-"""Pictures of studies; each is drawn from the tables of a study."""
+"""The pictures of studies, each drawn from the tables of a study."""

@@ -1,7 +1,7 @@
-"""Histograms of paired differences: the three of Yang & Özgüner 2019, section 5, per context.
+"""Histograms of paired differences, three per context (Yang & Özgüner 2019, section 5).
 
-A picture has a row per context and a column per situation. Bars on the side where the treatment
-is better are blue, those on the other orange; pairs without any difference stand at zero, in grey.
+A picture has a row per context and a column per situation. Bars on the side where the treatment is
+better are blue, those on the other side orange. Pairs without a difference are at zero, in grey.
 """
 
 import math
@@ -23,21 +23,21 @@ from giveway.figures.style import BLACK, BLUE, GREY, ORANGE, quiet_grid, styled
 from giveway.run_data.writing import digits_for, number, pretty_unit
 
 BINS = 48
-TAIL = 2.5  # Share [%] of the differences at either end that the picture may leave out
-SPIKE = 30.0  # Ratio to the median bin from which a bin hides the others
+TAIL = 2.5  # Share [%] of the differences at either end that may be outside of the picture
+SPIKE = 30.0  # Ratio to the median bin from which on a bin hides the others
 EQUAL = 5e-7  # Differences below this are 0: tables have six decimals
 DASHES = (0, (4, 2))
 
 
 @dataclass(frozen=True)
 class Differences:
-    """One panel.
+    """The content of one panel.
 
     Attributes:
-        values: (n,) Treatment minus baseline, one per pair.
-        share: Share of all pairs of the context; nan if not known.
-        mean: Mean of the values; nan if it is not reported (N.A.).
-        low, high: Interval of the mean.
+        values: Treatment minus baseline (n,), one per pair.
+        share: Share of all pairs of the context, or nan if not known.
+        mean: Mean of the values, or nan if it is not reported (N.A.).
+        low, high: Ends of the interval of the mean.
         published: Mean in the literature, or None.
     """
 
@@ -67,7 +67,7 @@ def differences_figure(
     title: str = "",
     source: str = "published",
 ) -> Figure:
-    """Histograms of paired differences, one row of panels per context.
+    """Draw histograms of paired differences, one row of panels per context.
 
     Args:
         columns: Situation of each column.
@@ -109,7 +109,7 @@ def differences_figure(
 
 
 def bin_edges(panels: Sequence[Differences]) -> NDArray[np.float64]:
-    """Equal bins for all panels of a column, zero at an edge, all but the tails within."""
+    """Return equal bins for all panels of a column, with an edge at zero; tails may be beyond."""
     spans = [np.percentile(p.values, (TAIL, 100.0 - TAIL)) for p in panels if p.values.size]
     extra = [p.published for p in panels if p.published is not None]
     extra += [value for p in panels for value in (p.low, p.high) if math.isfinite(value)]
@@ -123,15 +123,15 @@ def bin_edges(panels: Sequence[Differences]) -> NDArray[np.float64]:
 
 
 def _round_up(width: float) -> float:
-    """The next of 1, 2, 2.5, 5 times a power of ten."""
+    """Return the next of 1, 2, 2.5, 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(width))
     return power * next(step for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * power >= width)
 
 
 def _has_a_spike(panel: Differences, edges: NDArray[np.float64]) -> bool:
-    """True if one bin would hide all others.
+    """Return whether one bin would hide all others.
 
-    Most pairs may hardly differ and a few differ by much, and it is those that make the mean.
+    Most pairs may hardly differ while a few differ by much, and those make the mean.
     """
     counts, _ = np.histogram(panel.values, edges)
     filled = counts[counts > 0]
@@ -185,7 +185,7 @@ def _draw(
 
 
 def _count_axis(axes: Axes, counts: NDArray[np.intp], *, logarithmic: bool) -> None:
-    """Counts from zero on."""
+    """Set the axis of counts, from zero on."""
     highest = max(float(counts.max()), 1.0)
     if logarithmic:
         axes.set_yscale("symlog", linthresh=1.0, linscale=0.5)

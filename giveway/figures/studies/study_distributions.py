@@ -1,4 +1,4 @@
-"""Distributions of a study's runs, cell by cell: quartiles, tails and mean of each metric."""
+"""The distributions of a study's runs, cell by cell: quartiles, tails and mean of each metric."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from giveway.figures.studies.study_rows import (
 from giveway.figures.style import BLACK, GREY, styled
 from giveway.run_data.writing import with_unit
 
-WHISKERS = (5.0, 25.0, 50.0, 75.0, 95.0)  # [%]
+WHISKERS = (5.0, 25.0, 50.0, 75.0, 95.0)  # Percentiles that are drawn
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,12 @@ def distributions_figure(
     *,
     title: str = "",
 ) -> Figure:
-    """A line from the 5th to the 95th percentile, a bar between the quartiles, median and mean.
+    """Draw lines from the 5th to the 95th percentile, bars of quartiles, medians and means.
 
     Args:
         rows: Labels of the cells.
         colours: Colours of the cells.
-        columns: The metrics; values that are not finite are left out.
+        columns: Metrics, whose values are left out if they are not finite.
         title: Title of the whole figure.
 
     Raises:

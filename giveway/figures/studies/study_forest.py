@@ -1,4 +1,4 @@
-"""Forest plot: mean differences with their intervals, per context, situation and metric."""
+"""The forest plot: mean differences with intervals, per context, situation and metric."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ LOOKS = {  # colour and marker
     "slowed": (ORANGE, "D"),
 }
 PAPER = "#ffffff"
-SPREAD = 0.26  # Offset between the situations, as a part of a row
+SPREAD = 0.26  # Offset between the situations, as a share of a row
 
 
 @dataclass(frozen=True)
@@ -36,11 +36,11 @@ class Estimate:
     """A mean difference.
 
     Attributes:
-        mean: Mean difference; nan if it is not reported (N.A.).
+        mean: Mean difference, or nan if it is not reported (N.A.).
         low: Lower end of its interval.
         high: Upper end of its interval.
         shown: True if interval and test show a difference; the marker is hollow otherwise.
-        published: The mean in the literature, or None.
+        published: Mean in the literature, or None.
     """
 
     mean: float
@@ -52,13 +52,13 @@ class Estimate:
 
 @dataclass(frozen=True)
 class ForestColumn:
-    """One metric.
+    """One metric of the plot.
 
     Attributes:
-        quantity: Its name in words.
+        quantity: Name of the metric in words.
         unit: Unit of the difference.
         better: "lower", "higher" or empty.
-        estimates: Estimates by the row's number and the situation.
+        estimates: Estimates by the number of the row and the situation.
     """
 
     quantity: str
@@ -75,11 +75,11 @@ def forest_figure(
     title: str = "",
     source: str = "published",
 ) -> Figure:
-    """Mean differences with intervals, one row per context and treatment, one panel per metric.
+    """Draw mean differences with intervals: a row per context and treatment, a panel per metric.
 
     Args:
-        rows: Their labels.
-        columns: The metrics.
+        rows: Labels of the rows.
+        columns: Metrics.
         title: Title of the whole figure.
         source: Source of the published numbers, for the legend.
 

@@ -1,4 +1,4 @@
-"""The cost of each level to the ego against its cost to the people: a panel per context."""
+"""The cost of each level to the ego and to the people: a panel per context."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -12,8 +12,8 @@ from giveway.figures.studies.study_rows import wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
 from giveway.run_data.writing import with_unit
 
-_COLUMNS = 4  # of panels at most
-_PANEL = 2.5, 2.3  # [inch] width and height
+_COLUMNS = 4  # Largest number of panels side by side
+_PANEL = 2.5, 2.3  # Width and height of a panel [inch]
 
 
 @dataclass(frozen=True)

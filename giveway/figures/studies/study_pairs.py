@@ -1,6 +1,6 @@
-"""A pair of runs on the same crowd: speed, gap and force of treatment and baseline side by side.
+"""A pair of runs on the same crowd: speed, gap and force, treatment and baseline side by side.
 
-After figure 5 of Yang & Özgüner 2019 (MPC on the left, PID on the right).
+It follows figure 5 of Yang & Özgüner 2019 (MPC on the left, PID on the right).
 """
 
 from collections.abc import Sequence
@@ -34,8 +34,8 @@ class PairSide:
     Attributes:
         label: Label of the compared level.
         ego: Track of the ego.
-        safe_distance: d_safe [m] of its controller.
-        buffer_distance: d_buffer [m] on top of it; 0: it has none.
+        safe_distance: Safe distance d_safe [m] of its controller.
+        buffer_distance: Distance d_buffer [m] beyond it, or 0 without one.
     """
 
     label: str
@@ -46,10 +46,10 @@ class PairSide:
 
 @styled
 def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
-    """Speed with its reference, gap with d_safe, force, and who acts, on the same scales.
+    """Draw speed and its reference, gap and d_safe, force and acting controller, on equal scales.
 
     Args:
-        sides: normally two, the treatment first.
+        sides: Runs, normally two, the treatment first.
         title: Title of the whole figure.
 
     Raises:
@@ -87,7 +87,7 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 
 def _scale(grid: np.ndarray, sides: Sequence[PairSide]) -> None:
-    """One scale for both runs, zero on it."""
+    """Set one scale for both runs that includes zero."""
     egos = [side.ego for side in sides]
     scale_time_and_speed(grid[0, 0], egos)
     scale_force(grid[2, 0], egos)

@@ -19,13 +19,13 @@ from giveway.figures.style import (
 
 LEVEL_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY_BLUE)
 PUBLISHED = PURPLE
-ROW_HEIGHT = 0.27  # [in]
-LABEL_WIDTH = 30  # characters until a label is broken
+ROW_HEIGHT = 0.27  # Height of a row [in]
+LABEL_WIDTH = 30  # Number of characters after which a label is broken
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of a picture: its own label, and the heading that it shares with its neighbours."""
+    """A row of a picture: its own label, and the heading that it shares with its neighbours."""
 
     label: str
     heading: str = ""
@@ -41,7 +41,7 @@ def level_colours(levels: Sequence[str], baseline: str) -> dict[str, str]:
 
 
 def wrapped(label: str, width: int = LABEL_WIDTH) -> str:
-    """Return a label in as many lines as it needs.
+    """Return a label, broken into as many lines as it needs.
 
     A dollar sign is escaped, since it would start a formula.
     """
@@ -51,10 +51,10 @@ def wrapped(label: str, width: int = LABEL_WIDTH) -> str:
 def row_places(rows: Sequence[Row]) -> tuple[list[float], list[tuple[float, str]], float]:
     """Return the positions of rows and headings, from the top (0) downwards.
 
-    Rows whose headings all differ have none: their names hold the heading.
+    If all headings differ, rows have no headings: their names hold them.
 
     Returns:
-        A place per row, places and texts of headings, and the height of it all.
+        The place of each row, the places and texts of headings, and the whole height.
     """
     places: list[float] = []
     headings: list[tuple[float, str]] = []
@@ -79,9 +79,9 @@ def _grouped(rows: Sequence[Row]) -> bool:
 
 
 def _names(rows: Sequence[Row]) -> list[str]:
-    """The name next to each row: its label under a heading, or the heading instead.
+    """Return the name of each row: its label under a heading, or the heading itself.
 
-    Where no two rows share a heading but their labels differ, the name has both.
+    If no two rows share a heading but their labels differ, the name has both.
     """
     if _grouped(rows):
         return [row.label for row in rows]
@@ -107,7 +107,7 @@ def label_rows(axes: Axes, rows: Sequence[Row]) -> list[float]:
 
 
 def rows_height(rows: Sequence[Row]) -> float:
-    """The height [in] that rows and their broken labels need."""
+    """Return the height [in] that rows and their broken labels need."""
     _, _, height = row_places(rows)
     names = _names(rows)
     tallest = max((wrapped(name).count("\n") + 1 for name in names), default=1)
@@ -115,7 +115,7 @@ def rows_height(rows: Sequence[Row]) -> float:
 
 
 def horizontal_grid(axes: Axes) -> None:
-    """A grid of vertical lines only, for pictures made of rows."""
+    """Draw a grid of vertical lines only, for pictures made of rows."""
     quiet_grid(axes)
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)

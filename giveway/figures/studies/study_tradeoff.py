@@ -1,4 +1,4 @@
-"""Trade-off between time and distance: one point per cell, intervals both ways."""
+"""The trade-off between time and distance: one point per cell, with intervals on both axes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from giveway.figures.studies.study_rows import wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
 from giveway.run_data.writing import with_unit
 
-# Distance below which two points share a label, as a part of the picture's size
+# Distance below which two points share a label, as a share of the picture's size
 SAME_PLACE = 0.05
 DOT = 4.0  # Radius [pt] of a point
 PLACES: tuple[tuple[tuple[float, float], str], ...] = tuple(
@@ -22,7 +22,7 @@ PLACES: tuple[tuple[tuple[float, float], str], ...] = tuple(
     for up in (5.0 * reach, -5.0 * reach - 7.0)
     for sign, side, across in ((1, "left", 5.0), (-1, "right", 5.0))
 )
-"""Offsets [pt] of a name from its point, and how it is aligned there, the best first."""
+"""Offsets [pt] of a name from its point, and the name's alignment there, the best first."""
 
 
 @dataclass(frozen=True)
@@ -110,8 +110,8 @@ def tradeoff_figure(
 def _move_apart(
     figure: Figure, axes: Axes, named: Sequence[Annotation], points: Sequence[TradeOffPoint]
 ) -> None:
-    """Have each name stand at the first of ``PLACES`` that is free of names, points, intervals."""
-    figure.draw_without_rendering()  # now the layout is known
+    """Put each name at the first of ``PLACES`` that is free of names, points and intervals."""
+    figure.draw_without_rendering()  # after this the layout is known
     dot = figure.dpi / 72.0 * DOT
     centres = axes.transData.transform([(point.x, point.y) for point in points])
     taken = [Bbox.from_bounds(x - dot, y - dot, 2 * dot, 2 * dot) for x, y in centres]
@@ -138,7 +138,7 @@ def _move_apart(
 
 
 def _common(one: Bbox, other: Bbox) -> float:
-    """The area that two boxes share [px^2]."""
+    """Return the area [px^2] that two boxes share."""
     both = Bbox.intersection(one, other)
     return 0.0 if both is None else float(both.width * both.height)
 

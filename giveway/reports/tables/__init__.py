@@ -1,1 +1,1 @@
-"""Tables of a report, with names in words and units."""
+"""The tables of a report, with names in words and units."""

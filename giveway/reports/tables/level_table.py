@@ -1,4 +1,4 @@
-"""Every level's own numbers in one table: a block per context, a row per level."""
+"""The table of every level's own numbers: a block per context, a row per level."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -36,7 +36,7 @@ _SHOWN = {
     "conflicts": "conflicts",
     "safety_share": "safety acts",
 }
-_OF_TWINS = {  # Metrics that are shown if a run has a twin
+_OF_TWINS = {  # metrics that are shown if runs have a counterfactual run
     "mean_people_delay": "people's delay",
     "worst_people_delay": "worst delay",
     "share_gave_way": "gave way",
@@ -50,11 +50,11 @@ _TIMES = ("control step", "worst step")
 
 @dataclass(frozen=True)
 class Mean:
-    """One metric of one level.
+    """The mean of one metric at one level.
 
     Attributes:
         text: Mean and half width of its interval, as in "14.42 ±0.31".
-        verdict: Better or worse than the baseline, pair by pair; empty otherwise.
+        verdict: "better" or "worse" than the baseline, pair by pair; otherwise empty.
     """
 
     text: str
@@ -77,11 +77,11 @@ class Row:
 
 @dataclass(frozen=True)
 class LevelTable:
-    """The table, as the terminal and the report show it.
+    """The table of levels, as the terminal and the report show it.
 
     Attributes:
         headings: Metric and unit of each column of means.
-        rows: Context by context.
+        rows: Rows, context by context.
         baseline: Level with which the verdicts compare.
     """
 
@@ -93,7 +93,7 @@ class LevelTable:
 def level_table(study: StudyFolder) -> LevelTable:
     """Return the main metrics of every level in every context, and the time of a control step.
 
-    Half of the interval's width stands for both of its ends, which ``levels.csv`` has.
+    The table shows half of the interval's width; ``levels.csv`` has both ends.
     """
     headings = [(heading, _unit(name)) for name, heading in _shown(study).items()]
     headings += [*_SLOWED, *((heading, "ms") for heading in _TIMES)]
@@ -102,7 +102,7 @@ def level_table(study: StudyFolder) -> LevelTable:
 
 
 def _shown(study: StudyFolder) -> dict[str, str]:
-    """Metric and heading of each column of means."""
+    """Return metric and heading of each column of means."""
     frame = study.levels
     known = set(frame.loc[frame["n"] > 0, "metric"])
     return _SHOWN | {name: heading for name, heading in _OF_TWINS.items() if name in known}
@@ -132,7 +132,7 @@ def _rows(study: StudyFolder, context: Context) -> Iterator[Row]:
 
 
 def _title(context: Context) -> str:
-    """The heading of a block: the label alone of a level that has a name, else the context."""
+    """Return the heading of a block: the label of a level that has a name, else the context."""
     levels = list(context.levels.values())
     return (
         levels[0].label if len(levels) == 1 and isinstance(levels[0].value, str) else context.short
@@ -177,7 +177,7 @@ def _slowed(row: Mapping[Any, Any]) -> list[Mean]:
 
 
 def _digits(half: float) -> int:
-    """Decimals by which half an interval has one digit, and two below 2, 0.2, 0.02."""
+    """Return the decimals that show half an interval with one digit, or two below 2, 0.2, 0.02."""
     return min(max(math.ceil(0.3 - math.log10(half)), 0), _MOST_DIGITS)
 
 

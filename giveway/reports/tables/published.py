@@ -22,11 +22,11 @@ DENSITY = "crowd.pedestrians"
 TREATMENT, BASELINE = "mpc-paper", "pid-paper"
 
 Key = tuple[tuple[str, ...], str, str, str]
-"""Context, treatment, situation, metric."""
+"""Context, treatment, situation and metric of a number."""
 
 
 def published_numbers(study: StudyFolder) -> dict[Key, float]:
-    """Table 2 of Yang & Özgüner 2019, if the study asks for it and compares the same levels."""
+    """Return Table 2 of Yang & Özgüner 2019, if the study names it and compares its levels."""
     compares = TREATMENT in treatment_labels(study) and baseline_label(study) == BASELINE
     if study.definition.reference != "yang2019" or not compares:
         return {}
@@ -48,7 +48,7 @@ _WORDS = {
 
 
 def published_frame(study: StudyFolder) -> pd.DataFrame | None:
-    """Return table 2 as ``table2`` gives it, or None if the study names no such reference."""
+    """Return Table 2 with the study's numbers, or None if the study does not name it."""
     if study.definition.reference != "yang2019":
         return None
     frame = table2(study.comparison)
@@ -56,7 +56,7 @@ def published_frame(study: StudyFolder) -> pd.DataFrame | None:
 
 
 def published_table(frame: pd.DataFrame) -> Table:
-    """Published and own numbers: a row per number of pedestrians and situation."""
+    """Return the published and own numbers: a row per number of pedestrians and situation."""
     known = {column.name for column in TABLE_2_COLUMNS}
     others = [name for name in frame.columns if name not in known]
     headings = [*map(short_name, others), "pedestrians", "situation", "quantity", SOURCE, "giveway"]
@@ -92,7 +92,7 @@ def published_table(frame: pd.DataFrame) -> Table:
 
 
 def agreement(frame: pd.DataFrame) -> str:
-    """Say how many of the published numbers lie within our intervals."""
+    """Return how many of the published numbers lie within the study's intervals."""
     found = frame["agreement"].astype(str)
     known = int(found.isin(list(_WORDS)).sum())
     if not known:

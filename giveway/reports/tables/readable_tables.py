@@ -1,4 +1,4 @@
-"""A study's frames as tables to read: names in words, units, as many digits as mean something."""
+"""A study's frames as readable tables: names in words, units, significant digits only."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -27,7 +27,7 @@ MOST_FAILURES = 200
 
 
 def comparison_table(study: StudyFolder) -> Table:
-    """The whole comparison."""
+    """Return the whole comparison."""
     frame = study.comparison
     names = _distinguishing(study, frame)
     headings = [*map(short_name, names), "situation", "metric"]
@@ -77,7 +77,7 @@ def _probability(value: float) -> Cell:
 
 
 def glance_table(study: StudyFolder) -> Table:
-    """Every metric in the general situation: a row each, a column per context and treatment."""
+    """Return every metric in the general situation: a column per context and treatment."""
     frame = study.comparison[study.comparison["situation"] == "general"]
     several = frame["treatment"].nunique() > 1
     egos = frame["ego"].nunique() > 1
@@ -112,7 +112,7 @@ def _glance(row: Mapping[Any, Any] | None) -> Cell:
 
 
 def situations_table(study: StudyFolder) -> Table:
-    """Return the counts of pairs in which both, one or neither stopped."""
+    """Return the numbers of pairs in which both, one or neither stopped."""
     frame = study.situations
     names = _distinguishing(study, frame)
     shares = {
@@ -142,7 +142,7 @@ def situations_table(study: StudyFolder) -> Table:
 
 
 def cells_table(study: StudyFolder) -> Table:
-    """Each cell: its levels, its runs, means of the main metrics."""
+    """Return each cell: its levels, its runs, means of the main metrics."""
     runs = study.runs
     names = [factor.name for factor in study.design.factors]
     shown = [
@@ -209,7 +209,7 @@ def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[
 
 
 def failures_table(study: StudyFolder) -> Table:
-    """Runs without a result, why, and how to make them again."""
+    """Return the runs without a result, the reason, and how to repeat them."""
     frame = study.failures
     rows = [
         [
@@ -231,13 +231,13 @@ def failures_table(study: StudyFolder) -> Table:
 
 
 def settings_table(name: str, caption: str, values: Mapping[str, object]) -> Table:
-    """Names and values, as in a manifest."""
+    """Return names and values, as in a manifest."""
     rows = [[Cell(str(key)), Cell(str(value))] for key, value in values.items()]
     return Table(name, caption, ["name", "value"], rows)
 
 
 def _distinguishing(study: StudyFolder, frame: pd.DataFrame) -> list[str]:
-    """The columns that tell the rows of ``frame`` apart, but for situation and metric."""
+    """Return the columns that distinguish the rows of ``frame``, without situation and metric."""
     names = other_factors(study.design, study.definition.comparison)
     names = [name for name in names if name in frame.columns]
     return names + [name for name in ("ego", "treatment") if frame[name].nunique() > 1]

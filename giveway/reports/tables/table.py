@@ -27,12 +27,12 @@ class Table:
     """A table of the report.
 
     Attributes:
-        name: Its id in the page.
+        name: Id of the table on the page.
         caption: Caption that says what the table shows.
         headings: Headings of the columns.
-        rows: Rows of cells, as many cells as headings.
+        rows: Rows, with as many cells as headings.
         filters: Columns by whose values rows can be chosen.
-        note: beneath it.
+        note: Note beneath the table.
     """
 
     name: str
@@ -52,16 +52,16 @@ class Table:
 
 
 def number_cell(value: float, digits: int = 2) -> Cell:
-    """Return a number as a cell, N.A. for a missing one."""
+    """Return a number as a cell, or N.A. if it is missing."""
     return Cell(number(value, digits), "number" if math.isfinite(value) else "na")
 
 
 def whole_cell(value: object) -> Cell:
-    """A whole number, however it was read."""
+    """Return a whole number as a cell, of whatever type it is."""
     return Cell(f"{int(str(value).partition('.')[0]):,}", "number")
 
 
 def verdict_cell(verdict: str) -> Cell:
-    """Better, worse, no difference shown, N.A., in its colour."""
+    """Return a verdict as a cell in its colour: better, worse, no difference shown, N.A."""
     kinds = {"better": "better", "worse": "worse"}
     return Cell(verdict, kinds.get(verdict, "none"))

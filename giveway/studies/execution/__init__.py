@@ -1,7 +1,7 @@
-"""Execution of a study's runs: in processes of this machine, or on a Dask cluster.
+"""The execution of a study's runs: in processes of this machine, or on a Dask cluster.
 
-Whatever happens to a run (a native crash, a hang, the system out of memory), it becomes a
-:class:`giveway.studies.record.RunRecord` like any other; the study goes on.
+Whatever happens to a run (a native crash, a hang, lack of memory), it becomes a
+:class:`giveway.studies.record.RunRecord` like any other, and the study goes on.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ __all__ = ["HANG_LIMIT", "Executor", "WorkerError", "cluster_executor", "local_e
 def local_executor(
     *, jobs: int, hang_limit: float = HANG_LIMIT, run_limit: float | None = None
 ) -> Executor:
-    """Runs in ``jobs`` processes of this machine, one run at a time in each.
+    """Make an executor with ``jobs`` processes of this machine, one run at a time in each.
 
     Args:
         jobs: Number of processes.
-        hang_limit: Wall clock [s] without progress after which a run is ended; five times that
-            while it is being set up; infinity waits for ever.
-        run_limit: Wall clock [s] of one run; None: any.
+        hang_limit: Wall clock time [s] without progress after which a run is ended. It is five
+            times as long while a run is being set up; infinity waits for ever.
+        run_limit: Wall clock time [s] of one run, or None for no limit.
 
     Raises:
-        WorkerError: a number that cannot be used.
+        WorkerError: a number cannot be used.
     """
     from giveway.studies.execution.local import LocalExecutor
 
@@ -43,18 +43,20 @@ def cluster_executor(
     run_limit: float | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> Executor:
-    """Make an executor on a Dask cluster: one process of ours for each thread of its workers.
+    """Make an executor on a Dask cluster: one giveway process for each thread of its workers.
 
     Args:
-        address: Address of its scheduler, as ``tcp://host:8786``; ``local`` or ``local:N`` makes a
-            cluster
-            of N processes on this machine, to try it.
+        address: Address of the scheduler, as ``tcp:
+
+        host:8786``. For a trial, ``local`` or ``local:N`` makes a cluster of N processes on this
+        machine.
         hang_limit: Same as for :func:`local_executor`.
         run_limit: Same as for :func:`local_executor`.
-        tell: takes one line when the cluster has to be waited for; None: to standard error.
+        tell: Function that takes one line when the cluster has to be waited for, or None for
+            standard error.
 
     Raises:
-        WorkerError: a number or address that cannot be used, or Dask is not installed.
+        WorkerError: a number or address cannot be used, or Dask is not installed.
     """
     from giveway.studies.execution.cluster import ClusterExecutor
 

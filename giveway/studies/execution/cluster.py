@@ -48,11 +48,12 @@ class ClusterExecutor:
     Args:
         address: Address of the scheduler; ``local`` or ``local:N``.
         limits: Time limits of each run.
-        tell: takes one line when the cluster has to be waited for; None: to standard error.
-        patience: [s] to wait for its workers; for its scheduler, 5 s at most.
+        tell: Function that takes one line when the cluster has to be waited for, or None for
+            standard error.
+        patience: Time [s] to wait for workers; for the scheduler it is 5 s at most.
 
     Raises:
-        WorkerError: Dask is not installed, or the address is none.
+        WorkerError: Dask is not installed, or the address is invalid.
     """
 
     def __init__(
@@ -74,7 +75,7 @@ class ClusterExecutor:
         self._limits = limits
         self._tell = tell or _to_stderr
         self._patience = patience
-        self._study = uuid.uuid4().hex  # identifies our pools for the workers
+        self._study = uuid.uuid4().hex  # identifies the study's pools for the workers
         self._cluster: Cluster | None = None
         self._client: Client | None = None
         self._threads = 0
@@ -83,11 +84,11 @@ class ClusterExecutor:
 
     @property
     def workers(self) -> int:
-        """The number of runs that are made at a time."""
+        """The number of runs that are made at the same time."""
         return max(self._threads, self._local, 1)
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        """Compute the tasks as :class:`~giveway.studies.execution.executor.Executor` demands."""
+        """Make the runs as :class:`~giveway.studies.execution.executor.Executor` describes."""
         return ClusterRuns(self, tasks).run()
 
     def __enter__(self) -> Self:
@@ -116,7 +117,7 @@ class ClusterExecutor:
             Dask's future.
 
         Raises:
-            Exception: of any kind; the cluster cannot be reached.
+            Exception: any error means that the cluster cannot be reached.
         """
         from giveway.studies.execution.cluster_task import perform_there
 
@@ -131,7 +132,7 @@ class ClusterExecutor:
         )
 
     def is_there(self) -> bool:
-        """True if the cluster had workers at the latest look at it.
+        """Return whether the cluster had workers when it was last checked.
 
         Raises:
             WorkerError: there has been no worker for too long.
@@ -154,7 +155,7 @@ class ClusterExecutor:
         return False
 
     def abandon(self, futures: Iterable[Any]) -> None:
-        """Cancel runs, also those that are being made."""
+        """Cancel runs, including those that are being made."""
         from giveway.studies.execution.cluster_task import close_pool
 
         client, wanted = self._client, list(futures)
@@ -164,7 +165,7 @@ class ClusterExecutor:
             self._study = uuid.uuid4().hex
 
     def _missing(self) -> tuple[str, float]:
-        """Return what the cluster lacks, and how long [s] to wait for it.
+        """Return what the cluster lacks, and for how long [s] to wait for it.
 
         The text is empty if the cluster can work.
         """
@@ -191,7 +192,7 @@ class ClusterExecutor:
         from giveway.studies.execution.cluster_task import ignore_interrupts
 
         dask: Any = distributed
-        # Our own messages report a lost connection.
+        # giveway's own messages report a lost connection
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         reason = "" if self._local else reason_against(self._address, _CONNECT)
         if reason:
@@ -230,7 +231,7 @@ def _require_dask() -> None:
 
 
 def _try_briefly(call: Callable[[], Any], limit: float = _CLOSING) -> None:
-    """Make a call, and wait only for ``limit`` [s]: the other side may be in any state."""
+    """Make a call, but wait for ``limit`` [s] at most, since the other side may not answer."""
 
     def attempt() -> None:
         with suppress(Exception):

@@ -1,8 +1,9 @@
-"""A first look at a Dask scheduler, in a process of its own.
+"""The first check of a Dask scheduler's address, in a process of its own.
 
-Behind an address can be anything: something that accepts and never answers, a web server, a port
-that speaks TLS. What Dask does then (it waits for ever, asks for exbibytes, prints while its
-objects are forgotten) costs nothing here, and is told in a few words.
+The address may belong to anything: a server that accepts and never answers, a web server, a port
+that speaks TLS. Dask may then wait for ever, ask for huge amounts of memory, or print messages
+while its objects are deleted. In a process of its own this does no harm, and the reason is reported
+in a few words.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def reason_against(address: str, limit: float) -> str:
 
     Args:
         address: Address as Dask writes it.
-        limit: [s] for it to answer.
+        limit: Time [s] within which the address has to answer.
     """
     given = json.dumps([sys.path, [address, limit]])
     try:
@@ -53,7 +54,7 @@ def reason_against(address: str, limit: float) -> str:
 
 
 def main(address: str, limit: float) -> None:
-    """Look, print the reason and end at once, in the process of its own."""
+    """Check the address, print the reason, and end at once; for the process of its own."""
     import distributed
 
     dask: Any = distributed
@@ -65,7 +66,7 @@ def main(address: str, limit: float) -> None:
         client.nthreads()
     except MemoryError:
         _end("it speaks another protocol than Dask's")
-    except TypeError as error:  # Dask's own complaint about missing certificates
+    except TypeError as error:  # Dask's own error about missing certificates
         _end(f"{_short(error)}; tls needs Dask's distributed.comm.tls settings")
     except BaseException as error:
         _end(_short(error) or type(error).__name__)
@@ -77,6 +78,6 @@ def _short(error: BaseException) -> str:
 
 
 def _end(reason: str) -> NoReturn:
-    """Nothing is closed or forgotten in an orderly way: that is what may hang or print."""
+    """End without closing or deleting anything, since that may hang or print."""
     os.write(1, f"\n{_ANSWER}{reason}".encode())
     os._exit(0)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from giveway.studies.record import Task
 
-Future = Any  # Dask's, most of whose methods have no types
+Future = Any  # Class of Dask, most of whose methods have no types
 
 _AHEAD: Final = 3  # Runs submitted per worker, so that no worker waits for the network
 _LOOK: Final = 1.0  # Time [s] between two checks of the cluster and of Ctrl-C
@@ -43,7 +43,7 @@ class ClusterRuns:
     """The runs of one call of :meth:`giveway.studies.execution.executor.Executor.run`.
 
     Args:
-        cluster: makes them.
+        cluster: Cluster that makes them.
         tasks: Runs to be made.
     """
 
@@ -51,14 +51,14 @@ class ClusterRuns:
         self._cluster = cluster
         self._source = iter(tasks)
         self._again: deque[Task] = deque()
-        # number of times that Dask gave a run up because it killed workers, by run
+        # number of times that Dask gave up each run because it killed workers
         self._killed: dict[str, int] = {}
         self._under_way: dict[str, tuple[Task, Future]] = {}
         self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._number = 0
 
     def run(self) -> Iterator[RunRecord]:
-        """Do the same as :meth:`giveway.studies.execution.executor.Executor.run`."""
+        """Make the runs as :meth:`giveway.studies.execution.executor.Executor.run` describes."""
         try:
             while True:
                 there = self._cluster.is_there()
@@ -88,7 +88,8 @@ class ClusterRuns:
             name = f"{task.run}-{self._number}"
             try:
                 future = self._cluster.submit(task, name)
-            except Exception:  # many kinds of errors; the next check of the cluster says which
+            # many kinds of errors, which the next check of the cluster tells apart
+            except Exception:
                 self._again.append(task)
                 return True
             self._under_way[name] = (task, future)

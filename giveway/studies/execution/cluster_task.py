@@ -1,7 +1,7 @@
-"""The task of a Dask worker in a study: it has runs made in separate processes.
+"""The task of a Dask worker in a study: it lets separate processes make runs.
 
-The processes form a pool like that of a single machine, so that a crash never ends the Dask
-worker. Arguments and results are plain values, as the other side may run another giveway.
+The processes form a pool as on a single machine, so that a crash never ends the Dask worker.
+Arguments and results are plain values, since the other side may have another giveway version.
 """
 
 import signal
@@ -27,12 +27,12 @@ def perform_there(study: str, limits: dict[str, float], task: dict[str, Any]) ->
     """Make a run.
 
     Args:
-        study: Names the study's pool.
-        limits: The fields of :class:`Limits`.
-        task: The fields of :class:`Task`.
+        study: Name of the study's pool.
+        limits: Fields of :class:`Limits`.
+        task: Fields of :class:`Task`.
 
     Returns:
-        ``record``: its JSON; or ``refused``: why this worker makes no run of this study.
+        ``record``: the record as JSON; or ``refused``: why this worker makes no run of this study.
     """
     where = get_worker().address
     try:
@@ -45,7 +45,7 @@ def perform_there(study: str, limits: dict[str, float], task: dict[str, Any]) ->
 
 
 def close_pool(study: str) -> None:
-    """End the study's processes here."""
+    """End the study's processes on this worker."""
     with _LOCK:
         pool = _POOLS.pop(study, None)
     if pool is not None:
@@ -60,7 +60,7 @@ def ignore_interrupts() -> None:
 def _pool(study: str, limits: Limits) -> Pool:
     with _LOCK:
         if study not in _POOLS:
-            # Dask removes its worker's folder, also when it has been killed.
+            # Dask removes its worker's folder, even if the worker has been killed.
             worker = get_worker()
             _POOLS[study] = Pool(worker.state.nthreads, limits, Path(worker.local_directory))
         return _POOLS[study]

@@ -1,4 +1,4 @@
-"""The interface of what makes the runs of a study, on this machine or on others."""
+"""The interface of an executor, which makes the runs of a study on this machine or on others."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ if TYPE_CHECKING:
 
 
 class WorkerError(GivewayError):
-    """No process can be started or reached that would make the runs; finished runs are kept."""
+    """No process that makes the runs can be started or reached; finished runs are kept."""
 
 
 class Executor(Protocol):
-    """Makes runs; a context manager, at whose end no process is left."""
+    """A maker of runs. It is a context manager, at whose end no process is left."""
 
     @property
     def workers(self) -> int:
-        """The number of runs that are made at a time."""
+        """The number of runs that are made at the same time."""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
         """Make every run once, and yield its record when it is finished.
 
-        A run that crashes, hangs, takes too long or raises is tried once more; then its record
-        says why.
+        A run that crashes, hangs, takes too long or raises an error is made once more. If it fails
+        again, its record has the reason.
 
         Args:
-            tasks: taken one by one, a few more than are being computed.
+            tasks: Runs to be made, taken one by one and only a few in advance.
 
         Raises:
-            GivewayError: no run can be made at all, for a reason that a user can mend.
-            KeyboardInterrupt: the user wants it to end; all processes have been ended.
+            GivewayError: no run can be made at all, for a reason that a user can remove.
+            KeyboardInterrupt: the user ends it; all processes have been ended.
         """
 
     def __enter__(self) -> Self:
-        """Begin. Processes are started when there is something to do."""
+        """Begin; processes are started when there are runs to make."""
 
     def __exit__(self, *_: object) -> None:
         """End every process at once."""

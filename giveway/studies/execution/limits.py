@@ -21,8 +21,8 @@ class Limits:
     """The time limits of a run.
 
     Attributes:
-        hang: [s] without progress of the loop.
-        run: [s] of the whole run; infinity: any.
+        hang: Time [s] without progress of the loop.
+        run: Time [s] of the whole run, or infinity for no limit.
     """
 
     hang: float = HANG_LIMIT
@@ -30,10 +30,10 @@ class Limits:
 
     @classmethod
     def checked(cls, hang_limit: float, run_limit: float | None) -> Limits:
-        """The limits as users give them.
+        """Return the limits from the user's numbers.
 
         Raises:
-            WorkerError: one is not above 0.
+            WorkerError: a number is not above 0.
         """
         for name, value in (("hang_limit", hang_limit), ("run_limit", run_limit)):
             if value is not None and not value > 0.0:
@@ -43,5 +43,5 @@ class Limits:
         return cls(hang_limit, math.inf if run_limit is None else run_limit)
 
     def quiet(self, phase: Phase) -> float:
-        """Return the time [s] for which nothing may change in that phase of a run."""
+        """Return the time [s] for which nothing may change in a phase of a run."""
         return self.hang if phase in LOOP else _SETTING_UP * self.hang

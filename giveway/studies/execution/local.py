@@ -22,8 +22,8 @@ class LocalExecutor:
     """The :class:`giveway.studies.execution.executor.Executor` of this machine.
 
     Args:
-        jobs: runs at a time.
-        limits: Time limits of each.
+        jobs: Number of runs at the same time.
+        limits: Time limits of each run.
 
     Raises:
         WorkerError: ``jobs`` is not above 0.
@@ -40,11 +40,11 @@ class LocalExecutor:
 
     @property
     def workers(self) -> int:
-        """The number of runs that are made at a time."""
+        """The number of runs that are made at the same time."""
         return self._jobs
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        """Compute the tasks as :class:`~giveway.studies.execution.executor.Executor` demands."""
+        """Make the runs as :class:`~giveway.studies.execution.executor.Executor` describes."""
         pool = self._open()
         source = iter(tasks)
         finished: queue.SimpleQueue[RunRecord | Exception] = queue.SimpleQueue()
@@ -82,7 +82,7 @@ class LocalExecutor:
                 raise WorkerError(
                     f"{error}: the workers' temporary folder; free the disk or set TMPDIR"
                 ) from error
-            except RuntimeError as error:  # no more threads
+            except RuntimeError as error:  # no more threads can be started
                 raise WorkerError(
                     f"{self._jobs} workers: {error}; free memory or lower --jobs"
                 ) from error

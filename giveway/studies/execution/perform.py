@@ -34,13 +34,13 @@ _STATM = Path("/proc/self/statm")
 def perform(
     task: Task, journal: Journal | None = None, native_log: Path | None = None
 ) -> RunRecord:
-    """Make the run and keep its summary.
+    """Make the run and return its record.
 
     An error on the way is part of the record.
 
     Args:
         task: Run to make.
-        journal: Journal whose heartbeat tells another process how far the run is.
+        journal: Journal whose heartbeat shows the progress to another process.
         native_log: File for what SUMO prints, which is read if this process dies.
     """
     began = perf_counter()
@@ -71,9 +71,9 @@ def perform(
 
 
 def control_times(timings: Timings) -> tuple[float, float]:
-    """Median and maximum [ms] of what one control step takes: prediction and controller.
+    """Return the median and largest time [ms] of a control step: prediction and controller.
 
-    The first step is left out, which fills caches; nan without a second one.
+    The first step is left out, since it fills caches. The times are nan without a second one.
     """
     columns = [timings.NAMES.index(name) for name in ("prediction", "control")]
     steps = 1000.0 * timings.seconds[1:, columns].sum(axis=1)
@@ -83,12 +83,12 @@ def control_times(timings: Timings) -> tuple[float, float]:
 
 
 def twin_time(result: RunResult) -> float:
-    """Return the time [s] that a run's twin took, or nan without a twin."""
+    """Return the time [s] of a run's counterfactual run, or nan without one."""
     return math.nan if result.effect is None else round(result.effect.seconds, 6)
 
 
 def rows_of(result: RunResult) -> tuple[dict[str, Scalar], ...]:
-    """The run's summary, one row per ego, rounded as ``summary.csv`` is."""
+    """Return the run's summary, one row per ego, rounded as in ``summary.csv``."""
     return tuple(rounded_row(row) for row in result.summary_rows) or (rounded_row(result.head),)
 
 
@@ -101,7 +101,7 @@ def _since(began: float) -> Computing:
 
 
 def resident_memory() -> float:
-    """Return the memory [MB] that this process holds, or nan if the system does not tell it."""
+    """Return the memory [MB] that this process holds, or nan if the system does not report it."""
     try:
         pages = int(_STATM.read_text(encoding="ascii").split()[1])
     except (OSError, ValueError, IndexError):

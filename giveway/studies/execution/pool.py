@@ -1,10 +1,11 @@
 """A pool of worker processes: each slot is a thread with a process of its own.
 
-The processes share nothing, no pipe and no lock, so that killing one at any instant harms no
-other. (Pebble's pool, whose processes share both, was tried: with four workers, killing one every
-half a second broke it within twenty seconds, five times of five.)
+The processes share nothing, no pipe and no lock, so that killing one at any instant harms no other.
+(With Pebble's pool, whose processes share both, killing one of four workers every half a second
+broke the pool within twenty seconds, in five trials of five.)
 
-A worker is started by the thread that uses it, because Linux ends it together with that thread.
+A worker is started by the thread that uses it, because Linux ends the worker together with that
+thread.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ class ClosedError(Exception):
 
 
 class Pool:
-    """Makes runs in processes of this machine; may be used by several threads.
+    """Makes runs in processes of this machine; several threads may use it.
 
     Args:
         slots: Number of runs at a time.
@@ -73,21 +74,22 @@ class Pool:
             thread.start()
 
     def submit(self, task: Task, deliver: Delivery) -> None:
-        """Have a run made.
+        """Let a worker make a run.
 
         Args:
-            task: The run.
-            deliver: called once, from another thread, with the record, or with the error for
-                which no run can be made; not called any more once the pool is closed.
+            task: Run to be made.
+            deliver: Function that is called once, from another thread, with the record, or with the
+                error because of which no run can be made. It is not called after the pool is
+                closed.
         """
         self._jobs.put((task, deliver))
 
     def perform(self, task: Task) -> RunRecord:
-        """Have a run made, and wait for it.
+        """Let a worker make a run, and wait for its record.
 
         Raises:
             WorkerError: no run can be made.
-            ClosedError: the pool was closed meanwhile.
+            ClosedError: the pool was closed in the meantime.
         """
         answers: queue.SimpleQueue[RunRecord | Exception] = queue.SimpleQueue()
         self.submit(task, answers.put)
@@ -102,7 +104,7 @@ class Pool:
             return answer
 
     def close(self) -> None:
-        """End every process at once, whatever it is doing, and remove its files."""
+        """End every process at once, in whatever state, and remove its files."""
         self._closed.set()
         with self._lock:
             for worker in self._alive:
@@ -185,7 +187,7 @@ class Pool:
         """Start a worker, and wait until it is ready.
 
         Raises:
-            WorkerError: several in turn have ended before they could make a run.
+            WorkerError: several workers in a row have ended before they could make a run.
             ClosedError: the pool has been closed.
         """
         while True:
@@ -203,7 +205,7 @@ class Pool:
                 return worker
 
     def _note_failed_start(self, cause: str) -> None:
-        """Count a worker that ended before it could make a run: pause, or give up."""
+        """Count a worker that ended before it could make a run; then pause or give up."""
         self._raise_if_closed()
         self._failed_starts += 1
         if self._failed_starts >= _MOST_FAILED_STARTS:
@@ -228,7 +230,7 @@ class Pool:
 
 
 def _named(task: Task, failure: str) -> str:
-    """Return the failure, with the controller's name if the controller is not one of giveway's."""
+    """Return the failure, with the controller's name if the controller is a plug-in."""
     from giveway.config.files.foreign_code import named_in
 
     return named_in(failure, task.run_config)

@@ -1,4 +1,4 @@
-"""The workers' temporary folder: heartbeats, what they print, temporary files."""
+"""The workers' temporary folder: heartbeats, outputs and temporary files."""
 
 import itertools
 import math
@@ -17,25 +17,26 @@ _KEPT: Final = 86400.0
 
 
 class Scratch:
-    """A local temporary folder; making one removes those of processes that were killed.
+    """A local temporary folder. Making one removes the folders of processes that were killed.
 
     Args:
-        place: Folder to make it in. None: the system's folder for temporary files.
+        place: Folder in which it is made, or None for the system's folder for temporary files.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: the folder cannot be made.
     """
 
     def __init__(self, place: Path | None = None) -> None:
         place = place or Path(tempfile.gettempdir())
         _sweep(place)
         self._path = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=place))
-        # A signal may raise before the caller has the folder: remove it when the process ends.
+        # A signal may come before the caller has the folder, so it is removed when the process
+        # ends.
         self._gone = weakref.finalize(self, shutil.rmtree, self._path, ignore_errors=True)
         self._numbers = itertools.count(1)
 
     def folder(self) -> Path:
-        """A path in the folder that has not been used before."""
+        """Return a path in the folder that has not been used before."""
         return self._path / str(next(self._numbers))
 
     def remove(self) -> None:
@@ -52,7 +53,7 @@ def _sweep(place: Path) -> None:
 
 
 def _is_gone(process: str) -> bool:
-    """True if there is no such process on this machine."""
+    """Return whether there is no such process on this machine."""
     if os.name == "nt" or not process.isdigit():
         return True
     try:

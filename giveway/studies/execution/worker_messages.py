@@ -1,7 +1,7 @@
 """Messages between a study and a worker: frames over a socket.
 
-What comes from a worker is not trusted, as an FMU in its process can write into any open file. So
-nothing is unpickled, and a message that is incomplete or out of order is refused.
+A worker's messages are not trusted, since an FMU in its process can write into any open file.
+Therefore nothing is unpickled, and a message that is incomplete or out of order is refused.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     import socket
 
-READY: Final = b"redy"  # the worker has imported everything
+READY: Final = b"redy"  # the worker has finished its imports
 TASK: Final = b"task"  # JSON of a Task
 RECORD: Final = b"recd"  # JSON of a RunRecord
 ERROR: Final = b"eror"  # an unexpected exception, one line
-REFUSED: Final = b"rfsd"  # why the run would not be the one that was planned, one line
+REFUSED: Final = b"rfsd"  # one line: why the run would differ from the planned one
 _KINDS: Final = {READY, TASK, RECORD, ERROR, REFUSED}
 _HEAD: Final = struct.Struct("<4sIII")  # kind, number, bytes of payload, their CRC-32
 _LIMIT: Final = 1 << 26  # Largest payload [bytes]
@@ -32,7 +32,7 @@ class Line:
     """One end of the connection.
 
     Args:
-        connection: A stream socket, owned by the line from now on.
+        connection: Stream socket, owned by the line from now on.
     """
 
     def __init__(self, connection: socket.socket) -> None:
@@ -56,7 +56,7 @@ class Line:
 
         Raises:
             EOFError: the other side is gone.
-            GarbledError: what was received is none.
+            GarbledError: the bytes received are no message.
         """
         while (message := self._next()) is None:
             try:
@@ -72,7 +72,7 @@ class Line:
         return message
 
     def _next(self) -> tuple[bytes, bytes] | None:
-        """The message at the head of what has been read, if it is whole."""
+        """Return the message at the beginning of the received bytes, if it is complete."""
         if len(self._buffer) < _HEAD.size:
             return None
         kind, number, size, check = _HEAD.unpack_from(self._buffer)
@@ -90,5 +90,5 @@ class Line:
         return kind, payload
 
     def close(self) -> None:
-        """Let the other side know that nothing more comes."""
+        """Close the connection, which tells the other side that no more messages come."""
         self._connection.close()

@@ -1,4 +1,4 @@
-"""A worker seen from its study: it is given runs, watched, ended, and asked why it ended."""
+"""A worker's process as its study sees it: it is given runs, watched and ended."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _FRAME: Final = re.compile(r'File "([^"]+)", line (\d+) in (\w+)')
 
 
 class NotBegunError(Exception):
-    """A worker has ended before it had begun with a run; the message tells why."""
+    """A worker ended before it began a run; the message gives the reason."""
 
 
 class RunDiedError(Exception):
@@ -58,17 +58,17 @@ class RunRaisedError(Exception):
 
 
 class WorkerProcess:
-    """A process that makes one run at a time; used by one thread, which outlives it.
+    """A process that makes one run at a time; one thread uses it, and ends after it.
 
     Args:
         folder: Folder for this worker; it is made here, and removed with the worker.
         limits: Time limits of its runs.
 
     Attributes:
-        overgrown: True if its memory has grown so much that it should be replaced.
+        overgrown: True if the worker's memory has grown so much that it should be replaced.
 
     Raises:
-        OSError: it cannot be started.
+        OSError: the process cannot be started.
     """
 
     def __init__(self, folder: Path, limits: Limits) -> None:
@@ -83,16 +83,16 @@ class WorkerProcess:
         self._heartbeat = Heartbeat.supervised_by(os.getpid(), folder)
         self._printed = folder / STDERR_FILE
         self._printed_by_sumo = folder / SUMO_FILE
-        # Opened for appending, so that it may be emptied while it is open.
+        # Opened for appending, so that the file may be emptied while it is open.
         with self._printed.open("ab") as printed:
             self._process, connection = start(folder, temporary, printed)
         self._line = Line(connection)
 
     def await_ready(self) -> None:
-        """Wait until it has imported everything.
+        """Wait until the worker has finished its imports.
 
         Raises:
-            NotBegunError: it has ended, or takes too long.
+            NotBegunError: the worker has ended, or takes too long.
         """
         waited = 0.0
         try:
@@ -114,8 +114,8 @@ class WorkerProcess:
         Raises:
             NotBegunError: the worker has ended before the run began.
             RunDiedError: the run has ended the worker.
-            RunRaisedError: the worker runs, but should not be used any more.
-            WorkerError: the worker would not make the run that was planned.
+            RunRaisedError: the run has raised an exception; the worker should not be used again.
+            WorkerError: the worker would make another run than the planned one.
         """
         self._heartbeat.beat(Phase.STARTING)
         for printed in (self._printed, self._printed_by_sumo):
@@ -144,7 +144,7 @@ class WorkerProcess:
         raise RunDiedError(self._failure(cause))
 
     def end(self) -> None:
-        """Kill it, with its process group where there are groups.
+        """Kill the worker, with its process group if the system has groups.
 
         It may be called repeatedly.
         """
@@ -157,9 +157,9 @@ class WorkerProcess:
                 os.killpg(self._process.pid, signal.SIGKILL)
 
     def remove(self) -> None:
-        """End it, and remove its folder.
+        """End the worker, and remove its folder.
 
-        It has to be called in its own thread.
+        It has to be called in the thread that uses the worker.
         """
         self.end()
         self._process.wait()
@@ -187,7 +187,7 @@ class WorkerProcess:
         return message
 
     def _kill(self, cause: str) -> None:
-        """Have the worker write where it hangs, then kill it.
+        """Let the worker write where it hangs, then kill it.
 
         Raises:
             RunDiedError: always.
@@ -198,17 +198,17 @@ class WorkerProcess:
         raise RunDiedError(failure)
 
     def _cause_of_end(self) -> str:
-        """Return the reason why it has ended, or counts as ended."""
+        """Return the reason why the worker has ended, or counts as ended."""
         try:
             code = self._process.wait(_ENDING)
         except subprocess.TimeoutExpired:
             self.end()
             return "native code closed files that are not its own"
-        self.end()  # and the processes that it has started
+        self.end()  # also ends the processes that the worker has started
         return cause_of_end(code)
 
     def _failure(self, cause: str) -> str:
-        """Cause, place and what was printed last, on one line."""
+        """Return the cause, the place and the last printed line as one line."""
         pulse = self._heartbeat.read()
         place = "" if pulse.phase in LOOP else self._python_place()
         words = self._last_printed()
@@ -226,7 +226,7 @@ class WorkerProcess:
         return f" (Python was in {function}, {Path(file).name} line {line})"
 
     def _last_printed(self, printed: Path | None = None) -> str:
-        """The last line that it printed."""
+        """Return the last line that the worker printed."""
         printed = printed or self._printed
         try:
             with printed.open("rb") as file:

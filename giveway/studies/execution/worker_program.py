@@ -1,4 +1,4 @@
-"""A worker: a process that makes one run after the other, for as long as its study lives."""
+"""A worker's program: it makes one run after the other, as long as its study lives."""
 
 import contextlib
 import faulthandler
@@ -32,13 +32,14 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
     """Serve the study in process ``parent``.
 
     Args:
-        connection: File descriptor of the socket to it; the port to call, where there are none.
+        connection: File descriptor of the socket to the study, or the port to connect to if sockets
+            cannot be inherited.
         folder: Folder of this worker for heartbeat and traceback.
-        parent: Process id.
+        parent: Process id of the study.
         token: Token by which a worker that connects proves itself.
     """
     die_with(parent)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the study to decide on
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the study decides what Ctrl-C means
     line = Line(_connected(connection, token))
     _raise_oom_score()
     # faulthandler keeps only the number of the file
@@ -51,12 +52,12 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         from giveway.sumo.library import import_libsumo
         from giveway.sumo.scratch import keep_scratch
 
-        keep_unpacked()  # this worker's temporary files go with it
+        keep_unpacked()  # the unpacked files are removed with this worker's temporary files
         keep_scratch()
         import_libsumo()  # here, since a missing libsumo must not count as a failed run
         # here, since half a minute of compiling must not look like a hanging run
         compile_kernels_once()
-        gc.freeze()  # modules stay loaded: exclude them from garbage collection
+        gc.freeze()  # modules stay loaded, so garbage collection need not look at them
         line.send(READY)
         runs = itertools.count(1)
         with contextlib.suppress(EOFError), processes_reused():
@@ -67,7 +68,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
                 line.send(*_answer(task, heartbeat, Path(folder)))
                 if next(runs) % _TIDY == 0:
                     gc.collect()  # a run leaves too few objects to trigger it
-    os._exit(0)  # destructors of native code have nothing left to save
+    os._exit(0)  # skips the destructors of native code
 
 
 def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, bytes]:
@@ -82,12 +83,12 @@ def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, byte
     try:
         record = performing.perform(task, Journal(None, heartbeat), folder / SUMO_FILE)
         return RECORD, record.to_json().encode()
-    except Exception as error:  # any error: the study continues
+    except Exception as error:  # any error is reported, and the study continues
         return ERROR, _one_line(error).encode("utf-8", "replace")
 
 
 def _one_line(error: Exception) -> str:
-    """Return the error as in "ValueError: what (in file.py, line 12)"."""
+    """Return the error as one line, as in "ValueError: what (in file.py, line 12)"."""
     words = "".join(traceback.format_exception_only(error)).split()
     frames = traceback.extract_tb(error.__traceback__)
     place = f" (in {Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
@@ -95,7 +96,7 @@ def _one_line(error: Exception) -> str:
 
 
 def _connected(connection: int, token: str) -> socket.socket:
-    """The socket, on a high file descriptor, which careless native code is unlikely to use."""
+    """Return the socket on a high file descriptor, which native code is unlikely to use."""
     if sys.platform == "win32":
         called = socket.create_connection(("127.0.0.1", connection))
         called.sendall(token.encode())

@@ -1,4 +1,4 @@
-"""Starting a worker's process: an interpreter like this one, connected to us by a socket."""
+"""The start of a worker's process: an interpreter like this one, connected by a socket."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ START_LIMIT: Final = 600.0
 _BOOT: Final = "from giveway.studies.execution.worker_program import main; main(*arguments)"
 _ONE_THREAD: Final = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"
-)  # runs are parallel already: thread pools would only cost memory
+)  # runs are parallel already, and thread pools would need more memory
 
 
 def start(
     folder: Path, temporary: Path, printed: IO[bytes]
 ) -> tuple[subprocess.Popen[bytes], socket.socket]:
-    """Start a worker, and return its process and our end of the connection to it.
+    """Start a worker, and return its process and the study's end of the connection.
 
     Args:
         folder: Folder of the worker.
         temporary: Folder for its temporary files.
-        printed: File for its standard error; its standard output is dropped.
+        printed: File for its standard error; its standard output is not kept.
 
     Raises:
-        OSError: it cannot be started.
+        OSError: the process cannot be started.
     """
     if sys.platform == "win32":
         return _start_with_callback(folder, temporary, printed)
@@ -54,7 +54,7 @@ def start(
 def _start_with_callback(
     folder: Path, temporary: Path, printed: IO[bytes]
 ) -> tuple[subprocess.Popen[bytes], socket.socket]:
-    """Start a worker where sockets cannot be inherited: it connects, and sends a token as proof."""
+    """Start a worker that connects by itself and sends a token, if sockets cannot be inherited."""
     token = secrets.token_hex(16)
     with socket.create_server(("127.0.0.1", 0)) as server:
         arguments: list[int | str] = [server.getsockname()[1], str(folder), os.getpid(), token]

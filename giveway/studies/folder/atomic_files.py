@@ -9,12 +9,12 @@ _UNFINISHED = ".{}.new"  # Name of a file that is being written; it stays if the
 
 
 def write_atomically(path: Path, text: str, *, durable: bool = False) -> None:
-    """Write a file under another name and rename it: a kill leaves the old file or the new one.
+    """Write a file under another name, then rename it: a kill leaves the old or the new file.
 
     Args:
         path: Path of the file; its folder is made if it does not exist.
         text: Its content; line ends are kept.
-        durable: also flush it to the disk, so that it survives a crash of the machine.
+        durable: True to flush it to the disk, so that it survives a crash of the machine.
 
     Raises:
         ResultsError: the disk is full or not writable.

@@ -1,6 +1,6 @@
-"""The content of a study's folder beside its records, and whether it is still as written.
+"""The files of a study's folder besides its records, and the check that they are unchanged.
 
-The manifest is sealed and names the definition's checksum; the data package is sealed and names
+The manifest is sealed and holds the definition's checksum. The data package is sealed and holds
 those of the tables.
 """
 
@@ -26,13 +26,13 @@ SHA256 = "sha256:"  # Prefix of a checksum in a data package
 
 
 def broken_files(study: Path) -> list[Path]:
-    """The files of a study, but for its records, that are there and not what was written."""
+    """Return the existing files of a study, except records, that differ from what was written."""
     found = broken_tables(study)
     try:
         require_definition(study, read_manifest(study))
     except BrokenFileError as error:
         found.append(error.file)
-    except OSError:  # killed before one of them was written
+    except OSError:  # the study was killed before a file was written
         pass
     return found
 
@@ -43,7 +43,7 @@ def read_manifest(study: Path) -> dict[str, Any]:
     A manifest of an earlier giveway has no seal.
 
     Raises:
-        BrokenFileError: it is not what was written.
+        BrokenFileError: it differs from what was written.
         OSError: it cannot be read.
     """
     file = study / MANIFEST
@@ -57,10 +57,10 @@ def read_manifest(study: Path) -> dict[str, Any]:
 
 
 def require_definition(study: Path, manifest: dict[str, Any]) -> None:
-    """Make sure that a study's definition is the one that its manifest is about.
+    """Make sure that a study's definition is the one whose checksum the manifest holds.
 
     Raises:
-        BrokenFileError: it is not.
+        BrokenFileError: it is another one.
         OSError: it cannot be read.
     """
     file = study / DEFINITION
@@ -72,7 +72,7 @@ def require_definition(study: Path, manifest: dict[str, Any]) -> None:
 
 
 def intact_tables(study: Path) -> frozenset[str]:
-    """The names of those tables in a study's folder that are what was written."""
+    """Return the names of the tables in a study's folder that are unchanged."""
     try:
         return frozenset(name for name, intact in _tables(study) if intact)
     except (BrokenFileError, OSError):
@@ -80,9 +80,9 @@ def intact_tables(study: Path) -> frozenset[str]:
 
 
 def broken_tables(study: Path) -> list[Path]:
-    """Return the tables in a study's folder, and their description, that have changed since.
+    """Return the changed tables in a study's folder, and their description if it has changed.
 
-    Missing ones are not among them, nor are those of an earlier giveway, which has sealed none.
+    Missing tables do not count. Neither do those of an earlier giveway, which did not seal them.
     """
     try:
         if SEAL not in read_json(study / PACKAGE):
@@ -95,10 +95,10 @@ def broken_tables(study: Path) -> list[Path]:
 
 
 def _tables(study: Path) -> Iterator[tuple[str, bool]]:
-    """The tables that are there, and whether each is what its description is about.
+    """Yield each existing table, and whether it matches its description.
 
     Raises:
-        BrokenFileError: the description is not what was written, or another file in its place.
+        BrokenFileError: the description has changed or is another file.
         OSError: it cannot be read.
     """
     file = study / PACKAGE

@@ -49,7 +49,7 @@ FAILURE_COLUMNS = (
 
 
 def runs_columns(design: Design, measured: Iterable[Column] = ()) -> tuple[Column, ...]:
-    """The columns of ``runs.csv``.
+    """Return the columns of ``runs.csv``.
 
     Args:
         design: Design of the study.
@@ -63,7 +63,7 @@ def runs_columns(design: Design, measured: Iterable[Column] = ()) -> tuple[Colum
 
 
 def measured_columns(records: Iterable[RunRecord]) -> tuple[Column, ...]:
-    """The columns that metrics of other packages have added to the records, each once."""
+    """Return the columns that metrics of other packages have added to the records, each once."""
     return tuple({own.name: own for record in records for own in record.columns}.values())
 
 
@@ -77,7 +77,7 @@ def _type_of(levels: Iterable[Level]) -> Any:
 
 
 def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -> pd.DataFrame:
-    """``runs.csv``: one row per run and ego, ordered by cell, seed and ego.
+    """Return ``runs.csv``: one row per run and ego, ordered by cell, seed and ego.
 
     Args:
         records: Records with the cell and the seed of each.
@@ -114,7 +114,7 @@ def _typed(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
 
 
 def as_written(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
-    """``frame`` as a CSV file shows it: whole numbers stay whole where others are missing."""
+    """Return ``frame`` as in a CSV file: whole numbers stay whole where others are missing."""
     nullable = {"integer": "Int64", "boolean": "boolean"}
     kinds = {c.name: nullable[c.type] for c in columns if c.type in nullable}
     present = {name: kind for name, kind in kinds.items() if name in frame.columns}
@@ -180,11 +180,11 @@ def computing_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]
 
 
 def failures_frame(records: Iterable[tuple[Cell, int, RunRecord]], command: str) -> pd.DataFrame:
-    """``failures.csv``: the runs without a result, why, and how to make them again.
+    """Return ``failures.csv``: the runs without a result, the reason, and how to repeat them.
 
     Args:
         records: Records with the cell and the seed of each; those that did not fail are left out.
-        command: The command that makes a run of this study again, without the run's id.
+        command: Command that makes a run of this study again, without the run's id.
     """
     rows = [
         {

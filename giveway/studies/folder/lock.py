@@ -1,4 +1,4 @@
-"""Reserving a study's folder: one process works there, and foreign files are never removed."""
+"""The reservation of a study's folder: one process works there, and no other file is removed."""
 
 import shutil
 from collections.abc import Iterator
@@ -36,10 +36,10 @@ def reserved(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
         options: Options that say whether it is to be resumed or replaced.
 
     Raises:
-        ResultsError: it holds a study and neither resume nor force is given, or another study, or
-            something else; another process works there; the folder cannot be made.
+        ResultsError: the folder holds a study and neither resume nor force is given, or it holds
+            another study or other files; another process works there; or the folder cannot be made.
     """
-    _require_free(out, study, options)  # before a lock is put into a foreign folder
+    _require_free(out, study, options)  # before a lock is put into a folder that is not the study's
     try:
         out.mkdir(parents=True, exist_ok=True)
         lock = filelock.FileLock(out / LOCK, timeout=0)
@@ -53,7 +53,7 @@ def reserved(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
             f"{out}: cannot be written ({error.strerror}); name another folder with --out"
         ) from error
     try:
-        _require_free(out, study, options)  # another process may have written there before
+        _require_free(out, study, options)  # another process may have written there in the meantime
         yield
     finally:
         lock.release()
@@ -69,7 +69,7 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
     present = {path.name for path in out.iterdir()} - {LOCK}
     foreign = sorted(name for name in present if finished_name(name) not in _STUDY_FILES)
     beginning = not (options.resume and present & _STUDY_FILES)
-    if foreign and beginning:  # foreign files do not harm a study that is resumed
+    if foreign and beginning:  # other files do no harm to a study that is resumed
         raise ResultsError(
             f"{out}: holds '{foreign[0]}', which no study of giveway wrote; name another folder "
             "with --out"
@@ -90,7 +90,7 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
 def _name_of(out: Path) -> str | None:
     """Return the name of the study in the folder.
 
-    The result is None if there is none or its manifest is broken.
+    It is None if there is no study or its manifest is broken.
     """
     try:
         return str(read_manifest(out)["study"])
@@ -102,16 +102,16 @@ def remove_study(out: Path) -> None:
     """Remove every file of a study.
 
     Raises:
-        ResultsError: something cannot be removed.
+        ResultsError: a file cannot be removed.
     """
     _remove(out, _STUDY_FILES)
 
 
 def remove_derived_files(out: Path) -> None:
-    """Remove tables and report, which were made from fewer records than there will be.
+    """Remove tables and report, which will be made again from more records.
 
     Raises:
-        ResultsError: something cannot be removed.
+        ResultsError: a file cannot be removed.
     """
     _remove(out, _DERIVED_FILES)
 

@@ -1,7 +1,8 @@
-"""Seals: how a study knows a file of its own that a disk, an editor or a copy has changed.
+"""Seals, by which a study notices that one of its files has changed.
 
-A sealed file is JSON with one more entry: length and SHA-256 of all the others, and the code that
-wrote them. A file that is not JSON, as a table, has its length and checksum in a sealed file.
+A sealed file is JSON with one more entry: length and SHA-256 of all others, and the identity of the
+code that wrote them. For a file that is not JSON, such as a table, a sealed file holds length and
+checksum.
 """
 
 import hashlib
@@ -12,19 +13,19 @@ from typing import Any
 from giveway.errors import ResultsError
 
 SEAL = "seal"
-ASIDE = "broken"  # the folder for files whose seal is broken
+ASIDE = "broken"  # Name of the folder for files whose seal is broken
 _UNREADABLE = (ValueError, RecursionError)  # Errors of reading text or JSON
 
 
 class BrokenFileError(ResultsError):
-    """A file of a study is not what was written.
+    """A file of a study differs from what was written.
 
     Args:
-        file: The file.
+        file: Path of the file.
         reason: Reason why it is refused.
 
     Attributes:
-        file: The file.
+        file: Path of the file.
         reason: Reason why it is refused.
     """
 
@@ -37,12 +38,12 @@ class BrokenFileError(ResultsError):
 
 
 def fingerprint(content: bytes) -> dict[str, Any]:
-    """Length and checksum of a file's content."""
+    """Return length and checksum of a file's content."""
     return {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
 
 
 def sealed(content: dict[str, Any], software: str) -> dict[str, Any]:
-    """``content`` with its seal.
+    """Return ``content`` with its seal.
 
     Args:
         content: Content of a JSON file.
@@ -52,14 +53,14 @@ def sealed(content: dict[str, Any], software: str) -> dict[str, Any]:
 
 
 def read_sealed(file: Path, *, software: str | None = None) -> dict[str, Any]:
-    """The content of a sealed file, without its seal.
+    """Return the content of a sealed file, without its seal.
 
     Args:
         file: File to be read.
-        software: Identity of the code that must have made it; None: any.
+        software: Identity of the code that must have made it, or None for any code.
 
     Raises:
-        BrokenFileError: it is not what was written, or other code wrote it.
+        BrokenFileError: it differs from what was written, or other code wrote it.
         OSError: it cannot be read.
     """
     content = read_json(file)
@@ -75,10 +76,10 @@ def read_sealed(file: Path, *, software: str | None = None) -> dict[str, Any]:
 
 
 def read_json(file: Path) -> dict[str, Any]:
-    """The content of a JSON file, its seal included and not looked at.
+    """Return the content of a JSON file with its seal, which is not checked.
 
     Raises:
-        BrokenFileError: it is none.
+        BrokenFileError: the file is not JSON.
         OSError: it cannot be read.
     """
     try:
@@ -95,13 +96,13 @@ def put_aside(file: Path, study: Path) -> Path:
 
     Args:
         file: File of the study.
-        study: The study's folder.
+        study: Folder of the study.
 
     Returns:
-        Where it is now.
+        The new path of the file.
 
     Raises:
-        ResultsError: it cannot be moved.
+        ResultsError: the file cannot be moved.
     """
     there = study / ASIDE / file.relative_to(study)
     try:

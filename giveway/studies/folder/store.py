@@ -15,14 +15,14 @@ RECORDS = "records"
 class RecordStore:
     """Records by key, in ``records/<first two letters>/<key>.json``.
 
-    A record is written under another name, flushed to the disk and renamed. A file with a
-    record's name is thus complete, even after a crash of the machine. A lock on the study's
-    folder makes sure that no other process writes. What has changed since then breaks its seal.
+    A record is written under another name, flushed to the disk and renamed. Therefore a file with a
+    record's name is complete, even after a crash of the machine. A lock on the study's folder makes
+    sure that no other process writes there. A later change of the file breaks its seal.
 
     Args:
         folder: Folder of the study.
-        software: Identity of the code that makes its records; None: an earlier giveway, which
-            sealed none, has written the study.
+        software: Identity of the code that makes the records, or None if an earlier giveway, which
+            did not seal records, has written the study.
     """
 
     def __init__(self, folder: Path, software: str | None) -> None:
@@ -33,10 +33,10 @@ class RecordStore:
         return self._folder / key[:2] / f"{key}.json"
 
     def get(self, key: str) -> RunRecord | None:
-        """Return the record, or None if the run is yet to be made.
+        """Return the record, or None if the run has not been made yet.
 
         Raises:
-            BrokenFileError: the file is not what was written.
+            BrokenFileError: the file differs from what was written.
             ResultsError: it cannot be read.
         """
         path = self._path(key)
@@ -61,7 +61,7 @@ class RecordStore:
         return read_sealed(path, software=self._software)
 
     def put(self, record: RunRecord) -> None:
-        """Keep a finished run. It is safe once this returns.
+        """Keep the record of a finished run, which is on the disk when this returns.
 
         Raises:
             ResultsError: the disk is full or not writable.

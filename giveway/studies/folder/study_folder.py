@@ -1,4 +1,4 @@
-"""A study's folder, read: its definition, its records, its tables."""
+"""A study's folder as it is read: its definition, its records, its tables."""
 
 from __future__ import annotations
 
@@ -40,20 +40,20 @@ _RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
 
 
 class StudyFolder:
-    """The files that a study has written, or has written so far if it is running.
+    """The files that a study has written so far.
 
     Args:
-        path: Its folder.
+        path: Path of the folder.
 
     Attributes:
-        path: Its folder.
+        path: Path of the folder.
         definition: Definition of the study as it was run.
-        design: Its factors and cells.
-        manifest: Software, input files, the cells' digests.
+        design: Factors and cells of the study.
+        manifest: Contents of the manifest: software, input files, the cells' digests.
 
     Raises:
-        ResultsError: there is no study, or one that was killed before it had begun.
-        BrokenFileError: definition or manifest are not what was written.
+        ResultsError: there is no study, or only one that was killed before it began.
+        BrokenFileError: definition or manifest differ from what was written.
     """
 
     path: Path
@@ -93,18 +93,18 @@ class StudyFolder:
 
     @classmethod
     def open(cls, path: str | Path) -> StudyFolder:
-        """The study in ``path``."""
+        """Open the study in ``path``."""
         return cls(Path(path))
 
     @property
     def seeds(self) -> range:
-        """The seeds of every cell: all that were asked for, or as many as were enough."""
+        """The seeds of every cell: all that were requested, or as many as were enough."""
         first = self.definition.first_seed
         return range(first, first + self._seeds)
 
     @property
     def complete(self) -> bool:
-        """True if the tables in the folder are those of all runs."""
+        """True if the tables in the folder cover all runs."""
         return bool(self.manifest.get("complete"))
 
     @property
@@ -114,7 +114,7 @@ class StudyFolder:
 
     @cached_property
     def records(self) -> list[tuple[Cell, int, RunRecord]]:
-        """Every finished run with its cell and seed, cell by cell."""
+        """Return every finished run with its cell and seed, cell by cell."""
         found = []
         for cell in self.design.cells:
             for seed in self.seeds:
@@ -130,22 +130,22 @@ class StudyFolder:
 
     @cached_property
     def runs(self) -> pd.DataFrame:
-        """One row per run and ego."""
+        """The table with one row per run and ego."""
         return runs_frame(self.records, self.design)
 
     @cached_property
     def cells(self) -> pd.DataFrame:
-        """One row per cell."""
+        """The table with one row per cell."""
         return cells_frame(self.design.cells, self._by_cell)
 
     @cached_property
     def levels(self) -> pd.DataFrame:
-        """Every level's own means: one row per cell, ego and metric."""
+        """The means of every level: one row per cell, ego and metric."""
         return levels(self.runs, self.design, self.definition.comparison)
 
     @cached_property
     def fronts(self) -> pd.DataFrame:
-        """Costs to the ego and to the people: one row per cell and ego with a twin."""
+        """The costs to ego and people: one row per cell and ego with a counterfactual run."""
         return fronts(self.levels, self.design, self.definition.comparison)
 
     @cached_property
@@ -162,7 +162,7 @@ class StudyFolder:
 
     @cached_property
     def comparison(self) -> pd.DataFrame:
-        """Paired differences: one row per context, ego, treatment, situation and metric."""
+        """The paired differences: one row per context, ego, treatment, situation and metric."""
         kept = self._kept_comparison()
         if kept is not None:
             return kept
@@ -170,7 +170,7 @@ class StudyFolder:
 
     @cached_property
     def situations(self) -> pd.DataFrame:
-        """Counts of pairs in which both sides, one side or neither stopped."""
+        """The numbers of pairs in which both runs, one run or neither stopped."""
         return situations(self.runs, self.design, self.definition.comparison)
 
     @cached_property
@@ -180,7 +180,7 @@ class StudyFolder:
 
     @cached_property
     def execution(self) -> pd.DataFrame:
-        """The execution of each run: how it was computed."""
+        """The execution of each run."""
         return execution_frame(record for _, _, record in self.records)
 
     def cell_of(self, run: str) -> tuple[Cell, int]:
@@ -211,7 +211,7 @@ class StudyFolder:
         return self._kept_record(*self.cell_of(run))
 
     def key_of(self, run: str) -> str:
-        """Return the key of a run's record, which differs if settings, input files or code differ.
+        """Return the key of a run's record, which depends on settings, input files and code.
 
         Raises:
             ResultsError: this study has no such run.
@@ -239,5 +239,5 @@ class StudyFolder:
             )
         except (OSError, ValueError):
             return None
-        empty = dict.fromkeys(texts & set(frame.columns), "")  # no ego, or no unit
+        empty = dict.fromkeys(texts & set(frame.columns), "")  # there is no ego or no unit
         return frame.fillna(empty)

@@ -39,7 +39,8 @@ TABLES = (
     "computing",
     "failures",
 )
-_LONG = frozenset({"comparison", "levels", "fronts", "situations"})  # these take some seconds
+# Tables that take some seconds to compute
+_LONG = frozenset({"comparison", "levels", "fronts", "situations"})
 _COUNTS = (
     Column("runs", "integer", None, "runs of the cell that are there"),
     Column("failed", "integer", None, "of these without a result"),
@@ -52,15 +53,15 @@ _TYPES: dict[str, Any] = {"b": "boolean", "i": "integer", "f": "number"}
 def write_tables(study: StudyFolder, *, whole: bool) -> None:
     """Write the tables into the study's folder.
 
-    Args:
+    study: Folder of the study.
         study: Its folder.
-        whole: also those tables that take some seconds to compute.
+        whole: True to write also the tables that take some seconds to compute.
 
     Raises:
         ResultsError: the disk is full or not writable.
     """
     names = [name for name in TABLES if whole or name not in _LONG]
-    if whole and study.fronts.empty:  # there are no twins
+    if whole and study.fronts.empty:  # there are no counterfactual runs
         names.remove("fronts")
     columns = {name: _columns(study, name) for name in names}
     seals = {}

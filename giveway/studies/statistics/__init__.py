@@ -1,6 +1,6 @@
 """Statistics of a study: paired differences, their intervals and tests.
 
-docs/statistics.md says in words what is computed here.
+docs/statistics.md describes the methods.
 """
 
 from giveway.studies.statistics.comparing import compare

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-import scipy  # scipy.stats is loaded where it is first used: that takes a second
+import scipy  # scipy.stats is loaded where it is first used
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array, unlocked
@@ -25,7 +25,7 @@ PERCENTILE = "percentile"
 CONSTANT = "constant"
 
 MOST_FOR_BCA = 10_000  # Largest sample for BCa: its jackknife takes n^2 additions
-_NUMBERS_AT_ONCE = 300_000  # Numbers drawn at a time: a few megabytes fit the processor's cache
+_NUMBERS_AT_ONCE = 300_000  # Number of random numbers that are drawn at a time
 
 Item = TypeVar("Item")
 Row = TypeVar("Row")
@@ -37,9 +37,9 @@ class Interval:
 
     Attributes:
         low: Lower end.
-        high: Upper end of its interval.
-        method: BCa; percentile, where BCa is not defined or not needed; constant, where nothing
-            varies.
+        high: Upper end.
+        method: "BCa"; "percentile" if BCa is not defined or not needed; "constant" if all values
+            are equal.
     """
 
     low: float
@@ -57,15 +57,15 @@ class Interval:
 
 
 def seed_of(names: Iterable[str]) -> int:
-    """64 bits that depend on the names alone, not on the order in which rows are computed."""
+    """Return 64 bits that depend only on the names, not on the order in which rows are computed."""
     digest = hashlib.blake2b("\x1f".join(names).encode(), digest_size=8).digest()
     return int.from_bytes(digest, "little")
 
 
 def side_by_side(function: Callable[[Item], Row], items: Sequence[Item]) -> list[Row]:
-    """Return the results of a function that computes intervals, one for each item, in their order.
+    """Return the results of a function for each item, in order, computed on all processors.
 
-    On all processors: drawing and adding up, most of the work, leave Python to other threads.
+    Drawing and adding up, which are most of the work, do not hold Python's lock.
     """
     with _quiet(), ThreadPoolExecutor(processors()) as pool:
         return list(pool.map(function, items))
@@ -80,19 +80,20 @@ def _quiet() -> Iterator[None]:
 
 
 def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int) -> Interval:
-    """The BCa interval of the mean.
+    """Return the BCa interval of the mean.
 
     Args:
-        sample: Independent numbers (n,), at least one, all finite; taken to six decimals, so that
-            whether a resample's mean equals the sample's is not up to rounding.
+        sample: Independent finite numbers (n,), at least one. They are rounded to six decimals, so
+            that rounding errors do not decide whether a resample's mean equals the sample's.
         confidence: Probability that the interval covers the mean, between 0 and 1.
         resamples: Number of resamples of the bootstrap.
         seed: Seed of its draws, 64 bits.
 
     Returns:
-        The value itself where all are equal. The percentile interval where BCa is not defined (all
-        resamples on one side of the mean, or an acceleration beyond the formula's pole), and of
-        more than ``MOST_FOR_BCA`` numbers, where its corrections are too small to matter.
+        The interval, which is the value itself if all are equal. It is the percentile interval if
+        BCa is not defined (all resamples on one side of the mean, or an acceleration beyond the
+        formula's pole), and for more than ``MOST_FOR_BCA`` numbers, for which the corrections are
+        negligible.
     """
     whole, per_one = in_units(sample)
     if np.all(whole == whole[0]):
@@ -118,16 +119,16 @@ def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int
 
 
 class _Resampled(NamedTuple):
-    """A random generator that gives scipy's bootstrap resamples which are already drawn."""
+    """A stand-in for scipy's bootstrap result, with resamples that have already been drawn."""
 
     bootstrap_distribution: Array
 
 
 def _resampled_means(whole: Array, resamples: int, seed: int) -> Array:
-    """Return the means (resamples,) that scipy's bootstrap would draw with that seed, bit by bit.
+    """Return the means (resamples,) of resamples of whole numbers, drawn with that seed.
 
-    Numbers that are whole add up exactly in any order; and half as many bits are drawn here as
-    scipy draws, of the same numbers, which takes half the time.
+    They equal the means of scipy's bootstrap to the last bit: sums of whole numbers are exact in
+    any order, and the numbers drawn are the same.
     """
     rng, means = np.random.default_rng(seed), np.empty(resamples)
     rows = max(1, _NUMBERS_AT_ONCE // whole.size)
@@ -140,7 +141,7 @@ def _resampled_means(whole: Array, resamples: int, seed: int) -> Array:
 
 @unlocked
 def _add_up(numbers: Array, which: NDArray[np.int32], sums: Array) -> None:
-    """Fill ``sums`` (k,) with those of the ``numbers`` (n,) that each row of ``which`` names."""
+    """Fill ``sums`` (k,) with the sums of the ``numbers`` (n,) in each row of ``which``."""
     for row in range(which.shape[0]):
         total = 0.0
         for column in range(which.shape[1]):

@@ -27,12 +27,12 @@ NOT_AVAILABLE = "N.A."
 
 @dataclass(frozen=True)
 class Differences:
-    """The pairs that count for one metric in one situation: a number on both sides.
+    """The pairs that count for one metric in one situation, which have a number on both sides.
 
     Attributes:
         treated: Numbers of the treatment's runs (n,).
         based: Numbers of the baseline's runs (n,).
-        values: treatment minus baseline (n,), to six decimals as both are, so that equal
+        values: Treatment minus baseline (n,), rounded to six decimals as both are, so that equal
             differences are equal numbers and share their rank.
     """
 
@@ -46,7 +46,7 @@ class Differences:
 
 
 def differences(pairs: Pairs, name: str, situation: Situation) -> Differences:
-    """The pairs of a situation that have a finite difference in the metric ``name``."""
+    """Return the pairs of a situation that have a finite difference in the metric ``name``."""
     treated, based = pairs.of(name)
     with np.errstate(over="ignore"):
         values = to_decimals(treated - based)
@@ -59,7 +59,7 @@ def interval(
 ) -> Interval:
     """Return the interval of the mean difference.
 
-    Its random draws depend on the names alone.
+    Its random draws depend only on the names.
     """
     return mean_interval(
         found.values,
@@ -70,17 +70,17 @@ def interval(
 
 
 def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
-    """The paired differences between the levels of one factor: ``comparison.csv``.
+    """Return ``comparison.csv``: the paired differences between the levels of one factor.
 
     Args:
-        runs: A row per run and ego, as ``runs.csv``.
+        runs: Table with a row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor, its baseline, and the confidence.
 
     Returns:
-        A row per context, ego, treatment, situation and metric, in this order: the context's
-        factors, then ``COMPARISON_COLUMNS``; numbers as they are written to a file. A context
-        without any pair has no row.
+        Table with a row per context, ego, treatment, situation and metric, in this order. Its
+        columns are the context's factors, then ``COMPARISON_COLUMNS``; numbers are as they are
+        written to a file. A context without any pair has no row.
 
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.
@@ -96,7 +96,7 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
     numbers = numbers_of(COMPARISON_COLUMNS)
     frame[numbers] = frame[numbers].astype(np.float64)
-    # Slowed pairs are a subset of the general ones; their tests do not enter the correction.
+    # Slowed pairs are a subset of the general ones, so their tests do not count in the correction.
     for family in (frame["situation"] != "slowed", frame["situation"] == "slowed"):
         frame.loc[family, "q_value"] = q_values(frame.loc[family, "p_value"].to_numpy())
     frame["verdict"] = [_verdict(row, comparison) for row in frame.to_dict("records")]
@@ -143,11 +143,10 @@ def _certainty(between: Interval, test: SignedRank) -> dict[str, object]:
 
 
 def _verdict(row: Mapping[Hashable, Any], comparison: Comparison) -> str:
-    """Both must agree: the interval about the size of the mean, the test after correction.
+    """Return the verdict; both the interval and the corrected test must show a difference.
 
-    A verdict thus contradicts neither the interval in its row nor the correction for many tests.
-    Where a few large differences pull the mean to the other side than most pairs, no difference
-    is shown.
+    Thus a verdict contradicts neither the interval in its row nor the correction for many tests. If
+    a few large differences pull the mean to the other side than most pairs, no difference is shown.
     """
     if np.isnan(row["q_value"]):
         return NOT_AVAILABLE

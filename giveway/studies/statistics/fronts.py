@@ -1,4 +1,4 @@
-"""Both sides of a study: what each level costs the ego, what it costs the people, who is best."""
+"""The cost of each level to the ego and to the people, and the Pareto front."""
 
 import numpy as np
 import pandas as pd
@@ -10,15 +10,16 @@ from giveway.studies.statistics.rounding import tabulated
 from giveway.studies.table_columns import FRONT_COLUMNS, numbers_of
 
 EGO, PEOPLE = "completion_time", "mean_people_delay"
-"""The metrics of the two sides; what a free drive takes is the same for all levels of a context."""
+"""The metrics of the two sides. The time of a free drive is the same for all levels of a
+context."""
 
 
 def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
     """Return each cell's mean time to the goal and people's mean delay, and the Pareto front.
 
-    A cell is on the Pareto front of its context where no other level of the compared factor has
-    both means as small and one of them smaller. A cell of which a run did not arrive has no fair
-    mean time, and is on no front.
+    A cell is on the Pareto front of its context if no other level of the compared factor has both
+    means at most as large and one of them smaller. A cell with a run that did not arrive has no
+    fair mean time, and is not on the front.
 
     Args:
         levels: The table of :func:`levels`.
@@ -26,8 +27,9 @@ def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.D
         comparison: Factor whose levels are compared.
 
     Returns:
-        A row per cell and ego with numbers on both sides, in the order of the design: the
-        factors, then ``FRONT_COLUMNS``. Without twins there is none.
+        Table with a row per cell and ego with numbers on both sides, in the order of the design.
+        Its columns are the factors, then ``FRONT_COLUMNS``. It is empty without counterfactual
+        runs.
     """
     rows = []
     for context in contexts(design, comparison):
@@ -54,7 +56,7 @@ def fronts(levels: pd.DataFrame, design: Design, comparison: Comparison) -> pd.D
 
 
 def on_front(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """(n,) whether no other point is as low in both ``x`` and ``y`` (n,), and lower in one."""
+    """Return flags (n,): no other point is as low in both ``x`` and ``y``, and lower in one."""
     better = (x[None] <= x[:, None]) & (y[None] <= y[:, None])
     better &= (x[None] < x[:, None]) | (y[None] < y[:, None])
     return np.asarray(~better.any(axis=1))

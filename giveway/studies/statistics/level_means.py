@@ -1,4 +1,4 @@
-"""Every level's own numbers: the mean of each metric over the runs of each cell."""
+"""The numbers of every level: the mean of each metric over the runs of each cell."""
 
 import numpy as np
 import pandas as pd
@@ -14,19 +14,19 @@ from giveway.studies.table_columns import LEVEL_COLUMNS, numbers_of
 
 
 def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
-    """The mean of every metric in every cell, with its interval: ``levels.csv``.
+    """Return ``levels.csv``: the mean of every metric in every cell, with its interval.
 
-    Unlike a difference, a level's mean holds all that makes some crowds harder than others: its
-    interval is wider, and two that overlap may still differ surely, pair by pair.
+    A level's mean, unlike a difference, depends on how hard the crowds are. Therefore its interval
+    is wider, and two levels whose intervals overlap may still differ pair by pair.
 
     Args:
-        runs: A row per run and ego, as ``runs.csv``.
+        runs: Table with a row per run and ego, as ``runs.csv``.
         design: Design of the study.
-        comparison: Confidence of the intervals; fewer runs than ``minimum_pairs`` have none.
+        comparison: Confidence of the intervals. Fewer runs than ``minimum_pairs`` have no interval.
 
     Returns:
-        A row per cell, ego and metric, in this order: the factors, then ``LEVEL_COLUMNS``. A cell
-        without any result has no row.
+        Table with a row per cell, ego and metric, in this order. Its columns are the factors, then
+        ``LEVEL_COLUMNS``. A cell without any result has no row.
     """
     frame = cleaned(runs)
     frame = frame[~without_result(frame)]
@@ -55,7 +55,7 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
 def _slowed(
     cell: Cell, ego: str, name: str, table: pd.DataFrame, comparison: Comparison
 ) -> dict[str, object]:
-    """The columns about those runs in which people slowed the ego."""
+    """Return the columns for the runs in which people slowed the ego."""
     which = table["slowed"].to_numpy(np.float64)
     values = table[name].to_numpy(np.float64)[which == 1.0]
     alone = _row(cell, ego, name, values, comparison)

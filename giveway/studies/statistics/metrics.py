@@ -1,4 +1,4 @@
-"""The numbers of a run of which a difference makes sense, and which way is better."""
+"""The metrics of a run that studies compare, and which direction is better."""
 
 import difflib
 from dataclasses import dataclass
@@ -14,10 +14,10 @@ class Metric:
     """One column of a run's summary, as a study compares it.
 
     Attributes:
-        name: The column's.
-        unit: The column's; empty for shares and counts.
+        name: Name of the column.
+        unit: Unit of the column; empty for shares and counts.
         better: Direction that is better.
-        label: Name of it in tables and pictures.
+        label: Name in tables and pictures.
     """
 
     name: str
@@ -87,10 +87,10 @@ METRICS = (
 
 
 def metric(name: str) -> Metric:
-    """The metric of that name.
+    """Return the metric of that name.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is no such metric.
     """
     for known in METRICS:
         if known.name == name:

@@ -21,16 +21,16 @@ _NAMES = (*(metric.name for metric in METRICS), "slowed")
 
 @dataclass(frozen=True)
 class Pairs:
-    """One ego's runs under two levels, all else equal, seed by seed.
+    """One ego's runs under two levels, seed by seed, with everything else equal.
 
     Attributes:
-        context: The level of each other factor.
-        ego: SUMO id; empty without one.
+        context: Level of each other factor.
+        ego: Id of the ego in SUMO; empty in runs without an ego.
         treatment: Label of the level that is compared.
         baseline: Label of the level that is subtracted.
         seeds: Seeds of the pairs (n,).
         treated: Metrics of the treatment's runs (n, metrics), nan where there is no number.
-        based: The same of the baseline's runs; row i of both has seed i.
+        based: Metrics of the baseline's runs (n, metrics); row i of both has seed i.
     """
 
     context: Context
@@ -46,13 +46,13 @@ class Pairs:
         return len(self.treated)
 
     def of(self, name: str) -> tuple[Array, Array]:
-        """Both sides (n,) of one metric."""
+        """Return both sides (n,) of one metric."""
         place = _NAMES.index(name)
         return self.treated[:, place], self.based[:, place]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names that identify these pairs.
+        """The names that identify these pairs.
 
         They are the same if treatment and baseline are swapped.
         """
@@ -61,27 +61,27 @@ class Pairs:
 
     @property
     def row(self) -> dict[str, Scalar]:
-        """The columns by which a table names them."""
+        """Return the columns that name the pairs in a table."""
         compared = {"ego": self.ego, "treatment": self.treatment, "baseline": self.baseline}
         return {name: level.value for name, level in self.context.levels.items()} | compared
 
 
 @dataclass(frozen=True)
 class _Side:
-    """One ego's runs in one cell, by ascending seed."""
+    """One ego's runs in one cell, in the order of their seeds."""
 
     seeds: NDArray[np.int64]
     values: Array
 
 
 def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterator[Pairs]:
-    """Return all pairs, by context in the design's order, then by ego, then by treatment.
+    """Yield all pairs, by context in the design's order, then by ego, then by treatment.
 
-    A run that failed or crashed belongs to each ego of its context, as it would have had them
-    all. Levels that share no seed have no pairs.
+    A run that failed or crashed belongs to each ego of its context. Levels without a common seed
+    have no pairs.
 
     Args:
-        runs: A row per run and ego, as ``runs.csv``.
+        runs: Table with a row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor and its baseline.
 
@@ -109,7 +109,7 @@ def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterat
 
 
 def cleaned(runs: pd.DataFrame) -> pd.DataFrame:
-    """The columns that are compared, with the types that a CSV reader may have lost."""
+    """Return the columns that are compared, with the types that a CSV reader may have lost."""
     frame = runs.reindex(columns=["cell", "seed", "ego", "ending", *_NAMES])
     frame["ego"] = frame["ego"].astype(object).fillna("").astype(str)
     for name in _NAMES:

@@ -1,4 +1,4 @@
-"""Numbers as tables hold them, and means and medians that no large number makes overflow."""
+"""Rounding as in tables, and means and medians that do not overflow."""
 
 import math
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ _COARSE = 1e9  # Magnitude from which a double does not resolve the sixth decima
 
 
 def to_decimals(values: Array) -> Array:
-    """``values`` to six decimals, without negative zeros."""
+    """Return ``values`` rounded to six decimals, without negative zeros."""
     fine = np.abs(values) < _COARSE
     return np.asarray(np.where(fine, np.round(np.where(fine, values, 0.0), DECIMALS), values) + 0.0)
 
@@ -24,11 +24,11 @@ def to_decimals(values: Array) -> Array:
 def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
     """Round ``frame`` as in files: to six decimals, probabilities to six significant digits.
 
-    What a table holds in memory is thus what is read back from its file.
+    Therefore a table in memory equals the table that is read from its file.
 
     Args:
         frame: Table of numbers and words; it is changed.
-        names: Names of the columns that hold numbers; these become floats.
+        names: Names of the columns with numbers, which become floats.
     """
     for name in names:
         values = frame[name].to_numpy(np.float64)
@@ -40,11 +40,11 @@ def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
 
 
 def in_units(values: Array) -> tuple[Array, float]:
-    """Return finite numbers as whole ones, whose sums are exact and equal in any order.
+    """Return finite numbers as whole numbers, whose sums are exact and equal in any order.
 
     Returns:
-        ``values`` in units of the sixth decimal, and the units per one. Numbers beyond 1e9 are
-        only scaled, by a power of two that keeps their sums finite.
+        ``values`` in units of the sixth decimal, and the number of units in 1. Numbers beyond 1e9
+        are only scaled, by a power of two that keeps their sums finite.
     """
     largest = float(np.max(np.abs(values), initial=0.0))
     if largest < _COARSE:
@@ -54,12 +54,12 @@ def in_units(values: Array) -> tuple[Array, float]:
 
 
 def mean(values: Array) -> float:
-    """The mean of finite numbers, however large."""
+    """Return the mean of finite numbers, however large they are."""
     whole, per_one = in_units(values)
     return float(np.sum(whole)) / whole.size / per_one
 
 
 def median(values: Array) -> float:
-    """The median of finite numbers, however large."""
+    """Return the median of finite numbers, however large they are."""
     whole, per_one = in_units(values)
     return float(np.median(whole)) / per_one

@@ -1,9 +1,9 @@
-"""Sequential stopping: whether the seeds so far tell the mean difference well enough.
+"""Sequential stopping: whether the seeds so far determine the mean difference precisely enough.
 
-Fixed-width sequential intervals: Chow & Robbins 1965, Ann. Math. Stat. 36, 457-462; for
-simulation Glynn & Whitt 1992, Ann. Appl. Probab. 2, 180-198. The rule looks at the first k seeds
-only, at k = minimum, minimum + batch, ..., so that neither the number of workers nor the order in
-which runs end can move the stop.
+The intervals have a fixed width: Chow & Robbins 1965, Ann. Math. Stat. 36, 457-462; for simulation
+Glynn & Whitt 1992, Ann. Appl. Probab. 2, 180-198. The rule is applied to the first k seeds only, at
+k = minimum, minimum + batch, ..., so that neither the number of workers nor the order in which runs
+end can change the stop.
 """
 
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ from giveway.studies.table_columns import PRECISION_COLUMNS, numbers_of
 
 
 def looks(precision: Precision, replications: int) -> Iterator[int]:
-    """Return the numbers of seeds after which to look: minimum, minimum + batch, ..., and all."""
+    """Yield the numbers of seeds at which to check: minimum, minimum + batch, ..., and all."""
     seeds = min(precision.minimum, replications)
     while seeds < replications:
         yield seeds
@@ -38,21 +38,22 @@ def precise_enough(
     *,
     seeds: int | None = None,
 ) -> tuple[bool, pd.DataFrame]:
-    """True if the interval is narrow enough in every context, for every ego and treatment.
+    """Return whether the interval is narrow enough for every context, ego and treatment.
 
     Args:
-        runs: A row per run and ego, as ``runs.csv``, from the study's first seed on; runs beyond
-            the look do not matter.
+        runs: Table with a row per run and ego, as ``runs.csv``, from the study's first seed on.
+            Runs of later seeds than the check's do not count.
         design: Design of the study.
         comparison: Compared factor, its baseline, and the confidence.
-        precision: Metric, situation, width to reach, and when to look.
-        seeds: Number of first seeds to look at, from :func:`looks`. None: as many as the
-            last look at which every cell has a run of each.
+        precision: Metric, situation, largest width, and the numbers of seeds at which to check.
+        seeds: Number of first seeds that count, from :func:`looks`. With None it is the last of
+            these numbers for which every cell has all runs.
 
     Returns:
-        The answer, and a row per context, ego and treatment (the context's factors, then
-        ``PRECISION_COLUMNS``). Before the look there are no rows, and the answer is no; a
-        situation with fewer pairs than ``minimum_pairs`` has no interval, and is not precise.
+        The answer, and a table with a row per context, ego and treatment (the context's factors,
+        then ``PRECISION_COLUMNS``). Before the first check, the answer is False and the table is
+        empty. A situation with fewer pairs than ``minimum_pairs`` has no interval, and is not
+        precise.
 
     Raises:
         ConfigError: the study has no such factor, level or metric.
@@ -73,7 +74,7 @@ def precise_enough(
 
 
 def _whole_seeds(runs: pd.DataFrame, cells: int) -> list[int]:
-    """The seeds, from the first one on without a gap, of which every cell has a run."""
+    """Return the seeds, from the first one on without a gap, of which every cell has a run."""
     cells_run = runs.groupby("seed")["cell"].nunique()
     whole: list[int] = []
     for seed, count in cells_run.items():

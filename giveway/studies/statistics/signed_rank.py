@@ -1,9 +1,9 @@
-"""Test whether differences lie to one side of zero: Wilcoxon's signed-rank test, of scipy."""
+"""Wilcoxon's signed-rank test of scipy: whether differences lie to one side of zero."""
 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy  # scipy.stats is loaded where it is first used: that takes a second
+import scipy  # scipy.stats is loaded where it is first used
 
 from giveway.geometry.kernel import Array
 
@@ -16,7 +16,7 @@ class SignedRank:
 
     Attributes:
         statistic: Smaller one of the two signed-rank sums.
-        p_value: two-sided.
+        p_value: Two-sided p-value.
         direction: Side of zero to which the ranks lean, 1 or -1; 0 for neither.
     """
 
@@ -26,15 +26,15 @@ class SignedRank:
 
 
 def signed_rank(differences: Array) -> SignedRank:
-    """Wilcoxon's test of paired differences, zeros by Pratt's method.
+    """Wilcoxon's test of paired differences, with zeros by Pratt's method.
 
-    Zeros are ranked and then left out of the sums (Pratt 1959, J. Am. Stat. Assoc. 54, 655-667):
-    two runs without any overlap are a finding that both sides are equal, of which dropping zeros
-    before ranking would take no notice. If all differences are zero, p is 1.
+    Zeros are ranked and then left out of the sums (Pratt 1959, J. Am. Stat. Assoc. 54, 655-667).
+    Two runs without any overlap show that both sides are equal, which would be ignored if zeros
+    were left out before the ranking. If all differences are zero, p is 1.
 
-    The method is named, as scipy's own choice changes from version to version: exact for few
-    differences without zeros and ties, where scipy's distribution holds; otherwise the normal
-    approximation with its corrections for zeros, ties and continuity.
+    The method is given explicitly, since scipy's own choice changes from version to version. It is
+    exact for few differences without zeros and ties, for which scipy's distribution holds;
+    otherwise it is the normal approximation with corrections for zeros, ties and continuity.
 
     Args:
         differences: Finite numbers (n,), at least one.
@@ -50,12 +50,12 @@ def signed_rank(differences: Array) -> SignedRank:
 
 
 def q_values(p_values: Array) -> Array:
-    """The false discovery rate at which each test is just rejected.
+    """Return the false discovery rate at which each test is just rejected.
 
     Benjamini & Hochberg 1995, J. R. Stat. Soc. B 57, 289-300.
 
     Args:
-        p_values: (m,); nan where there was no test, which does not count as one.
+        p_values: Values (m,), or nan if there was no test, which then does not count.
     """
     q = np.full(p_values.size, np.nan)
     tested = np.isfinite(p_values)

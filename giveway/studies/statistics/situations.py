@@ -1,4 +1,4 @@
-"""Situations by whether the vehicle had to stop: the three of Yang & Özgüner 2019, section 4."""
+"""The three situations of Yang & Özgüner 2019, section 4: whether the vehicle had to stop."""
 
 from typing import get_args
 
@@ -18,15 +18,16 @@ SITUATIONS: tuple[Situation, ...] = get_args(Situation)
 
 
 def situations(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
-    """Count the pairs of which both sides stopped, one of them or none: ``situations.csv``.
+    """Return ``situations.csv``: the numbers of pairs with stops on both sides, one, or none.
 
     Args:
-        runs: A row per run and ego, as ``runs.csv``.
+        runs: Table with a row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor and its baseline.
 
     Returns:
-        A row per context, ego and treatment: the context's factors, then ``SITUATION_COLUMNS``.
+        Table with a row per context, ego and treatment: the context's factors, then
+            ``SITUATION_COLUMNS``.
 
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.
@@ -54,14 +55,14 @@ def _row(pairs: Pairs) -> dict[str, object]:
 
 
 def kept(pairs: Pairs) -> Mask:
-    """Return a mask (n,) of the pairs whose runs both have a result with this ego."""
+    """Return flags (n,) of the pairs whose runs both have a result with this ego."""
     return np.asarray(np.isfinite(pairs.of("stops")).all(axis=0), dtype=np.bool_)
 
 
 def within(pairs: Pairs, situation: Situation) -> Mask:
-    """Return a mask (n,) of the pairs in the situation.
+    """Return flags (n,) of the pairs in the situation.
 
-    Pairs without both results are in none.
+    A pair without both results is in no situation.
     """
     treated, based = _stopped(pairs)
     seen = kept(pairs)
@@ -85,7 +86,7 @@ def _mean(which: Mask, among: Mask) -> float:
 
 
 def _stopped(pairs: Pairs) -> tuple[Mask, Mask]:
-    """Return whether the vehicle stopped at least once, on each side.
+    """Return whether the vehicle stopped at least once, for each side.
 
     A missing number (nan) counts as no stop.
     """

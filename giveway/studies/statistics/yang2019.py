@@ -1,4 +1,4 @@
-"""The paper's Table 2 compared with ours: Yang & Özgüner 2019 (arXiv 1907.05178), section 5.2."""
+"""The paper's Table 2 next to the study's: Yang & Özgüner 2019 (arXiv 1907.05178), section 5.2."""
 
 import math
 
@@ -13,7 +13,7 @@ METRIC_OF: dict[Situation, str] = {
     "stop-and-wait": "longest_wait",
     "non-stop": "completion_time",
 }
-"""Which number the paper compares in which situation."""
+"""Metric that the paper compares in each situation."""
 
 PUBLISHED: dict[tuple[int, Situation], float] = {
     (30, "general"): -1.2665,
@@ -26,7 +26,7 @@ PUBLISHED: dict[tuple[int, Situation], float] = {
     (10, "stop-and-wait"): math.nan,  # printed as N.A.: too few instances
     (10, "non-stop"): -0.5394,
 }
-"""[s] Mean difference MPC minus PID over 2,000 simulations, by pedestrians and situation."""
+"""Mean difference [s] MPC minus PID over 2,000 simulations, by pedestrians and situation."""
 
 
 def table2(
@@ -36,18 +36,18 @@ def table2(
     treatment: str = "mpc-paper",
     baseline: str = "pid-paper",
 ) -> pd.DataFrame:
-    """The nine numbers of Table 2, each with ours.
+    """Return the nine numbers of Table 2, each with the study's.
 
     Args:
-        comparison: The table of ``compare``.
+        comparison: Table of ``compare``.
         factor_column: Column that has the number of pedestrians.
-        treatment: The level that stands for the paper's MPC.
-        baseline: The level that stands for the paper's PID.
+        treatment: Level that stands for the paper's MPC.
+        baseline: Level that stands for the paper's PID.
 
     Returns:
-        Nine rows, by pedestrians (30, 20, 10) and situation, for every ego and combination of
-        the other factors: these factors, then ``TABLE_2_COLUMNS``. Ours is nan where it was not
-        run. No rows at all where nothing compares the two levels at any number of pedestrians.
+        Nine rows, by pedestrians (30, 20, 10) and situation, for every ego and combination of the
+        other factors: these factors, then ``TABLE_2_COLUMNS``. The study's number is nan if it was
+        not run. The table is empty if the two levels are not compared at any number of pedestrians.
     """
     known = {column.name for column in COMPARISON_COLUMNS}
     others = [name for name in comparison.columns if name not in known and name != factor_column]
@@ -93,7 +93,7 @@ def _nine(ours: pd.DataFrame, factor_column: str) -> list[dict[str, object]]:
 
 
 def _agreement(published: float, low: float, high: float) -> str:
-    """Say on which side of our interval the published number lies."""
+    """Return on which side of the study's interval the published number lies."""
     if math.isnan(published) or math.isnan(low):
         return ""
     if published < low:
