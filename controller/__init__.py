@@ -1,4 +1,4 @@
-"""Controllers of the ego's speed: two model predictive ones, two PIDs, and the safety layer below.
+"""Controllers of the ego's speed: two model predictive ones, two PIDs, and the safety layer.
 
 Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Control for Vehicle's
 Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).

@@ -1,4 +1,4 @@
-"""numba's ``njit`` with types: cached on disk, strict IEEE arithmetic."""
+"""Typed decorators for numba's ``njit``, with a cache on disk and strict IEEE arithmetic."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
@@ -13,12 +13,12 @@ Array = NDArray[np.float64]
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
 _STRICT: dict[str, Any] = {
     "error_model": "numpy",
-    "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
+    "no_cfunc_wrapper": True,  # no kernel is called from C
 }
 
 
 def kernel(function: _Function) -> _Function:
-    """Compile ``function`` on its first call; no fastmath, no reordered sums."""
+    """Compile ``function`` on its first call, without fastmath and reordered sums."""
     return cast("_Function", numba.njit(cache=True, **_STRICT)(function))
 
 

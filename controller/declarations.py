@@ -1,4 +1,4 @@
-"""The declarations of our own controllers, by their public names."""
+"""The declarations of giveway's own controllers, by their public names."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

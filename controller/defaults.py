@@ -11,8 +11,8 @@ FORCE_LIMIT: Final = 8000.0  # u_max [N]
 FORCE_RATE_LIMIT: Final = 1000.0  # du_max [N per step]
 TIME_STEP: Final = 0.05  # dt [s]
 
-# Ours.
-ITERATION_LIMIT: Final = 4000  # of the solver
+# Giveway's own.
+ITERATION_LIMIT: Final = 4000  # largest number of iterations of the QP solver
 
-#: [m/s] Below it the vehicle stands and the brake's force does no work.
+#: Speed [m/s] below which the vehicle stands and the brake's force does no work.
 STANDSTILL: Final = 1e-9

@@ -6,7 +6,7 @@ class ControllerError(Exception):
 
 
 class ParameterError(ControllerError):
-    """A parameter is not what it must be: name, value, unit and expectation are named."""
+    """A parameter is invalid. The message has its name, value and unit, and what is expected."""
 
 
 class SolverSetupError(ControllerError):
@@ -14,4 +14,4 @@ class SolverSetupError(ControllerError):
 
 
 class PlugInError(ControllerError):
-    """A controller of somebody else's fails: it is named, with what it raised or returned."""
+    """A controller of another package fails. The message has its name and what it did."""

@@ -1,6 +1,6 @@
-"""Compiled parts of the controllers that giveway builds into kernels of its own, and their types.
+"""Compiled parts of the controllers that giveway builds into its own kernels, and their types.
 
-The types are those of the search over manoeuvres, which a compiled foresight does itself.
+The types belong to the search over manoeuvres, which a compiled foresight performs itself.
 """
 
 from controller.foresight import Batches, SearchResult, Trials

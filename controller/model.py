@@ -1,4 +1,4 @@
-"""The vehicle as the controllers see it: longitudinal, linear, discrete in time."""
+"""The vehicle model of the controllers: longitudinal, linear, discrete in time."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from controller.parameters import require_not_negative, require_positive
 class LongitudinalModel:
     """M s'' + alpha s' = u by forward Euler (Yang & Özgüner 2019, eqs. (2) and (3)).
 
-    The state is x = [position [m], speed [m/s]], the input u a force [N].
+    The state is x = [position [m], speed [m/s]]. The input u is a force [N].
 
     Raises:
         ParameterError: a value is not finite or out of range.
@@ -27,10 +27,10 @@ class LongitudinalModel:
 
     @property
     def decay(self) -> float:
-        """The share of the speed left after a step without force: 1 - alpha dt / M."""
+        """The share of the speed that is left after a step without force: 1 - alpha dt / M."""
         return 1.0 - self.friction * self.time_step / self.mass
 
     @property
     def speed_per_force(self) -> float:
-        """The speed gained in a step by a unit force: dt / M [(m/s)/N]."""
+        """The speed that a unit force adds in a step: dt / M [(m/s)/N]."""
         return self.time_step / self.mass

@@ -1,4 +1,4 @@
-"""The observation of a controller at one instant, in groups that are refilled in place."""
+"""The observation of a controller at one instant: groups of values, refilled in place."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ _NO_STEPS: Array = np.empty(0)
 
 
 class PathAhead(Protocol):
-    """The ego's path from its front bumper on; a number is computed only when it is asked for."""
+    """The ego's path from its front bumper on. Values are computed only when asked for."""
 
     def remaining(self) -> float:
-        """The length of path that is left [m]."""
+        """The remaining length [m] of the path."""
 
     def poses(self, distances: Array) -> Array:
-        """(k, 3) x, y [m] and heading [rad] of the path at ``distances`` (k,) [m] ahead."""
+        """The poses (k, 3) of the path, x, y [m], heading [rad], ``distances`` (k,) [m] ahead."""
 
     def curvature(self, distances: Array) -> Array:
-        """The curvature (k,) [1/m] at ``distances`` (k,) [m] ahead; it is positive to the left."""
+        """The curvatures (k,) [1/m], positive to the left, at ``distances`` (k,) [m] ahead."""
 
 
 class People(Protocol):
@@ -36,23 +36,23 @@ class People(Protocol):
 
     @property
     def position(self) -> Array:
-        """(n, 2) [m] centres, in the network's frame."""
+        """The centres (n, 2) [m], in the network's frame."""
 
     @property
     def velocity(self) -> Array:
-        """The velocities, (n, 2) [m/s]."""
+        """The velocities (n, 2) [m/s]."""
 
 
 @dataclass(slots=True)
 class EgoState:
-    """The ego itself.
+    """The state of the ego.
 
     Attributes:
         position: Station x_1(k) [m] of the point that keeps the safe distance.
         speed: Speed x_2(k) [m/s].
         acceleration: Acceleration [m/s^2].
         force: Force u(k-1) [N] that acted in the step before.
-        path: Path from the front bumper on; None stands for a straight line without end.
+        path: Path from the front bumper on, or None for an endless straight line.
     """
 
     position: float = 0.0
@@ -64,16 +64,17 @@ class EgoState:
 
 @dataclass(slots=True)
 class RoadAhead:
-    """The things in front of the ego, now and over the horizon; a distance to nothing is inf.
+    """The obstacles in front of the ego, now and over the horizon; inf without an obstacle.
 
     Attributes:
-        gap: Distance [m] from `position` to whatever is closest in front.
-        obstacle_positions: (N,) stations x_p(k+1) ... x_p(k+N) [m] of what is closest in front.
+        gap: Distance [m] from `position` to the closest obstacle in front.
+        obstacle_positions: Stations x_p(k+1) ... x_p(k+N), (N,) [m], of the closest obstacle.
         person_gap: Distance [m] from `position` to the closest person in front.
         leader_gap: Distance [m] from `position` to the vehicle in front.
         leader_speed: Speed [m/s] of that vehicle.
         stop_gap: Distance [m] from the front bumper to where it has to stop.
-        to_clear: Distance [m] to drive on to leave the crossings and junctions that it is on.
+        to_clear: Keep-clear distance [m], to drive until the ego has left the crossings and
+            junctions that it is on.
     """
 
     gap: float = inf
@@ -90,8 +91,8 @@ class Limits:
     """The limits that the ego has to keep to.
 
     Attributes:
-        speed_limit: Speed limit [m/s] for a stop line, a vehicle ahead or the lane; inf: none.
-        lane_speeds: (N,) speeds [m/s] not to be exceeded at k+1 ... k+N; None if any may be.
+        speed_limit: Speed limit [m/s] for a stop line, a vehicle ahead or the lane; inf without.
+        lane_speeds: Speed limits (N,) [m/s] of the lanes at k+1 ... k+N, or None without limits.
         safe_distance: Distance d_safe [m] to be kept to obstacles.
     """
 
@@ -105,10 +106,10 @@ class SeenPeople:
     """The pedestrians as the ego perceives them.
 
     Attributes:
-        people: Perceived pedestrians, n of them; None if there is nobody.
-        ids: Number of each of them, (n,); a person keeps it during the run.
-        foresight: Prediction of how they react to a manoeuvre; None if nobody can get in the way
-            within the horizon.
+        people: Perceived pedestrians (n,), or None without any.
+        ids: Id (n,) of each of them, which a person keeps during the run.
+        foresight: Prediction of how they react to a manoeuvre, or None if nobody can get in the
+            way within the horizon.
     """
 
     people: People | None = None
@@ -121,9 +122,9 @@ class Traffic:
     """All vehicles, the ego included.
 
     Attributes:
-        poses: (N, m, 7) x, y, heading, speed, front, rear and width of the vehicles, now and
-            predicted; None if the ego is alone.
-        row: Row of the ego among them.
+        poses: Poses (N, m, 7) of the vehicles, now and predicted: x, y [m], heading [rad], speed
+            [m/s], distances to the front and to the rear [m], width [m]; None if the ego is alone.
+        row: Row of the ego in ``poses``.
     """
 
     poses: Array | None = None
@@ -143,30 +144,30 @@ def _short(group: str, name: str) -> Any:
 
 
 class Observation:
-    """The observation at t_k; whatever its world does not tell has a default.
+    """The observation at t_k. Values that are not known have a default.
 
-    An ego has one observation, which is refilled in each control step. Arrays are references to
-    the co-simulation's own. Both are valid until the force is returned, and not to be changed. A
-    controller that wants to keep something copies it.
+    An ego has one observation, which is refilled in each control step. Its arrays belong to the
+    co-simulation. All are valid until the force is returned, and must not be changed. A controller
+    that wants to keep something copies it.
 
     Args:
         position: Station [m] of the point that keeps the safe distance.
         speed: Speed [m/s].
-        gap: Distance [m] to whatever is closest in front.
-        obstacle_positions: (N,) stations [m] of what is closest in front.
+        gap: Distance [m] to the closest obstacle in front.
+        obstacle_positions: Stations (N,) [m] of the closest obstacle in front.
         speed_limit: Speed limit [m/s].
         **others: Further values by their short names.
 
     Attributes:
-        ego: The ego itself.
-        ahead: What is in front of it.
-        limits: What it has to keep to.
-        pedestrians: Pedestrians as it perceives them.
+        ego: State of the ego.
+        ahead: Obstacles in front of the ego.
+        limits: Limits that the ego has to keep to.
+        pedestrians: Pedestrians as the ego perceives them.
         traffic: All vehicles.
         time: SUMO's clock t_k [s].
 
     Raises:
-        TypeError: an observation has nothing of that name.
+        TypeError: an observation has no value of that name.
     """
 
     __slots__ = ("ahead", "ego", "limits", "pedestrians", "time", "traffic")
@@ -209,13 +210,13 @@ class Observation:
         self._fill(others)
 
     def replaced(self, **values: Any) -> Observation:
-        """A copy, with groups of its own, in which some values are others.
+        """Return a copy with its own groups, in which some values are replaced.
 
         Args:
             **values: New values by their short names.
 
         Raises:
-            TypeError: an observation has nothing of that name.
+            TypeError: an observation has no value of that name.
         """
         own: Observation = copy(self)
         own.ego, own.ahead, own.limits = copy(self.ego), copy(self.ahead), copy(self.limits)

@@ -1,4 +1,4 @@
-"""The controllers' parameters: Yang & Özgüner 2019, table 1, and the readings it leaves open."""
+"""The controllers' parameters: Yang & Özgüner 2019, table 1, and what the paper leaves open."""
 
 import math
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ from controller.errors import ParameterError
 
 
 def require(condition: bool, name: str, value: object, expected: str) -> None:
-    """Refuse a parameter.
+    """Refuse a parameter if ``condition`` does not hold.
 
     Raises:
-        ParameterError: ``condition`` does not hold.
+        ParameterError: the parameter is refused.
     """
     if not condition:
         raise ParameterError(f"{name} = {value}: expected {expected}")
@@ -37,20 +37,20 @@ def require_not_negative(name: str, value: float, unit: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class MpcParameters:
-    """The model predictive controller (Yang & Özgüner 2019, table 1)."""
+    """The parameters of the model predictive controller (Yang & Özgüner 2019, table 1)."""
 
-    horizon: int = 15  # N [steps]
+    horizon: int = 15  # prediction horizon N [steps]
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     speed_min: float = 0.0  # v_min [m/s]
     speed_max: float = SPEED_MAX  # v_max [m/s]
     force_limit: float = FORCE_LIMIT  # u_max [N]
     force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
-    speed_weight: float = 1.0  # Q = speed_weight * I
-    iteration_limit: int = ITERATION_LIMIT  # of the QP solver
-    position_tolerance: float = 1e-6  # [m] by which an accepted plan may miss a constraint
-    speed_tolerance: float = 1e-6  # [m/s]
-    force_tolerance: float = 1e-2  # [N]
+    speed_weight: float = 1.0  # weight Q = speed_weight * I of speed errors
+    iteration_limit: int = ITERATION_LIMIT  # largest number of iterations of the QP solver
+    position_tolerance: float = 1e-6  # largest accepted violation [m] of position constraints
+    speed_tolerance: float = 1e-6  # largest accepted violation [m/s] of speed constraints
+    force_tolerance: float = 1e-2  # largest accepted violation [N] of force constraints
 
     def __post_init__(self) -> None:
         whole = isinstance(self.horizon, int)
@@ -81,10 +81,11 @@ class MpcParameters:
 
 @dataclass(frozen=True, slots=True)
 class PidParameters:
-    """The PID controller (Yang & Özgüner 2019, section 3.4 and table 1).
+    """The parameters of the PID controller (Yang & Özgüner 2019, section 3.4 and table 1).
 
-    The default K_p = 2400 is not the printed 300: the paper's own "steady-state error of about
-    0.16 m/s at 4 m/s", alpha v_r / (K_p + alpha), needs 2400. The printed one is ``PRINTED_PID``.
+    The default K_p = 2400 differs from the printed value of 300. The paper's "steady-state error of
+    about 0.16 m/s at 4 m/s", alpha v_r / (K_p + alpha), needs 2400. ``PRINTED_PID`` has the printed
+    value.
     """
 
     K_p: float = 2400.0  # [N s/m]

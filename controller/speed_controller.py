@@ -1,4 +1,4 @@
-"""The MPC where it has a plan, else the PID (Yang & Özgüner 2019, algorithm 1); or a PID alone."""
+"""The paper's MPC with a PID as fallback (Yang & Özgüner 2019, algorithm 1), or a PID alone."""
 
 from controller.defaults import STANDSTILL
 from controller.observation import Observation
@@ -9,11 +9,11 @@ from controller.protocol import Decision
 
 
 class SpeedController:
-    """The MPC with the PID as its fallback, or the PID alone; looks at one prediction at most.
+    """The MPC with the PID as its fallback, or the PID alone.
 
     Args:
-        mpc: None to let the PID drive alone.
-        pid: the fallback.
+        mpc: MPC, or None to let the PID drive alone.
+        pid: PID, which acts if the MPC has no plan.
     """
 
     foresees = False
@@ -25,7 +25,7 @@ class SpeedController:
 
     @property
     def horizon(self) -> int:
-        """Steps that the MPC looks ahead; 0 for the PID alone."""
+        """The prediction horizon [steps] of the MPC; 0 for the PID alone."""
         return 0 if self.mpc is None else self.mpc.parameters.horizon
 
     def reset(self) -> None:
@@ -42,8 +42,8 @@ class SpeedController:
         if self.mpc is None:
             decision = self._by_pid(speed, gap, limit, "selected", "", 0)
         else:
-            # At a standstill the force is a brake that holds: a plan may start from none, while
-            # c2 would tie it to the braking before and c5 would then have no solution.
+            # At standstill the brake only holds, so a plan may start from a force of 0. With the
+            # braking force of before, the rate limit c2 would leave no solution that keeps c5.
             previous = 0.0 if speed <= STANDSTILL else self._previous_force
             reference = min(self.mpc.parameters.reference_speed, limit)
             solution = self.mpc.solve(
@@ -70,7 +70,7 @@ class SpeedController:
         return decision
 
     def applied(self, force: float) -> None:
-        """Another force [N] than the last one asked for acts: the next is asked for from there."""
+        """Continue from the ``force`` [N] that the safety layer applied instead of the last one."""
         self._previous_force = force
         self.pid.applied(force)
 

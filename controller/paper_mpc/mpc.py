@@ -33,15 +33,15 @@ _STABLE = "at most 1, or forward Euler is unstable; lower friction [N.s/m] or ti
 
 
 class Mpc:
-    """Finds the forces that keep the reference speed best, behind everybody in front.
+    """Finds the forces that keep the reference speed best, behind all obstacles in front.
 
-    A solve goes: proofs of infeasibility that take no solve; the exact solver; the check of the
-    plan against every constraint in physical units. A fresh instance, or one after :meth:`reset`,
-    gives the same bytes for the same sequence of problems.
+    A solve has three steps: proofs of infeasibility that need no solver, the exact solver, and a
+    check of the plan against every constraint in physical units. A new instance, or one after
+    :meth:`reset`, gives the same bytes for the same sequence of problems.
 
     Args:
-        model: the vehicle.
-        parameters: weights and limits.
+        model: Longitudinal model of the vehicle.
+        parameters: Weights and limits, or None for the defaults.
 
     Raises:
         ParameterError: the limits contradict each other.
@@ -81,12 +81,13 @@ class Mpc:
         """Plan from the state at t_k.
 
         Args:
-            position: x_1(k) [m] of whatever point must keep the safe distance.
-            speed: x_2(k) [m/s].
-            previous_force: u(k-1) [N].
-            obstacle_positions: (N,) x_p(k+1) ... x_p(k+N) [m] in the coordinate of ``position``;
-                inf where nobody is in front.
-            reference_speed: v_r [m/s] over this horizon; None: the parameters'.
+            position: Station x_1(k) [m] of the point that must keep the safe distance.
+            speed: Speed x_2(k) [m/s].
+            previous_force: Force u(k-1) [N].
+            obstacle_positions: Stations x_p(k+1) ... x_p(k+N), (N,) [m], of the closest obstacle;
+                inf without one.
+            reference_speed: Reference speed v_r [m/s] over this horizon, or None for that of the
+                parameters.
 
         Raises:
             ParameterError: a value is not a number, or the horizon does not fit.
@@ -122,7 +123,7 @@ class Mpc:
         obstacle_positions: Array,
         iterations: int,
     ) -> MpcSolution:
-        """The plan, if it keeps every constraint."""
+        """Return the plan if it keeps every constraint, or a solution without a plan."""
         speeds = self._solver.solution.copy()
         forces = np.empty(len(speeds))
         residual = check_plan(
@@ -160,7 +161,7 @@ def check_plan(
     """Fill the forces that lead through ``speeds``, and drive them through the model.
 
     Returns:
-        The plan's largest violation of c1 to c6 over its tolerance; inf if it is not finite.
+        Largest violation of c1 to c6, divided by its tolerance; inf if the plan is not finite.
     """
     dt, decay, per_force, safe_distance = limits[0], limits[1], limits[2], limits[3]
     v_min, v_max, u_max, du_max = limits[4], limits[5], limits[6], limits[7]

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 
 class MpcSolution(NamedTuple):
-    """A plan, or why there is none.
+    """The plan of the MPC, or the reason why there is none.
 
     Attributes:
-        found: Whether the plan is optimal and keeps all constraints by our own arithmetic.
+        found: Whether the plan is optimal and was checked to keep all constraints.
         force: Force u(k) [N]; nan without a plan.
-        forces: (N,) Planned forces u(k) ... u(k+N-1) [N]; None without a plan.
-        speeds: (N,) Planned speeds at k+1 ... k+N [m/s]; None without a plan.
+        forces: Planned forces u(k) ... u(k+N-1), (N,) [N]; None without a plan.
+        speeds: Planned speeds at k+1 ... k+N, (N,) [m/s]; None without a plan.
         status: Outcome of the solver, with the proof if no plan can exist.
         iterations: Iterations of the solver; 0 if no solve was needed.
         residual: Largest constraint violation over its tolerance; nan without a plan.

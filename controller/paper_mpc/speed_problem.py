@@ -1,18 +1,20 @@
 """The paper's QP in the unknowns v(k+1) ... v(k+N): small, sparse and well conditioned.
 
-Forces follow from speeds, u(i) = M/dt (v(i+1) - a v(i)) with a = 1 - alpha dt / M, so the cost
-becomes a sum of squares, P = 2 I in m/s, whatever mass and time step are: the paper's newtons
-scale its H with (dt/M)^2, which a first-order solver does not survive.
+Forces follow from speeds, u(i) = M/dt (v(i+1) - a v(i)) with a = 1 - alpha dt / M. The cost is then
+a sum of squares of speeds, P = 2 I, for any mass and time step. With the paper's unknowns, forces
+in newtons, its H is scaled by (dt/M)^2, for which a first-order solver does not converge.
 
-Rows, for speeds V = [v(k+1), ..., v(k+N)]:
+The rows for the speeds V = [v(k+1), ..., v(k+N)] are:
 
-* N on the speeds themselves: c4, c5; the first also holds c1 to c3 of u(k) and c6 of x_1(k+2),
-  which all bound v(k+1) alone;
-* N - 1 on v(i+1) - a v(i) = dt/M u(i): c1;
-* N - 1 on the differences of these: c2, c3;
-* N - 2 on the sums of speeds, the distances driven to x_1(k+3) ... x_1(k+N), over dt: c6.
+* N rows of the speeds themselves: c4, c5. The first one also contains c1 to c3 of u(k) and c6 of
+  x_1(k+2), which all bound v(k+1) alone;
+* N - 1 rows of v(i+1) - a v(i) = dt/M u(i): c1;
+* N - 1 rows of the differences of these: c2, c3;
+* N - 2 rows of sums of speeds, which are the distances driven to x_1(k+3) ... x_1(k+N), divided by
+  dt: c6.
 
-Forward Euler makes x_1(k+1) independent of all unknowns: its row is a test before any solve.
+With forward Euler x_1(k+1) does not depend on the unknowns. Its constraint is tested before the
+solve.
 """
 
 import numpy as np
@@ -21,26 +23,27 @@ from controller._jit import Array, inner, kernel
 from controller.model import LongitudinalModel
 from controller.parameters import MpcParameters
 
-SLACK = 1e-9  # [m/s] [m] by which all bounds are widened: a plan that touches its bounds, as those
-# that just stop do, leaves the next problem a single point, which rounding would make empty
+# Widening [m/s] or [m] of all bounds. A plan that touches its bounds, as when the car stops just in
+# time, leaves one feasible point to the next problem, which rounding would make infeasible.
+SLACK = 1e-9
 
-NOT_A_NUMBER = -1  # Result if an input is not finite; only obstacles may be infinitely far
-UNDECIDED = 0  # only a solve can tell
-TOO_CLOSE = 1  # x_1(k+1), which no force changes, violates c6
-SPEED_BOUNDS_CROSS = 2  # what the force limits leave of v(k+1) misses its bounds
-CANNOT_STOP = 3  # even the hardest braking at every step violates c6
-CANNOT_HOLD_SPEED = 4  # even the strongest drive at every step violates c5
+NOT_A_NUMBER = -1  # result if an input is not finite; only obstacles may be infinitely far
+UNDECIDED = 0  # result if only a solve can decide
+TOO_CLOSE = 1  # result if x_1(k+1), which no force changes, violates c6
+SPEED_BOUNDS_CROSS = 2  # result if the force limits leave no v(k+1) within its bounds
+CANNOT_STOP = 3  # result if the hardest braking at every step violates c6
+CANNOT_HOLD_SPEED = 4  # result if the largest force at every step violates c5
 
 
 class SpeedProblem:
-    """min |V - V_r|^2 subject to lower <= rows V <= upper; the bounds change from step to step.
+    """min |V - V_r|^2 subject to lower <= rows V <= upper, with bounds that change every step.
 
     Attributes:
-        rows: (4N - 4, N), constant.
-        target: (N,) V_r [m/s]; the caller may change it between two solves.
-        lower, upper: (4N - 4,), filled by :meth:`update`.
-        limits: (8,) dt, decay, dt/M, d_safe, v_min, v_max, u_max, du_max.
-        increments: OSQP gets v(k+1), v(k+2) - v(k+1), ...
+        rows: Matrix (4N - 4, N) of the constraints, constant.
+        target: Target V_r (N,) [m/s], which the caller may change between two solves.
+        lower, upper: Bounds (4N - 4,), filled by :meth:`update`.
+        limits: Constants (8,): dt, decay, dt/M, d_safe, v_min, v_max, u_max, du_max.
+        increments: True: OSQP's unknowns are v(k+1), v(k+2) - v(k+1), ...
     """
 
     increments = True
@@ -75,10 +78,10 @@ class SpeedProblem:
     def update(
         self, position: float, speed: float, previous_force: float, obstacle_positions: Array
     ) -> int:
-        """Set the bounds for a state; prove infeasibility where that takes no solve.
+        """Set the bounds for a state, and prove infeasibility if that needs no solver.
 
         Returns:
-            ``UNDECIDED``, ``NOT_A_NUMBER``, or why no plan can satisfy all constraints.
+            ``UNDECIDED``, ``NOT_A_NUMBER``, or the reason why no plan can keep all constraints.
         """
         code: int = fill_bounds(
             position,
@@ -102,7 +105,7 @@ def fill_bounds(
     lower: Array,
     upper: Array,
 ) -> int:
-    """Bounds of all rows; a proof of infeasibility, or UNDECIDED."""
+    """Fill the bounds of all rows, and return a proof of infeasibility or UNDECIDED."""
     dt, decay, per_force, safe_distance = limits[0], limits[1], limits[2], limits[3]
     v_min, v_max, u_max, du_max = limits[4], limits[5], limits[6], limits[7]
     N = len(obstacle_positions)
@@ -142,20 +145,21 @@ def fill_bounds(
 
 @inner
 def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: Array) -> int:
-    """The slowest and the fastest speeds that the force limits allow, against c6 and c5.
+    """Compare the lowest and highest speeds that the force limits allow with c6 and c5.
 
-    Speeds grow with forces and positions with speeds (decay >= 0), so braking as hard as allowed
-    at every step, but not below v_min, bounds every feasible plan from below. The converse does
-    not hold: a plan at this bound may have to release the brake faster than allowed. All bounds
-    are as wide as the solver's, or the proof would refuse plans that just stop.
+    Speeds grow with forces, and positions with speeds (decay >= 0). The hardest allowed braking at
+    every step, but not below v_min, is therefore a lower bound of every feasible plan. The converse
+    does not hold: a plan at this bound may have to release the brake faster than allowed. All
+    bounds are widened as those of the solver are. Otherwise the proof would refuse plans that stop
+    just in time.
     """
     decay, per_force = limits[1], limits[2]
     v_min = limits[4] - SLACK
-    change_max = per_force * limits[6] + SLACK  # [m/s] by u_max in one step
+    change_max = per_force * limits[6] + SLACK  # change of speed [m/s] by u_max in one step
     rate_max = per_force * limits[7] + SLACK
     N = (len(upper) + 4) // 4
     slowest, fastest = speed, speed
-    weakest, strongest = per_force * previous_force, per_force * previous_force  # [m/s] a step
+    weakest, strongest = per_force * previous_force, per_force * previous_force  # [m/s] per step
     driven = 0.0
     for i in range(N):
         weakest = max(-change_max, weakest - rate_max)

@@ -1,4 +1,4 @@
-"""The speed a tuned PID aims at: a profile over the gap, and how it is got to smoothly."""
+"""The reference speed of the tuned PID: a profile over the gap, and a smooth approach to it."""
 
 from dataclasses import dataclass
 from math import copysign, inf, sqrt
@@ -21,13 +21,13 @@ class ReferenceParameters:
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     profile: ProfileName = "braking-curve"
     buffer_distance: float = BUFFER_DISTANCE  # d_buffer [m] of the linear profile
-    deceleration: float = 1.0  # b [m/s^2] of the braking curve, and of braking in comfort
+    deceleration: float = 1.0  # b [m/s^2] of the braking curve and of comfortable braking
     approach_lag: float = 0.5  # tau [s]: near d_safe the braking curve is the line (gap-d_safe)/tau
-    acceleration: float = 3.0  # a [m/s^2] of driving off
-    jerk: float = 10.0  # j [m/s^3] of a change of acceleration in comfort
-    firm_deceleration: float = 3.0  # [m/s^2] largest used to keep d_safe; beyond it d_last counts
-    last_distance: float = 2.0  # d_last [m]: braking is as hard as needed to keep it
-    creep_speed: float = 0.1  # [m/s] target speeds below it count as a stop
+    acceleration: float = 3.0  # largest acceleration a [m/s^2]
+    jerk: float = 10.0  # jerk j [m/s^3] of comfortable changes of acceleration
+    firm_deceleration: float = 3.0  # largest deceleration [m/s^2] to keep d_safe
+    last_distance: float = 2.0  # distance d_last [m] that is kept with any deceleration
+    creep_speed: float = 0.1  # target speed [m/s] below which the target is a stop
 
     def __post_init__(self) -> None:
         require_positive("reference_speed", self.reference_speed, "m/s")
@@ -47,23 +47,23 @@ class ReferenceParameters:
 def stoppable(room: float, rate: float, lag: float) -> float:
     """Return the largest value that ``rate`` brings to 0 within ``room``, after ``lag``.
 
-    It is the positive x of x lag + x^2 / (2 rate) = room (the safe speed of Gipps 1981): far away
-    the braking curve sqrt(2 rate room), near the end the line room / lag, of finite slope.
+    It is the positive x of x lag + x^2 / (2 rate) = room (the safe speed of Gipps 1981). Far away
+    this is the braking curve sqrt(2 rate room). Near the end it is the line room / lag.
     """
     return sqrt((rate * lag) ** 2 + 2.0 * rate * room) - rate * lag
 
 
 class SpeedReference:
-    """v_ref and its slope: what the profile asks for, within limits of acceleration and jerk.
+    """The reference speed v_ref and its slope: the profile, limited in acceleration and jerk.
 
-    In comfort acceleration, deceleration and jerk are the parameters'. Where that would end closer
-    than ``last_distance`` to who is in front, it brakes as hard as a stop there takes.
+    The parameters limit acceleration, deceleration and jerk as long as this keeps at least
+    ``last_distance`` to the person in front. Otherwise the deceleration is what a stop there needs.
 
     Args:
-        parameters: profile and comfort.
-        strongest: acceleration [m/s^2] that the vehicle's forces reach.
-        sharpest: jerk [m/s^3] that they reach.
-        time_step: dt [s].
+        parameters: Profile and limits of comfort.
+        strongest: Acceleration [m/s^2] of the vehicle's largest force.
+        sharpest: Jerk [m/s^3] of the largest change of this force.
+        time_step: Control step dt [s].
     """
 
     def __init__(
@@ -76,21 +76,26 @@ class SpeedReference:
         self._up = min(parameters.acceleration, strongest)
         self._down = min(parameters.deceleration, strongest)
         self._jerk = min(parameters.jerk, sharpest)
-        self._build_up = self._down / self._jerk  # [s] until comfortable braking is reached
-        # A change of acceleration takes effect a step later; shorter lags overshoot the target.
+        self._build_up = self._down / self._jerk  # time [s] in which comfortable braking builds up
+        # A change of acceleration takes effect one step later. Shorter lags overshoot the target.
         self._lag = 2.0 * time_step
-        self._wanted, self._asked = 0.0, (0.0, 0.0)  # to who is that close nobody drives
+        self._wanted, self._asked = 0.0, (0.0, 0.0)  # the last target, and its gap and limit
         self.start(0.0)
 
     def start(self, speed: float, acceleration: float = 0.0) -> None:
-        """Go on from the vehicle's speed [m/s] and acceleration [m/s^2]."""
+        """Restart from the vehicle's speed [m/s] and acceleration [m/s^2]."""
         self.speed = max(0.0, speed)
         self.acceleration = acceleration
         self._limit = inf
 
     def target(self, gap: float, limit: float = inf) -> float:
-        """The profile [m/s] at ``gap`` [m] to who is in front; never more than ``limit`` [m/s]."""
-        if (gap, limit) == self._asked:  # as by who wants to know what was just aimed at
+        """The target speed [m/s] of the profile.
+
+        Args:
+            gap: Distance [m] to the closest person in front; inf without one.
+            limit: Upper bound [m/s] of the result.
+        """
+        if (gap, limit) == self._asked:  # the target was just computed
             return self._wanted
         p = self.parameters
         room = gap - p.safe_distance
@@ -114,7 +119,7 @@ class SpeedReference:
         dt, now, before = self.time_step, self.speed, self.acceleration
         self._wanted, self._asked = self.target(gap, limit), (gap, limit)
         wanted, needed = self._wanted, self._braking(speed, gap)
-        # Limits for stop lines and vehicles are braking curves already and have to be followed.
+        # Limits for stop lines and vehicles are braking curves themselves, and must be followed.
         down = needed if limit == inf else min(max(needed, _OTHERS_CURVE), self._strongest)
         away = wanted - now
         jerk = self._jerk if away >= 0.0 else min(self._sharpest, needed / self._build_up)
@@ -123,7 +128,7 @@ class SpeedReference:
         a = min(max(a, -down), self._up)
         release = min(self._sharpest, max(jerk, -before / self._build_up))
         a = min(max(a, before - jerk * dt), before + release * dt)
-        a = max(a, -now / dt)  # it does not go back
+        a = max(a, -now / dt)  # the reference speed does not become negative
         if wanted == 0.0 and now <= _STANDS:
             a = -now / dt
         self._limit = limit
@@ -147,13 +152,13 @@ class SpeedReference:
         return speed * speed / (2.0 * left) if left > 0.0 else inf
 
     def _slope(self, speed: float, wanted: float, limit: float) -> float:
-        """The target's own slope [m/s^2], while the vehicle approaches who stands in front."""
+        """The slope [m/s^2] of the target while the vehicle approaches a standing person."""
         p = self.parameters
         if wanted == 0.0 or wanted >= p.reference_speed:
             return 0.0
         if wanted == limit:
             change = (limit - self._limit) / self.time_step
-            return change if abs(change) <= _OTHERS_CURVE else 0.0  # else it has just appeared
+            return change if abs(change) <= _OTHERS_CURVE else 0.0  # 0 for a limit that is new
         if p.profile == "linear":
             return -speed * p.reference_speed / p.buffer_distance
         return -speed * self._down / (wanted + self._down * p.approach_lag)

@@ -1,4 +1,4 @@
-"""A PID as a good engineer would make it: the planning MPC's fair rival (``pid-tuned``)."""
+"""A well-tuned PID, the fair competitor of the planning MPC (``pid-tuned``)."""
 
 from dataclasses import dataclass, field
 from math import inf, isfinite
@@ -9,20 +9,20 @@ from controller.model import LongitudinalModel
 from controller.parameters import require_not_negative, require_positive
 from controller.pid.speed_reference import ReferenceParameters, SpeedReference
 
-_TRANSIENT = 0.5  # [m/s^2] of the reference, from which on errors are not integrated
+_TRANSIENT = 0.5  # acceleration [m/s^2] of the reference, above which errors are not integrated
 
 
 @dataclass(frozen=True, slots=True)
 class TunedPidParameters:
-    """The loop's gains, given by what they make of the plant, and the actuator's limits.
+    """The closed loop's bandwidth and damping, and the actuator's limits.
 
-    The gains place both poles of M v' + alpha v = u at bandwidth and damping, so they scale with
+    The gains place both poles of M v' + alpha v = u by bandwidth and damping, so they scale with
     the vehicle. benchmarks/tuning/tune_pid.py finds the defaults.
     """
 
     bandwidth: float = 2.5  # omega_0 [rad/s] of the closed loop s^2 + 2 zeta omega_0 s + omega_0^2
     damping: float = 0.85  # zeta [-]
-    acceleration_feed_forward: bool = True  # M dv_ref/dt beside alpha v_ref
+    acceleration_feed_forward: bool = True  # whether M dv_ref/dt is added to alpha v_ref
     force_limit: float = FORCE_LIMIT  # u_max [N]
     force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
     reference: ReferenceParameters = field(default_factory=ReferenceParameters)
@@ -34,10 +34,10 @@ class TunedPidParameters:
         require_positive("force_rate_limit", self.force_rate_limit, "N per step")
 
     def gains(self, model: LongitudinalModel) -> tuple[float, float]:
-        """K_p [N s/m] and K_i [N/m]: pole placement for a first-order plant.
+        """Return K_p [N s/m] and K_i [N/m] by pole placement for a first-order plant.
 
-        Åström & Hägglund 2006, Advanced PID Control, section 6.4. A derivative would act as more
-        mass does: for one lag there is nothing for it to do.
+        Åström & Hägglund 2006, Advanced PID Control, section 6.4. There is no derivative part: for
+        a first-order plant it would only act like additional mass.
         """
         K_p = 2.0 * self.damping * self.bandwidth * model.mass - model.friction
         return max(K_p, 0.0), self.bandwidth**2 * model.mass
@@ -46,16 +46,16 @@ class TunedPidParameters:
 class TunedPid:
     """u = alpha v_ref + M dv_ref/dt + K_p e + u_i, e = v_ref - v, within the actuator's limits.
 
-    * The reference is smooth (:class:`SpeedReference`), so that the feed-forward alone drives the
-      modelled vehicle along it and the feedback has only the model's errors to correct.
-    * Anti-windup by back-calculation with the tracking time K_p / K_i; the reference is conditioned
-      by the same amount (Hanus, Kinnaert & Henrotte 1987): it never runs ahead of what the
-      actuator can do.
-    * Where a limit of 0 wants the car to stand, it does not drive.
+    * The reference is smooth (:class:`SpeedReference`). The feed-forward alone drives the modelled
+      vehicle along it, and the feedback corrects the model's errors only.
+    * Anti-windup uses back-calculation with the tracking time K_p / K_i. The reference is
+      conditioned by the same amount (Hanus, Kinnaert & Henrotte 1987), so that it never runs ahead
+      of the actuator.
+    * Under a speed limit of 0 the force is not positive, except while the rate limit lowers it.
 
     Args:
-        parameters: Parameters of loop, actuator and reference.
-        model: Model of the vehicle; its time step is the controller's.
+        parameters: Parameters of loop, actuator and reference, or None for the defaults.
+        model: Model of the vehicle, with the control step, or None for the defaults.
     """
 
     def __init__(
@@ -74,14 +74,14 @@ class TunedPid:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the past: the reference begins at the next speed, the integrator is empty."""
-        self._integral = 0.0  # u_i(k) [N]
-        self._force = 0.0  # u(k-1) [N]
-        self._speed = 0.0  # v(k) [m/s]
+        """Forget the past: the reference begins at the next speed, and the integrator at 0."""
+        self._integral = 0.0  # integral part u_i(k) [N]
+        self._force = 0.0  # force u(k-1) [N]
+        self._speed = 0.0  # speed v(k) [m/s]
         self._started = False
 
     def reference_speed(self, gap: float, limit: float = inf) -> float:
-        """The profile [m/s] at ``gap`` [m]; never more than ``limit`` [m/s]."""
+        """The target speed [m/s] at ``gap`` [m], at most ``limit`` [m/s]."""
         return self.reference.target(gap, limit)
 
     def control(self, speed: float, gap: float, limit: float = inf) -> float:
@@ -121,7 +121,7 @@ class TunedPid:
         self, speed: float, gap: float, limit: float = inf, force: float | None = None
     ) -> None:
         """Follow another controller that acts with ``force`` [N], for a takeover without a jump."""
-        del gap, limit  # the reference starts at the speed, whatever is in front
+        del gap, limit  # the reference starts at the present speed
         self._begin(speed, self.model.friction * speed if force is None else force)
 
     def applied(self, force: float) -> None:
@@ -153,7 +153,12 @@ class TunedPid:
         )
 
     def _learn(self, e: float, cut: float) -> None:
-        """Integrate the error; take back what the limits ``cut`` off [N]."""
+        """Integrate the error ``e`` [m/s], with anti-windup for the force ``cut`` off [N].
+
+        Args:
+            e: Speed error [m/s].
+            cut: Limited minus wanted force [N].
+        """
         dt = self.time_step
         reachable = cut / (self.K_p + self.model.friction) if self.K_p > 0.0 else 0.0  # [m/s]
         self._integral += self.K_i * dt * (e + reachable)

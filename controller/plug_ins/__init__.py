@@ -1,1 +1,1 @@
-"""Controllers of other people."""
+"""Controllers of other packages: their protocol, their wrapper, and a check of both."""

@@ -12,37 +12,37 @@ from controller.observation import Observation
 
 
 class Setup(NamedTuple):
-    """The facts of a drive that do not change; a controller is told once, when it is made."""
+    """The constant facts of a drive, which a controller gets when it is made."""
 
-    time_step: float  # h [s] between two answers
-    mass: float  # M [kg] of the model M s'' + alpha s' = u
-    friction: float  # alpha [N.s/m] of it
-    reference_speed: float  # v_r [m/s] where nothing is in the way
-    safe_distance: float  # d_safe [m] to be kept to obstacles
-    force_limit: float  # [N] the actuator gives no more, forwards or backwards
-    comfortable_deceleration: float  # [m/s^2]
+    time_step: float  # control step h [s]
+    mass: float  # mass M [kg] of the model M s'' + alpha s' = u
+    friction: float  # friction alpha [N.s/m] of this model
+    reference_speed: float  # reference speed v_r [m/s] on a free road
+    safe_distance: float  # distance d_safe [m] to be kept to obstacles
+    force_limit: float  # largest force [N] of the actuator, forwards and backwards
+    comfortable_deceleration: float  # comfortable deceleration [m/s^2]
 
 
 class Defaults(NamedTuple):
     """The declaration of a controller: values of settings that the user leaves out.
 
-    A plug-in has them as the attribute ``defaults`` of its class. The last three describe what
-    giveway asks of its own controllers only.
+    A plug-in has them as the attribute ``defaults`` of its class. The last three concern giveway's
+    own controllers only.
     """
 
-    reference_speed: float | None = None  # v_r [m/s]; None: as the lanes say
-    heeds_priority: bool = True  # the law of the road holds
-    tracker: bool = True  # noisy positions are filtered
-    safety_layer: bool = True  # the safety layer watches over its forces
-    optimises: bool = False  # it has a model and a horizon, and its plans may be infeasible
-    smooths: bool = False  # it follows a smooth reference speed, and brakes for a distance late
-    buffered: bool = False  # its reference speed rises linearly over a buffer beyond d_safe
+    reference_speed: float | None = None  # v_r [m/s], or None for the speed limits of the lanes
+    heeds_priority: bool = True  # whether the rules of the road hold
+    tracker: bool = True  # whether noisy positions are filtered
+    safety_layer: bool = True  # whether the safety layer checks its forces
+    optimises: bool = False  # whether it has a model and a horizon; plans may be infeasible
+    smooths: bool = False  # whether it follows a smooth reference speed and brakes late
+    buffered: bool = False  # whether its reference speed rises linearly over d_buffer beyond d_safe
 
 
 class Force(NamedTuple):
     """The force that is to act in [t_k, t_k+1]."""
 
-    value: float  # u [N], forwards positive
+    value: float  # force u [N], positive forwards
     reason: str = ""  # a word or two for the tables
 
 
@@ -54,32 +54,32 @@ class Acceleration(NamedTuple):
 
 
 class Speed(NamedTuple):
-    """The speed that the vehicle is to approach: a = (v_set - v) / T, then as an acceleration."""
+    """The speed that the vehicle is to approach, with the acceleration a = (v_set - v) / T."""
 
-    value: float  # v_set [m/s]
-    lead: float = 0.0  # T [s]; 0: one control step
+    value: float  # target speed v_set [m/s]
+    lead: float = 0.0  # time constant T [s]; at least one control step is used
     reason: str = ""  # a word or two for the tables
 
 
 Answer: TypeAlias = Force | Acceleration | Speed | float
-"""What ``control`` returns; a mere number is a force [N]."""
+"""The type that ``control`` returns; a plain number is a force [N]."""
 
 
 @runtime_checkable
 class PlugIn(Protocol):
-    """Somebody else's controller, made by ``Class(setup)`` or ``Class(setup, options)``.
+    """A controller of another package, made by ``Class(setup)`` or ``Class(setup, options)``.
 
-    It may have, and has to have none of:
+    It may have these optional members:
 
-    * ``Options``, of the class: a dataclass or pydantic model of what users may set;
-    * ``defaults``, of the class: a :class:`Defaults`, what holds where users say nothing;
-    * ``horizon``, N: the steps of prediction that it wants in ``obstacle_positions``; 0: none;
-    * ``foresees``: it tries manoeuvres on ``Observation.foresight``, and wants no prediction else;
+    * ``Options`` of the class: a dataclass or pydantic model of the options that users may set;
+    * ``defaults`` of the class: a :class:`Defaults` with the values of settings left out;
+    * ``horizon``: number N of predicted steps that it needs in ``obstacle_positions``; 0 for none;
+    * ``foresees``: whether it evaluates manoeuvres by ``Observation.foresight`` instead;
     * ``reset()``: forget the past;
-    * ``applied(force)``: told when the safety layer lets another force [N] act than it wanted.
+    * ``applied(force)``: called when the safety layer applied another force [N] than the answer.
 
-    It is made before the run and perhaps more than once, and so starts nothing when it is made.
+    It is made before the run, perhaps more than once. Its constructor must not start anything.
     """
 
     def control(self, observation: Observation, /) -> Answer:
-        """Return what is to act in [t_k, t_k+1]; the observation's arrays cannot be written."""
+        """Return what is to act in [t_k, t_k+1]. The observation's arrays are read-only."""

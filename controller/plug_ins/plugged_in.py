@@ -1,4 +1,4 @@
-"""Somebody else's controller among ours: shown what they see, its answer checked."""
+"""The wrapper of a controller of another package: it checks answers and reports errors."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 
     from controller._jit import Array
 
-_SHOWN = 80  # characters of what it returned
-_ROUNDING = 1e-8  # of the limit, by which a plan of a solver's may lie beyond it: ours do, too
-_FURTHEST = 10_000  # steps of prediction
+_SHOWN = 80  # largest number of characters of a returned value in a message
+_ROUNDING = 1e-8  # tolerance of the force limit as a share of it, as solvers need
+_FURTHEST = 10_000  # largest prediction horizon [steps]
 _Entry = TypeVar("_Entry", bound=np.generic)
 
 
 class PluggedIn:
-    """A controller of somebody else's as the co-simulation asks any other.
+    """A controller of another package, which the co-simulation asks like giveway's own.
 
-    The force is limited to what the actuator gives; what acted is in the next observation.
+    Its force is limited to that of the actuator. The next observation has the force that acted.
 
     Args:
         name: Name of the controller and its ego, for messages.
-        make: makes the plug-in.
+        make: Function that makes the plug-in.
         setup: Setup of the drive.
 
     Raises:
@@ -86,14 +86,14 @@ class PluggedIn:
         return Decision(force, "plug-in", reason or "answered", "", 0, reference, None)
 
     def applied(self, force: float) -> None:
-        """Another force [N] than the last one asked for acts."""
+        """Tell the plug-in that ``force`` [N] acts instead of its last answer."""
         applied = getattr(self._plug_in, "applied", None)
         if applied is not None:
             with self._blamed("in applied"):
                 applied(force)
 
     def close(self) -> None:
-        """Nobody asks any more."""
+        """Close the plug-in after its last answer."""
         close = getattr(self._plug_in, "close", None)
         if close is not None:
             with self._blamed("in close"):
@@ -105,7 +105,7 @@ class PluggedIn:
         return list(getattr(self._plug_in, "warnings", ()))
 
     def _force_of(self, answer: object, speed: float) -> tuple[float, str]:
-        """The force [N] that an answer means, and its reason."""
+        """Return the force [N] of an answer, and its reason."""
         setup = self._setup
         if isinstance(answer, Acceleration):
             wanted = self._number(answer, answer.value, "m/s^2")
@@ -152,7 +152,10 @@ class PluggedIn:
 
 
 def described(error: BaseException) -> str:
-    """Kind, first line and place of an error of somebody else's: "ValueError: bad (a.py:3)"."""
+    """Describe an error of another package by kind, first line and place.
+
+    Example: "ValueError: bad (a.py:3)".
+    """
     try:
         lines = str(error).split("\n")
     except Exception:
@@ -164,14 +167,14 @@ def described(error: BaseException) -> str:
 
 
 class _SeenPeople(NamedTuple):
-    """The pedestrians, whose arrays cannot be written."""
+    """The pedestrians with read-only arrays."""
 
     position: Array
     velocity: Array
 
 
 def _read_only(observation: Observation) -> Observation:
-    """A copy of the observation, whose arrays raise where they are written: they are the run's."""
+    """Return a copy of the observation with read-only arrays, because they belong to the run."""
     people, vehicles, ids = observation.people, observation.vehicles, observation.person_ids
     lanes = observation.lane_speeds
     return observation.replaced(
@@ -199,7 +202,7 @@ def _is_count(value: Any) -> bool:
 
 
 def _shown(value: object) -> str:
-    """A value on one line, whatever its ``repr`` does."""
+    """Return a value on one line, even if its ``repr`` fails."""
     try:
         text = " ".join(repr(value).split())
     except Exception:

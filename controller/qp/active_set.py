@@ -1,8 +1,8 @@
 """An exact start for the QP solver: the dual active-set method of Goldfarb & Idnani (1983).
 
-A first-order method started at the optimum only has to confirm it; started elsewhere it can need
-thousands of iterations on the problems that matter here, those where the car just manages to
-stop. The method also ends with a certificate when no plan exists.
+A first-order method that starts at the optimum only has to confirm it. From elsewhere it can need
+thousands of iterations for problems in which the car stops just in time. The active-set method also
+ends with a certificate of infeasibility if no plan exists.
 """
 
 import numpy as np
@@ -13,29 +13,30 @@ from controller.qp.verification import PRIMAL_TOLERANCE, equality_solve
 
 INFEASIBLE = -1
 UNFINISHED = -2
-_DEPENDENT = 1e-18  # squared length of a projected unit-sized row that counts as zero
+_DEPENDENT = 1e-18  # squared length, relative to the row's, below which a projected row is zero
 
 
 @inner
 def solve_exactly(
     rows: Array, lower: Array, upper: Array, target: Array, multipliers: Array, solution: Array
 ) -> int:
-    """Minimise |V - target|^2 within the bounds, from the unconstrained optimum on.
+    """Minimise |V - target|^2 within the bounds, starting at the unconstrained optimum.
 
     Args:
-        rows: (m, N).
-        lower: (m,); -inf where there is none.
-        upper: (m,); inf where there is none.
-        target: (N,).
-        multipliers: (m,) receives the optimum's, or a certificate of infeasibility.
-        solution: (N,) receives the minimiser.
+        rows: Matrix (m, N) of the constraints.
+        lower: Lower bounds (m,); -inf without a bound.
+        upper: Upper bounds (m,); inf without a bound.
+        target: Target (N,).
+        multipliers: Multipliers (m,), filled: those of the optimum, or a certificate of
+            infeasibility.
+        solution: Minimiser (N,), filled.
 
     Returns:
-        The iterations, or INFEASIBLE or UNFINISHED.
+        Number of iterations, or INFEASIBLE or UNFINISHED.
     """
     m, N = rows.shape
     side = np.zeros(m, dtype=np.int64)
-    dual = np.zeros(m)  # >= 0, of the active rows, signed by side
+    dual = np.zeros(m)  # multipliers of the active rows, >= 0; `side` has their signs
     for j in range(len(target)):
         solution[j] = target[j]
     violated = -1
@@ -89,7 +90,7 @@ def solve_exactly(
 
 @inner
 def violation(row: Array, low: float, high: float, direction: int, solution: Array) -> float:
-    """Return how far ``solution`` violates one bound of ``row``; negative inside it."""
+    """Return by how much ``solution`` violates one bound of ``row``; negative if it keeps it."""
     value = 0.0
     for j in range(len(solution)):
         value += row[j] * solution[j]
@@ -125,10 +126,10 @@ def projected(
     direction: int,
     share: Array,
 ) -> Array:
-    """The violated row's normal less its part in the span of the active ones.
+    """The normal of the violated row without its part in the span of the active rows.
 
-    ``share`` receives the coefficients of that part: a least-squares fit by modified
-    Gram-Schmidt, which loses less than the normal equations.
+    ``share`` receives the coefficients of this part. They are a least-squares fit by modified
+    Gram-Schmidt, which is more accurate than the normal equations.
     """
     size, N = len(active), rows.shape[1]
     basis = np.empty((size, N))
@@ -177,7 +178,7 @@ def finish(
     solution: Array,
     iterations: int,
 ) -> int:
-    """The optimum on the final active set, free of the rounding gathered on the way."""
+    """Compute the optimum on the final active set anew, without accumulated rounding errors."""
     active = np.flatnonzero(side)
     dual = np.zeros(len(active))
     if equality_solve(rows, lower, upper, target, side, active, dual, solution) >= 0:
@@ -197,7 +198,7 @@ def certificate(
     direction: int,
     multipliers: Array,
 ) -> None:
-    """The violated row less a non-positive combination of active ones: Farkas' multipliers."""
+    """Fill ``multipliers`` (m,) with Farkas' multipliers, which prove infeasibility."""
     multipliers[:] = 0.0
     multipliers[violated] = direction
     for a in range(len(active)):

@@ -1,4 +1,4 @@
-"""One sequence for both quadratic programs: exact start, solver, verified optimum."""
+"""The solution of both quadratic programs: exact start, solver, verification of the optimum."""
 
 from __future__ import annotations
 
@@ -14,28 +14,27 @@ from controller.qp.verification import certifies_infeasibility, refine
 if TYPE_CHECKING:
     from controller.qp.osqp_backend import OsqpBackend
 
-_SOLVED, _INFEASIBLE = Outcome.SOLVED, Outcome.INFEASIBLE  # whose class is slow to tell them
+_SOLVED, _INFEASIBLE = Outcome.SOLVED, Outcome.INFEASIBLE
 
 
 class ExactSolver:
-    """Solves one problem again and again, as its target and bounds change.
+    """Solves one problem repeatedly, as its target and bounds change.
 
-    A solve starts from the active set of the solve before, made exact, or from an exact solve. The
-    solver then only has to confirm that start. Its answer is refined to rounding, and counts only
-    if the optimality conditions hold by our own arithmetic. A problem that always has a solution
-    is left to the solver only where the exact methods do not end at such an optimum, and OSQP is
-    not even set up before that. A fresh instance, or one after :meth:`reset`, gives the same bytes
-    for the same sequence of problems.
+    A solve starts from the refined active set of the solve before, or from an exact solve. The
+    solver then only has to confirm this start. Its answer is refined, and accepted only if the
+    optimality conditions hold. For a problem that always has a solution, the solver is used only if
+    the exact methods do not find an optimum; OSQP is then set up at its first use. A new instance,
+    or one after :meth:`reset`, gives the same bytes for the same sequence of problems.
 
     Args:
-        problem: Problem to solve; its arrays are changed in place between solves.
+        problem: Problem to solve. Its arrays are changed in place between solves.
         iteration_limit: Iteration limit of the solver.
-        box: Range of every unknown, within which infeasibility is proved; None: the problem
-            always has a solution, so that nothing is proved and an optimum is always looked for.
+        box: Range of every unknown, within which infeasibility is proved, or None if the problem
+            always has a solution.
 
     Attributes:
-        solution: (n,) of the latest solve.
-        memory: the multipliers and the solution, for :func:`solve_verified` in a kernel.
+        solution: Solution (n,) of the latest solve.
+        memory: Multipliers and solution, for :func:`solve_verified` in a kernel.
 
     Raises:
         SolverSetupError: the solver cannot be used.
@@ -67,9 +66,9 @@ class ExactSolver:
         return OsqpBackend(self._problem, self._limit)
 
     def solve(self) -> tuple[Outcome, int]:
-        """The outcome for the problem as it is now, and the iterations.
+        """Solve the problem as it is now, and return the outcome and the number of iterations.
 
-        The solver's, or the corrections of the active set where the solver was not needed.
+        Without a call of the solver, the number is that of corrections to the active set.
         """
         if self._box is None:
             corrections = solve_verified(
@@ -91,7 +90,7 @@ class ExactSolver:
         return outcome, iterations
 
     def _start(self) -> bool:
-        """Start the solver at the optimum; False if it is proved that there is none."""
+        """Set the start of the solver to the optimum; return False if infeasibility is proved."""
         code = solve_from(
             *self._bounds, self._problem.target, self._multipliers, self.solution, True
         )
@@ -103,7 +102,7 @@ class ExactSolver:
         return not proved
 
     def _verified(self, outcome: Outcome) -> bool:
-        """Make the solution exact; whether it is the verified optimum."""
+        """Refine the solution, and return whether it is the verified optimum."""
         near = outcome is _SOLVED
         work = (*self._bounds, self._problem.target, self._multipliers, self.solution)
         return solve_from(*work, near) >= 0
@@ -124,10 +123,12 @@ def solve_verified(
     multipliers: Array,
     solution: Array,
 ) -> int:
-    """Minimise |V - target|^2 exactly from the multipliers of a similar problem.
+    """Minimise |V - target|^2 exactly, starting from the multipliers of a similar problem.
+
+    Arguments are as for :func:`solve_from`.
 
     Returns:
-        The corrections or iterations, or -1 unless the optimality conditions hold.
+        Number of corrections or iterations, or -1 if the optimality conditions do not hold.
     """
     corrections = refine(rows, lower, upper, target, multipliers, solution)
     if corrections >= 0:
@@ -149,19 +150,21 @@ def solve_from(
     solution: Array,
     near: bool,
 ) -> int:
-    """Minimise |V - target|^2 exactly: by refining multipliers, and if that fails from scratch.
+    """Minimise |V - target|^2 exactly, by refining multipliers or, if that fails, from scratch.
 
     Args:
-        rows: (m, N).
-        lower: (m,); -inf where there is none.
-        upper: (m,); inf where there is none.
-        target: (N,).
-        multipliers: (m,) to start from; receives the optimum's, or a certificate of infeasibility.
-        solution: (N,) receives the minimiser.
-        near: the multipliers are those of a similar problem, or of an approximate solve.
+        rows: Matrix (m, N) of the constraints.
+        lower: Lower bounds (m,); -inf without a bound.
+        upper: Upper bounds (m,); inf without a bound.
+        target: Target (N,).
+        multipliers: Multipliers (m,) to start from, changed: those of the optimum, or a
+            certificate of infeasibility.
+        solution: Minimiser (N,), filled.
+        near: Whether the multipliers are those of a similar problem or of an approximate solve.
 
     Returns:
-        Corrections or iterations; below 0: no optimum was verified, see :func:`solve_exactly`.
+        Number of corrections or iterations, or a number below 0 if no optimum was verified, see
+        :func:`solve_exactly`.
     """
     if near:
         corrections = refine(rows, lower, upper, target, multipliers, solution)

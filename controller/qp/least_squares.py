@@ -1,4 +1,4 @@
-"""The problem that both model predictive controllers pose, and what a solver says of it."""
+"""The problem that both model predictive controllers pose, and the outcomes of a solve."""
 
 import enum
 from typing import Protocol
@@ -12,10 +12,10 @@ class LeastSquares(Protocol):
     The arrays are filled in place from step to step and never replaced.
 
     Attributes:
-        rows: (m, n), constant.
-        target: (n,); changes from step to step, as the bounds do.
-        lower, upper: (m,); infinite where there is none.
-        increments: whether the solver is to get x_1, x_2 - x_1, ... instead of x.
+        rows: Matrix (m, n) of the constraints, constant.
+        target: Target (n,), which changes from step to step.
+        lower, upper: Bounds (m,), which change from step to step; infinite without a bound.
+        increments: Whether the solver's unknowns are x_1, x_2 - x_1, ... instead of x.
     """
 
     rows: Array
@@ -30,8 +30,8 @@ class Outcome(enum.StrEnum):
 
     SOLVED = "solved"
     INFEASIBLE = "infeasible: by the solver"
-    CERTIFIED = "infeasible: certified"  # by our own arithmetic
+    CERTIFIED = "infeasible: certified"  # giveway's own check confirms it
     INACCURATE = "inaccurate"
     ITERATION_LIMIT = "iteration limit"
     FAILED = "failed"
-    UNVERIFIED = "not verified"  # solved, but our own arithmetic does not confirm it
+    UNVERIFIED = "not verified"  # solved, but giveway's own check does not confirm it

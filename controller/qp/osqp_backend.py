@@ -1,7 +1,8 @@
-"""OSQP: set up once, then only bounds, target and start change. The only file that imports osqp.
+"""The adapter to OSQP, and the only file that imports osqp.
 
-It gets the paper's problem in the unknowns v(k+1), v(k+2) - v(k+1), ...: from a cold start it needs
-a seventh of the iterations that the speeds themselves cost it, and they would often not converge.
+OSQP is set up once. After that only bounds, target and start change. The paper's problem is posed
+in the unknowns v(k+1), v(k+2) - v(k+1), ...: with the speeds themselves OSQP needs seven times as
+many iterations from a cold start, and often does not converge.
 """
 
 import signal
@@ -14,7 +15,7 @@ from controller._jit import Array, kernel
 from controller.errors import SolverSetupError
 from controller.qp.least_squares import LeastSquares, Outcome
 
-_INFINITY = 1e30  # OSQP's
+_INFINITY = 1e30  # OSQP's value of infinity
 _INTERRUPTED = int(osqp.SolverStatus.OSQP_SIGINT)
 _STATUS = {
     osqp.SolverStatus.OSQP_SOLVED: Outcome.SOLVED,
@@ -24,13 +25,14 @@ _STATUS = {
     osqp.SolverStatus.OSQP_MAX_ITER_REACHED: Outcome.ITERATION_LIMIT,
 }
 
-_INFEASIBLE, _FAILED = Outcome.INFEASIBLE, Outcome.FAILED  # whose class is slow to tell them
+_INFEASIBLE, _FAILED = Outcome.INFEASIBLE, Outcome.FAILED
 
 
 class OsqpBackend:
     """Solves a least-squares problem by OSQP (Stellato et al. 2020), warm-started.
 
-    Nothing depends on a clock: no time limit, and the step size adapts every 50 iterations.
+    The result does not depend on a clock: there is no time limit, and the step size adapts every 50
+    iterations.
 
     Raises:
         SolverSetupError: OSQP refuses the problem.
@@ -62,7 +64,7 @@ class OsqpBackend:
             raise SolverSetupError(
                 f"OSQP refuses the MPC's problem at set-up ({error}); check [mpc] and [vehicle]"
             ) from error
-        self._solver = solver._solver  # the wrapper's solve() copies and checks for 20 us
+        self._solver = solver._solver  # the solver without its Python wrapper
         self._lower = np.empty(count)
         self._upper = np.empty(count)
         self._start = np.empty(N)
@@ -75,11 +77,12 @@ class OsqpBackend:
         """Solve within the problem's present bounds.
 
         Args:
-            solution: Start, (n,); receives the solution.
-            multipliers: Start, (m,); receives the solution's, or the certificate of infeasibility.
+            solution: Start (n,), changed to the solution.
+            multipliers: Start (m,), changed to those of the solution or a certificate of
+                infeasibility.
 
         Returns:
-            The outcome and the number of iterations.
+            Outcome, and number of iterations.
         """
         solver, problem = self._solver, self._problem
         aims_elsewhere = pose(
@@ -99,7 +102,7 @@ class OsqpBackend:
         solver.solve()
         info = solver.info
         if info.status_val == _INTERRUPTED:
-            signal.raise_signal(signal.SIGINT)  # OSQP swallowed it: hand it to whose it is
+            signal.raise_signal(signal.SIGINT)  # OSQP caught Ctrl-C: raise it again
             solver.solve()
             info = solver.info
         outcome = _STATUS.get(info.status_val, _FAILED)
@@ -123,18 +126,18 @@ def pose(
     aimed_at: Array,
     start: Array,
 ) -> bool:
-    """Fill what the solver gets: finite bounds, and where to start; is the target another one?
+    """Fill the solver's finite bounds and start, and return whether the target has changed.
 
     Args:
-        lower: (m,) of the problem.
-        upper: (m,) of the problem.
-        target: (n,) of the problem.
-        solution: (n,) of the problem, from which to start.
-        increments: the solver's unknowns are increments.
-        low: (m,) the solver's.
-        high: (m,) the solver's.
-        aimed_at: (n,) the target that the solver knows; brought up to date.
-        start: (n,) the solver's.
+        lower: Lower bounds (m,) of the problem.
+        upper: Upper bounds (m,) of the problem.
+        target: Target (n,) of the problem.
+        solution: Solution (n,) of the problem from which to start.
+        increments: Whether the solver's unknowns are increments.
+        low: Lower bounds (m,) of the solver, filled.
+        high: Upper bounds (m,) of the solver, filled.
+        aimed_at: Last target (n,) of the solver, updated.
+        start: Start (n,) of the solver, filled.
     """
     for i in range(lower.size):
         low[i], high[i] = max(lower[i], -_INFINITY), min(upper[i], _INFINITY)

@@ -1,9 +1,9 @@
-"""Exactness after an approximate solve: active-set refinement, and proofs of infeasibility.
+"""Refines and verifies the result of an approximate solve, and proofs of infeasibility.
 
-A first-order solver finds which constraints bind; linear algebra on those gives the optimum to
-rounding, and the optimality conditions verify it, primal and dual (Boyd & Vandenberghe 2004,
-section 5.5.3). Likewise a certificate of infeasibility counts only if our own arithmetic
-confirms it over the box of possible speeds.
+A first-order solver finds the active constraints. Linear algebra on these gives the optimum to
+rounding, and the primal and dual optimality conditions verify it (Boyd & Vandenberghe 2004,
+section 5.5.3). A certificate of infeasibility is accepted only if it holds over the whole box of
+possible speeds.
 """
 
 import numpy as np
@@ -11,32 +11,32 @@ from numpy.typing import NDArray
 
 from controller._jit import Array, inner, kernel
 
-PRIMAL_TOLERANCE = 1e-10  # Tolerance [m/s] of constraints: rounding of sums of N speeds
-_PIVOT = 1e-11  # Relative pivot below which a binding row depends on the others
+PRIMAL_TOLERANCE = 1e-10  # tolerance [m/s] of constraints, for the rounding of sums of N speeds
+_PIVOT = 1e-11  # relative pivot below which an active row depends on the others
 
 
 @inner
 def refine(
     rows: Array, lower: Array, upper: Array, target: Array, multipliers: Array, solution: Array
 ) -> int:
-    """The exact minimiser of |V - target|^2 within the bounds, from approximate multipliers.
+    """Find the exact minimiser of |V - target|^2 within the bounds from approximate multipliers.
 
     Args:
-        rows: (m, N).
-        lower: (m,); -inf where there is none.
-        upper: (m,); inf where there is none.
-        target: (N,).
-        multipliers: (m,) of an approximate solve: > 0 where the upper bound binds, < 0 the lower;
-            receives the exact ones.
-        solution: (N,) receives the minimiser.
+        rows: Matrix (m, N) of the constraints.
+        lower: Lower bounds (m,); -inf without a bound.
+        upper: Upper bounds (m,); inf without a bound.
+        target: Target (N,).
+        multipliers: Multipliers (m,) of an approximate solve, > 0 where the upper bound is active
+            and < 0 where the lower one is; changed to the exact ones.
+        solution: Minimiser (N,), filled.
 
     Returns:
-        The number of corrections made to the active set, or -1 if the result is not verified.
+        Number of corrections to the active set, or -1 if the result is not verified.
     """
     m, N = rows.shape
-    side = np.zeros(m, dtype=np.int64)  # +1: upper bound binds, -1: lower, 0: neither
+    side = np.zeros(m, dtype=np.int64)  # +1 if the upper bound is active, -1 the lower, 0 none
     least = 1e-6 * max(1.0, largest_size(multipliers))
-    for _ in range(N):  # the largest first: more than N bind only where some say the same
+    for _ in range(N):  # the largest first; more than N active rows are linearly dependent
         i = largest_outside(multipliers, side)
         if i < 0 or not abs(multipliers[i]) > least:
             break
@@ -68,7 +68,7 @@ def refine(
         if add < 0:
             multipliers[:] = 0.0
             for a in range(len(active)):
-                multipliers[active[a]] = 2.0 * dual[a]  # of |V - target|^2, not of its half
+                multipliers[active[a]] = 2.0 * dual[a]  # for |V - target|^2 and not half of it
             return correction if is_finite(solution) else -1
         side[add] = bound
     return -1
@@ -85,10 +85,10 @@ def equality_solve(
     dual: Array,
     solution: Array,
 ) -> int:
-    """Minimise |V - target|^2 with the active rows at their bounds: a Cholesky factorisation.
+    """Minimise |V - target|^2 with the active rows at their bounds, by a Cholesky factorisation.
 
     Returns:
-        -1, or the position in ``active`` of a row that depends on those before it.
+        -1, or the index in ``active`` of a row that depends linearly on those before it.
     """
     size, N = len(active), rows.shape[1]
     factor = np.empty((size, size))
@@ -136,7 +136,7 @@ def equality_solve(
 
 @inner
 def largest_size(values: Array) -> float:
-    """The largest absolute value; nan if any of them is."""
+    """The largest absolute value, or nan if one of them is nan."""
     largest = 0.0
     for value in values:
         if np.isnan(value):
@@ -147,7 +147,7 @@ def largest_size(values: Array) -> float:
 
 @inner
 def largest_outside(values: Array, side: NDArray[np.int64]) -> int:
-    """Index of the largest absolute value whose ``side`` is 0; -1 if there is none above zero."""
+    """The index of the largest absolute value whose ``side`` is 0, or -1 if none is above 0."""
     largest, index = 0.0, -1
     for i in range(len(values)):
         if side[i] == 0 and abs(values[i]) > largest:
@@ -170,8 +170,8 @@ def certifies_infeasibility(
 ) -> bool:
     """Return whether ``certificate`` (m,) proves that no V in the box keeps all rows (Farkas).
 
-    Every feasible V has y'(rows V) <= sum of upper y+ + lower y-; if y'(rows V) is larger than
-    that everywhere in the box of possible speeds, there is none.
+    Every feasible V has y'(rows V) <= sum of upper y+ + lower y-. If y'(rows V) is larger than
+    this everywhere in the box, no V is feasible.
     """
     m, N = rows.shape
     largest = largest_size(certificate)
@@ -184,7 +184,7 @@ def certifies_infeasibility(
         y = certificate[i] / largest
         bound = upper[i] if y > 0.0 else lower[i]
         if y == 0.0 or not np.isfinite(bound):
-            continue  # a multiplier of a bound that is not there is rounding: leave it out
+            continue  # a multiplier of an infinite bound is a rounding error
         support += y * bound
         size += abs(y * bound)
         for j in range(N):

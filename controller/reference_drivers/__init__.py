@@ -1,1 +1,1 @@
-"""Drivers to compare with."""
+"""Reference drivers: models of human drivers to compare the controllers with."""

@@ -1,15 +1,15 @@
 """The competent and careful human driver of UN Regulation No. 157, as a reference driver.
 
 Annex 3 of the regulation (automated lane keeping, 2021) has a performance model of such a driver,
-who says which collisions are preventable: risk is perceived for 0.4 s, 0.75 s later the vehicle
-begins to decelerate, after another 0.6 s it does so with 0.774 g, and holds that. It is about
-vehicles that cut in; here a person who steps onto the way less than 2 s before the vehicle, too
-close for comfortable braking, cuts in as well (ours). For all others, stop lines and leaders it
-brakes comfortably; the regulation has its driver keep 2 s to the latter. Numbers cited from memory.
+which defines the collisions that are preventable. The driver perceives a risk for 0.4 s. The
+vehicle begins to decelerate 0.75 s later, reaches 0.774 g after another 0.6 s, and holds it. The
+regulation applies this to vehicles that cut in. Here it also applies to a person who steps onto the
+way less than 2 s ahead of the vehicle, too close for comfortable braking (giveway's addition). For
+all other people, for stop lines and for leaders the driver brakes comfortably, with the
+regulation's headway of 2 s to a leader. Numbers are cited from memory.
 
-It does not look for gaps and expects nobody to step onto its way: what it cannot prevent, it hits.
-It is an example of a controller by the door that is open to everybody:
-:mod:`controller.plug_ins.plug_in`.
+The driver does not look for gaps and does not expect anybody to step onto its way. It is an example
+of a controller that uses the plug-in protocol, :mod:`controller.plug_ins.plug_in`.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from controller.parameters import require_not_negative, require_positive
 from controller.plug_ins.plug_in import Acceleration, Setup
 from controller.reference_drivers.people_ahead import people_ahead
 
-_G = 9.81  # [m/s^2]
-_SLOWEST = 1.0  # [m/s] with which it counts when it will be somewhere
-_CREEP = 0.2  # [m/s] below it the vehicle stands
-_AT_LINE = 0.5  # [m] before a stop line it stands
-_NEARLY = 0.1  # [m] the shortest way to stop in
-_URGENT = 1.2  # Factor on comfortable deceleration beyond which a person has cut in
-_BEGINS = 0.8  # Factor on it from which braking to a standstill begins
-_TAKES_UP = 0.5  # [s] in which it takes up a speed
+_G = 9.81  # acceleration of gravity [m/s^2]
+_SLOWEST = 1.0  # least speed [m/s] for the computation of arrival times
+_CREEP = 0.2  # speed [m/s] below which the vehicle stands
+_AT_LINE = 0.5  # distance [m] to a stop line at standstill
+_NEARLY = 0.1  # least distance [m] of a stop, against a division by zero
+_URGENT = 1.2  # factor on comfortable deceleration, beyond which a person has cut in
+_BEGINS = 0.8  # factor on comfortable deceleration, from which on the driver brakes
+_TAKES_UP = 0.5  # time constant [s] with which the driver approaches a speed
 
 
 @dataclass(frozen=True)
@@ -39,15 +39,15 @@ class CarefulOptions:
     """Parameters of the driver.
 
     Attributes:
-        perception: [s] for which risk is evaluated.
-        delay: [s] from then until deceleration begins.
-        ramp: [s] until it is as hard as it gets.
-        deceleration: [g] then.
-        horizon: [s] to somebody on the way, below which that is a risk.
-        headway: [s] to a leader.
-        comfort: [m/s^2] of accelerating, and of braking where nothing is urgent.
-        gap: [m] to whoever is ahead, at standstill.
-        half_width: [m] from the middle of its way, nearer than which a person's centre is on it.
+        perception: Time [s] for which a risk is evaluated.
+        delay: Time [s] from then until the deceleration begins.
+        ramp: Time [s] in which the deceleration reaches its largest value.
+        deceleration: Largest deceleration [g].
+        horizon: Time [s] to a person on the way, below which the person is a risk.
+        headway: Headway [s] to a leader.
+        comfort: Comfortable acceleration and deceleration [m/s^2].
+        gap: Distance [m] to an obstacle ahead, at standstill.
+        half_width: Half width [m] of the way, on which a person's centre counts.
 
     Raises:
         ParameterError: a value is not finite or out of range.
@@ -72,7 +72,7 @@ class CarefulOptions:
 
 
 class CarefulDriver:
-    """Brakes late and hard for those who cut in, and gently for all else.
+    """The careful driver: it brakes late and hard for people who cut in, and gently otherwise.
 
     Args:
         setup: Setup of the drive.
@@ -87,11 +87,11 @@ class CarefulDriver:
 
     def reset(self) -> None:
         """Forget the past."""
-        self._known: dict[int, float] = {}  # [s] in which somebody on the way will be perceived
-        self._braking = 0.0  # [s] for which it has braked as hard as it can
+        self._known: dict[int, float] = {}  # time [s] until a person on the way is perceived
+        self._braking = 0.0  # duration [s] of the present emergency braking
 
     def control(self, seen: Observation) -> Acceleration:
-        """Emergency braking if it has come to that, else the least comfortable acceleration."""
+        """Return the emergency braking for a person who cuts in, or a comfortable acceleration."""
         o, setup, v = self._options, self._setup, seen.speed
         hardest = setup.force_limit / setup.mass
         person = self._nearest(seen)
@@ -111,7 +111,7 @@ class CarefulDriver:
         return Acceleration(max(-hardest, min(best[0], o.comfort)), best[1])
 
     def _comfortable(self, room: float, v: float, speed: float) -> float:
-        """The acceleration [m/s^2] that leads to another speed within a distance [m]."""
+        """The acceleration [m/s^2] that leads from ``v`` to ``speed`` [m/s] within ``room`` [m]."""
         o = self._options
         left = max(room - o.gap, 0.0)
         needed = (v * v - speed * speed) / (2.0 * max(left, _NEARLY))
@@ -120,7 +120,7 @@ class CarefulDriver:
         return (sqrt(speed * speed + 2.0 * o.comfort * left) - v) / _TAKES_UP
 
     def _is_urgent(self, room: float, speed: float) -> bool:
-        """Return whether comfortable braking is too weak for somebody within the horizon."""
+        """Return whether comfortable braking is too weak for a person at distance ``room`` [m]."""
         o = self._options
         if speed < _CREEP or room / max(speed, _SLOWEST) >= o.horizon:
             return False
@@ -130,7 +130,7 @@ class CarefulDriver:
     def _nearest(self, seen: Observation) -> float:
         """Return the distance [m] along the way to the closest perceived person on it.
 
-        A person who steps onto it urgently close is perceived with a delay, all others at once.
+        A person who cuts in is perceived with a delay, all others at once.
         """
         o, found = self._options, people_ahead(seen)
         if found is None:

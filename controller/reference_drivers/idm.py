@@ -1,13 +1,14 @@
 """A human driver for reference: the intelligent driver model, with gap acceptance towards people.
 
 The car-following model is the improved IDM of Treiber and Kesting, *Traffic Flow Dynamics*
-(Springer 2013), chapter 11, with the parameters for city traffic that stand there; the IDM is that
-of Treiber, Hennecke and Helbing (Phys. Rev. E 62, 1805, 2000). It knows leaders and stop lines. To
-people such a driver answers by gap acceptance: somebody who is on its way, or will come onto it at
-the present velocity before the driver has passed, is a leader who stands there; who will have left
-before the driver arrives is none, nor is who arrives later than it has passed and its margin.
+(Springer 2013), chapter 11, with its parameters for city traffic. The IDM is by Treiber, Hennecke
+and Helbing (Phys. Rev. E 62, 1805, 2000). It responds to leaders and stop lines. For people the
+driver accepts gaps. A person on the driver's way counts as a standing leader, and so does one who
+will come onto it, at the present velocity, before the driver has passed. A person who will have
+left before the driver arrives does not count, nor does one who arrives after the driver has passed.
+Both need a margin of time.
 
-It is an example of a controller by the door that is open to everybody:
+The driver is an example of a controller that uses the plug-in protocol,
 :mod:`controller.plug_ins.plug_in`.
 """
 
@@ -25,8 +26,8 @@ from controller.parameters import require_not_negative, require_positive
 from controller.plug_ins.plug_in import Acceleration, Setup
 from controller.reference_drivers.people_ahead import people_ahead
 
-_AT_LINE = 0.5  # [m] before a stop line it stands
-_NEARLY = 0.01  # [m] the shortest gap
+_AT_LINE = 0.5  # distance [m] to a stop line at standstill
+_NEARLY = 0.01  # least gap [m] and speed [m/s], against a division by zero
 _POSITIVE = {
     "acceleration": "m/s^2",
     "deceleration": "m/s^2",
@@ -34,7 +35,7 @@ _POSITIVE = {
     "half_width": "m",
     "length": "m",
 }
-_SLOWEST = 1.0  # [m/s] with which it counts when it will be somewhere
+_SLOWEST = 1.0  # least speed [m/s] for the computation of arrival times
 
 
 @dataclass(frozen=True)
@@ -42,14 +43,14 @@ class IdmOptions:
     """Parameters of the driver.
 
     Attributes:
-        acceleration: a [m/s^2] of driving off.
-        deceleration: b [m/s^2] in comfort.
-        headway: T [s] to whoever is ahead.
-        standing_gap: s_0 [m] to whoever is ahead, at standstill.
-        exponent: delta, of the free acceleration.
-        half_width: [m] from the middle of its way, nearer than which a person's centre is on it.
-        length: [m] of the vehicle, to have passed somebody.
-        margin: [s] between the vehicle and somebody who passes its way after or before it.
+        acceleration: Largest acceleration a [m/s^2].
+        deceleration: Comfortable deceleration b [m/s^2].
+        headway: Headway T [s] to a leader.
+        standing_gap: Gap s_0 [m] to a leader, at standstill.
+        exponent: Exponent delta of the free acceleration.
+        half_width: Half width [m] of the way, on which a person's centre counts.
+        length: Length [m] of the vehicle, for the time at which it has passed a person.
+        margin: Least time [s] between the vehicle and a person who crosses before or after it.
 
     Raises:
         ParameterError: a value is not finite or out of range.
@@ -85,7 +86,7 @@ class IntelligentDriver:
         self._setup, self._options = setup, options
 
     def control(self, seen: Observation) -> Acceleration:
-        """The acceleration towards the leader that asks for the least."""
+        """Return the acceleration for the leader that allows the least."""
         v, o = seen.speed, self._options
         wanted, cause = self._setup.reference_speed, "free"
         if seen.speed_limit < wanted:
@@ -103,7 +104,14 @@ class IntelligentDriver:
         return Acceleration(max(best[0], -hardest), best[1])
 
     def _acceleration(self, v: float, wanted: float, gap: float, leader: float) -> float:
-        """The improved IDM's [m/s^2] at a ``gap`` [m] to somebody with a speed [m/s]."""
+        """The acceleration [m/s^2] of the improved IDM.
+
+        Args:
+            v: Speed [m/s].
+            wanted: Speed [m/s] on a free road.
+            gap: Gap [m] to the leader; inf without one.
+            leader: Speed [m/s] of the leader.
+        """
         o = self._options
         a, b = o.acceleration, o.deceleration
         needed = o.standing_gap + max(0.0, v * o.headway + v * (v - leader) / (2.0 * sqrt(a * b)))
@@ -117,7 +125,7 @@ class IntelligentDriver:
         return free + a * (1.0 - z * z) if z >= 1.0 else free
 
     def _nearest_person(self, seen: Observation) -> float:
-        """The distance [m] along the way to who is on it, or takes it first; inf: nobody."""
+        """The distance [m] along the way to the closest person who counts; inf without one."""
         found = people_ahead(seen)
         if found is None:
             return inf
@@ -127,12 +135,12 @@ class IntelligentDriver:
     def _takes_the_way(
         self, distance: Array, aside: Array, towards: Array, speed: float
     ) -> NDArray[np.bool_]:
-        """Return (n,) who is on the way or comes onto it before the vehicle has passed.
+        """Return whether each person (n,) is on the way or comes onto it before the vehicle.
 
         Args:
-            distance: (n,) [m] Distance along the way.
-            aside: (n,) [m] Distance from its middle.
-            towards: (n,) [m/s] Speed towards its middle.
+            distance: Distances (n,) [m] of people along the way.
+            aside: Distances (n,) [m] from the middle of the way.
+            towards: Speeds (n,) [m/s] towards the middle of the way.
             speed: Speed of the vehicle [m/s].
         """
         o, pace = self._options, max(speed, _SLOWEST)

@@ -10,25 +10,25 @@ from numpy.typing import NDArray
 from controller._jit import Array
 from controller.observation import Observation
 
-SIGHT, SPACING = 40.0, 0.5  # Sight distance [m] along the way, and spacing [m] of its points
+SIGHT, SPACING = 40.0, 0.5  # sight distance [m] along the way, and spacing [m] of its points
 STATIONS = np.arange(0.0, SIGHT, SPACING)
 
 
 class PeopleAhead(NamedTuple):
-    """The distance of each person along the way and from its middle, and the speed towards it."""
+    """The position of each person relative to the way ahead, and the speed across it."""
 
-    distance: Array  # (n,) [m]
-    aside: Array  # (n,) [m] >= 0
-    towards: Array  # (n,) [m/s]
+    distance: Array  # distances (n,) [m] along the way
+    aside: Array  # distances (n,) [m] from the middle of the way, >= 0
+    towards: Array  # speeds (n,) [m/s] towards the middle of the way
 
     @property
     def in_sight(self) -> NDArray[np.bool_]:
-        """The people (n,) who are ahead and within sight."""
+        """The marks (n,) of people who are ahead and within sight."""
         return np.asarray((self.distance > 0.0) & (self.distance < SIGHT), dtype=np.bool_)
 
 
 def people_ahead(seen: Observation) -> PeopleAhead | None:
-    """Return the people of an observation; None without people or without a way."""
+    """Return the people of an observation, or None without people or without a path."""
     if seen.path is None or seen.people is None or not len(seen.people.position):
         return None
     way = seen.path.poses(STATIONS)

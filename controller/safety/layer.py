@@ -1,11 +1,11 @@
-"""The safety layer: whatever a controller asks for, a stop before every pedestrian stays possible.
+"""The safety layer: it limits a controller's force so that a stop before people stays possible.
 
-Of the forces up to the one asked for it lets through the largest after which full braking still
-stops the ego before its front could move into anybody, however people walk within their limits of
-acceleration and speed. Where that holds it holds again one step later, by braking fully: the
-fallback of the last step is still there (docs/safety.md has the proof). The idea is that of
-set-based online verification with a fail-safe manoeuvre (Althoff & Dolan, IEEE T-RO 2014; Pek &
-Althoff, ITSC 2018) and of the safe distances of RSS (Shalev-Shwartz et al., arXiv 1708.06374).
+The layer applies the largest force, up to the controller's, after which full braking still stops
+the ego before its front could hit a person, for all motions within the assumed limits of
+acceleration and speed. If such a force exists in one step, it exists in the next one as well,
+because full braking remains possible (docs/safety.md has the proof). The method is set-based online
+verification with a fail-safe manoeuvre (Althoff & Dolan, IEEE T-RO 2014; Pek & Althoff, ITSC 2018),
+with safe distances as in RSS (Shalev-Shwartz et al., arXiv 1708.06374).
 """
 
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ from controller.parameters import require, require_not_negative, require_positiv
 from controller.safety.stopping import Limits, is_safe
 from controller.safety.worst_motion import RECORDED, WorstMotion
 
-LONGEST_STOP = 20.0  # [s] what has not stopped by then does not count as stopping
+LONGEST_STOP = 20.0  # longest duration [s] of a stop; a longer braking is not a stop
 LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
-_MOST_DECAY = 50.0  # e-foldings by friction in that time: from any speed
-_RESOLUTION = 4.0  # [N] to which the largest safe force is found
-_SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
-_WHOLE_STEPS = 1e-6  # of a step: a reaction time of so little more is no step more
+_MOST_DECAY = 50.0  # largest exponent of the speed's decay by friction in that time
+_RESOLUTION = 4.0  # resolution [N] of the largest safe force
+_SLACK = 1e-9  # distance [m] that a new force keeps in addition to full braking, above rounding
+_WHOLE_STEPS = 1e-6  # tolerance [steps] when a reaction time is rounded up to whole steps
 _PEOPLE = RECORDED["recorded-99.9"]
 _NO_KERBS = np.zeros((0, 3))
 
@@ -41,14 +41,14 @@ class SafetyParameters:
 
     walking_acceleration: float = _PEOPLE.acceleration  # a_max [m/s^2]
     walking_speed: float = _PEOPLE.speed  # v_max [m/s]
-    setting_out: float = _PEOPLE.setting_out  # a_k [m/s^2] towards the road, while on a sidewalk
-    body_radius: float = 0.27  # R [m] of the VCI model (TSAS 2020)
-    width: float = 2.0  # of the ego [m] (Yang & Özgüner 2019)
-    margin: float = 0.05  # [m] kept between the front and a body (ours)
-    position_error: float = 0.0  # [m] that a perceived position is off at most
+    setting_out: float = _PEOPLE.setting_out  # a_k [m/s^2] from a sidewalk towards the road
+    body_radius: float = 0.27  # radius R [m] of a body in the VCI model (TSAS 2020)
+    width: float = 2.0  # width of the ego [m] (Yang & Özgüner 2019)
+    margin: float = 0.05  # least distance [m] of the front to a body (giveway's own)
+    position_error: float = 0.0  # largest error [m] of a perceived position
     force_limit: float = FORCE_LIMIT  # u_max [N] (Yang & Özgüner 2019, table 1)
-    force_rate_limit: float = inf  # [N per step] of the layer's own braking (ours: none)
-    reaction_time: float = 0.0  # [s] within which the vehicle does what it is told
+    force_rate_limit: float = inf  # largest change of the layer's braking force [N per step]
+    reaction_time: float = 0.0  # longest time [s] until the vehicle follows a command
 
     def __post_init__(self) -> None:
         require_positive("walking_acceleration", self.walking_acceleration, "m/s^2")
@@ -72,24 +72,24 @@ class SafetyParameters:
 
 
 class SafeForce(NamedTuple):
-    """The force that the layer lets through."""
+    """The force that the safety layer applies."""
 
-    force: float  # [N], never more than was asked for
-    acted: bool  # the layer decides, not the controller
-    reason: str  # "safety layer", "unavoidable" (no braking is surely enough); empty if not acted
+    force: float  # force [N], at most the one that was asked for
+    acted: bool  # whether the layer replaced the controller's force
+    reason: str  # "safety layer", "unavoidable" (no braking is certain to be enough), or empty
 
 
 class SafetyLayer:
-    """The last word on the ego's force.
+    """The safety layer, a filter between controller and vehicle.
 
     Args:
-        model: Model of the ego's motion. The layer holds for its forward Euler and for its exact
-            solution, whichever of them the plant is.
-        parameters: the limits.
+        model: Model of the ego's motion. The guarantee holds for a plant that integrates it by
+            forward Euler or exactly.
+        parameters: Limits of people, of the ego's body and of its brake.
 
     Attributes:
-        memory: the last arguments of :func:`largest_safe_force`, for kernels that call it.
-        REASONS: Reasons, by verdict.
+        memory: Last argument of :func:`largest_safe_force`, for kernels that call it.
+        REASONS: Reasons by the layer's result.
     """
 
     REASONS: Final = ("", "safety layer", "unavoidable")
@@ -119,14 +119,14 @@ class SafetyLayer:
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
         self.memory = (tuple(self._limits), self._commands, self._boxes)
-        # How many steps full braking takes at most to set in.
+        # Largest number of steps until full braking acts
         self._not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit
 
     def reach(self, speed: float) -> float:
-        """Return the longest way [m] of the front until it stops, whatever is asked for now.
+        """Return the longest distance [m] until the front stops, after any force now.
 
         Args:
-            speed: now [m/s].
+            speed: Speed now [m/s].
         """
         c, not_yet = self._limits, self._not_yet
         v = max(speed, 0.0) + not_yet * c.gain * c.force_limit
@@ -134,7 +134,7 @@ class SafetyLayer:
 
     @property
     def fastest(self) -> float:
-        """The speed [m/s] from which it stops in time, whatever is asked for now."""
+        """The highest speed [m/s] from which the ego stops in `LONGEST_STOP` after any force."""
         c, not_yet = self._limits, self._not_yet
         steps = len(self._boxes) - 1 - not_yet
         if steps <= 0:
@@ -159,19 +159,19 @@ class SafetyLayer:
         errors: Array | None = None,
         kerbs: Array = _NO_KERBS,
     ) -> SafeForce:
-        """Let a force through, or the largest safe one below it.
+        """Return the force if it is safe, or the largest safe one below it.
 
         Args:
-            force: asked for, for the step from now on [N].
+            force: Force [N] that the controller asks for, for the step from now on.
             speed: Speed of the ego [m/s].
-            way: (k, 4) x, y [m] of the front's middle and cos, sin of the body's heading, after
-                0, 1, ... times ``spacing`` of travel; straight on beyond the last.
-            spacing: [m] of travel between the rows of ``way``.
-            position: (n, 2) [m] people's centres, in the frame of ``way``.
-            velocity: (n, 2) [m/s] theirs.
-            errors: (n,) [m] that ``position`` is off at most; None: the parameters' for everybody.
-            kerbs: (n, 3) of those on a sidewalk the unit vector to its kerb, and how far that is
-                [m]; 0 for the others. Without rows nobody is.
+            way: Poses (k, 4) of the front ahead: x, y [m] of its middle and cos, sin of the body's
+                heading, after 0, 1, ... times ``spacing`` of travel. It goes straight on beyond.
+            spacing: Travel [m] between the rows of ``way``.
+            position: Centres (n, 2) [m] of people, in the frame of ``way``.
+            velocity: Velocities (n, 2) [m/s] of people.
+            errors: Largest errors (n,) [m] of ``position``, or None for the parameters' error.
+            kerbs: Kerbs (n, 3) of people on a sidewalk: unit vector to the kerb and distance [m];
+                0 for the others. An array (0, 3) if nobody is on a sidewalk.
         """
         errors = self.errors(len(position)) if errors is None else errors
         people = position, velocity, errors, kerbs
@@ -179,7 +179,7 @@ class SafetyLayer:
         return SafeForce(safe, verdict != LETS_THROUGH, self.REASONS[verdict])
 
     def errors(self, people: int) -> Array:
-        """Return the largest errors of positions, (n or more,) [m], where nothing else is known."""
+        """Return the parameters' position error (n or more,) [m] for each of n ``people``."""
         if len(self._errors) < people:
             self._errors = np.full(2 * people, self.parameters.position_error)
         return self._errors
@@ -193,9 +193,7 @@ def largest_safe_force(
     people: tuple[Array, Array, Array, Array],
     memory: tuple[tuple[float, ...], Array, Array],
 ) -> tuple[float, int]:
-    """The largest safe force up to ``force`` [N], and what the layer does; notes the force.
-
-    The layer lets it through (0), acts (1), or acts where no braking is surely enough (2).
+    """Find the largest safe force up to ``force`` [N], and remember it as the last command.
 
     Args:
         force: Force [N] that the controller asks for.
@@ -203,8 +201,12 @@ def largest_safe_force(
         front: Poses (k, 4) of the front ahead, and the distance [m] between them.
         people: Positions (n, 2) [m], velocities (n, 2) [m/s], largest errors of the positions
             (n,) [m] or more, and kerbs (n, 3) or none; see :meth:`SafetyLayer.filter`.
-        memory: Numbers of :class:`Limits` (a plain tuple, which numba unpacks 2 us faster); forces
-            [N] of the past, (delay + 1,), the latest last, changed; scratch (longest stop + 1, 9).
+        memory: Fields of :class:`Limits`, as a plain tuple; past forces (delay + 1,) [N], the
+            latest last, changed; scratch (longest stop + 1, 9).
+
+    Returns:
+        Force [N]; 0 if it is the controller's, 1 if the layer acts, 2 if the layer acts although no
+        braking is certain to be enough.
     """
     limits, commands, boxes = memory
     c, v = Limits(*limits), speed if speed > STANDSTILL else 0.0
@@ -223,7 +225,7 @@ def largest_safe_force(
             else:
                 unsafe = middle
         if safe == force and verdict == ACTS:
-            verdict = LETS_THROUGH  # full braking was asked for, and is just enough
+            verdict = LETS_THROUGH  # the controller asked for full braking, which is just enough
     for i in range(commands.shape[0] - 1):
         commands[i] = commands[i + 1]
     commands[-1] = safe

@@ -1,36 +1,37 @@
-"""The kernels of the safety layer: stopping profiles against what people can reach."""
+"""The kernels of the safety layer: stopping profiles, compared with what people can reach."""
 
 from math import sqrt
 from typing import NamedTuple
 
 from controller._jit import Array, inner
 
-_BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides the last
+_BETWEEN = 3  # number of poses of the front in a bend, besides the last, that a box encloses
 
 
 class Limits(NamedTuple):
-    """The abilities of the ego and of people."""
+    """The limits of the ego's and people's motion."""
 
-    time_step: float  # dt [s]
-    slowest_decay: float  # what a step leaves of the speed at most: exp(-alpha dt / M)
-    fastest_decay: float  # and at least: 1 - alpha dt / M
-    gain: float  # dt / M [(m/s)/N], what a step of driving adds at most, of braking takes at most
-    braking_gain: float  # [(m/s)/N] what a step of braking takes at least
-    force_limit: float  # u_max [N]
-    force_rate_limit: float  # [N per step]
-    walking_acceleration: float  # a_max [m/s^2]
-    walking_speed: float  # v_max [m/s]
-    setting_out: float  # a_k [m/s^2] towards the kerb, of who is on a sidewalk
-    half_width: float  # of the ego [m]
-    body_radius: float  # R [m]
-    margin: float  # [m]
+    time_step: float  # control step dt [s]
+    slowest_decay: float  # largest share of the speed left after a step: exp(-alpha dt / M)
+    fastest_decay: float  # least share of the speed left after a step: 1 - alpha dt / M
+    gain: float  # largest change of speed per force in a step: dt / M [(m/s)/N]
+    braking_gain: float  # least change of speed per braking force in a step [(m/s)/N]
+    force_limit: float  # largest force u_max [N]
+    force_rate_limit: float  # largest change of force [N per step]
+    walking_acceleration: float  # largest acceleration a_max [m/s^2] of people
+    walking_speed: float  # largest speed v_max [m/s] of people
+    setting_out: float  # largest acceleration a_k [m/s^2] from a sidewalk towards the kerb
+    half_width: float  # half width of the ego [m]
+    body_radius: float  # radius R [m] of a person's body
+    margin: float  # least distance [m] of the front to a body
 
 
 @inner
 def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
-    """The largest force [N] that may act in step i: a command of the reaction time before.
+    """The largest force [N] that may act in step i.
 
-    The commands are those of the past, then ``force``, then full braking.
+    It is one of the commands within the reaction time before. These are the past commands, then
+    ``force``, then full braking.
     """
     delay = commands.shape[0] - 1
     strongest = -c.force_limit
@@ -47,7 +48,7 @@ def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
 
 @inner
 def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, float, float]:
-    """x, y, cos, sin of the front after ``travel`` [m]."""
+    """Return x, y [m] and cos, sin of the heading of the front after ``travel`` [m]."""
     last = way.shape[0] - 1
     i = min(int(travel / spacing), last)
     rest = travel - i * spacing
@@ -63,9 +64,10 @@ def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, floa
 
 @inner
 def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box: Array) -> None:
-    """Fill ``box`` with the rectangle that holds the front from ``low`` to ``high`` of travel [m].
+    """Fill ``box`` with the rectangle that holds the front from ``low`` to ``high`` [m] of travel.
 
-    Columns: x, y, cos, sin of its frame; its extent along and across [m]; the next is not its.
+    Columns 0 to 3 are x, y, cos, sin of its frame. Columns 4 to 7 are its extents along and across
+    [m]. Column 8 is not changed.
     """
     if way.shape[0] == 1:
         box[0], box[1], box[2], box[3] = way[0, 0], way[0, 1], way[0, 2], way[0, 3]
@@ -85,10 +87,15 @@ def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box
 
 @inner
 def _clearance(travel: float, c: Limits) -> float:
-    """Return the clearance [m] at both ends of a step that keeps R in between.
+    """Return the clearance [m] at both ends of a step that keeps at least R in between.
 
-    Relative to the front the centre moves by L at most, on a line but for a_max dt^2/8; a chord of
-    length L between two points outside a circle of radius r comes within sqrt(r^2 - L^2/4).
+    A person's centre moves by at most L relative to the front, on a line with an error of
+    a_max dt^2/8. A chord of length L between two points outside of a circle of radius r has a
+    distance of at least sqrt(r^2 - L^2/4) to the centre.
+
+    Args:
+        travel: Largest distance [m] that the front travels in the step.
+        c: Limits of the ego's and people's motion.
     """
     L = travel + c.walking_speed * c.time_step
     between = sqrt(c.body_radius * c.body_radius + 0.25 * L * L)
@@ -98,7 +105,10 @@ def _clearance(travel: float, c: Limits) -> float:
 
 @inner
 def _least_travel(speed: float, after: float, dt: float) -> float:
-    """Return the least travel [m] of a braking step, which is slowed down most at its start."""
+    """Return the least distance [m] of a braking step from ``speed`` to ``after`` [m/s].
+
+    If ``after`` is below 0, the ego stops within the step.
+    """
     if after >= 0.0:
         return 0.5 * dt * (speed + after)
     return 0.5 * dt * speed * speed / (speed - after)
@@ -114,12 +124,15 @@ def _stop(
     commands: Array,
     boxes: Array,
 ) -> tuple[int, float]:
-    """Fill where the front may have been up to each instant: steps, way [m]; -1 steps: no stop.
+    """Fill the rectangles that hold the front at each instant of a stop.
 
-    In each step the front is between where it would be under full braking from now on and where
-    it is at most under ``force`` first: so the boxes grow with the force. Row j is for the end of
-    step j - 1 and the start of step j, and keeps the clearance that both of them need; -1: it
-    stands in both, and nobody can be met.
+    The least travel is that of full braking from now on. The largest one is that of ``force``,
+    followed by full braking. The rectangles hold the front between the two, so they grow with the
+    force. Row j is for the end of step j - 1 and the start of step j. Its column 8 is the clearance
+    that both steps need, or -1 if the ego stands in both.
+
+    Returns:
+        Number of steps until the ego stands, -1 if it does not stop; largest travel [m].
     """
     dt, delay = c.time_step, commands.shape[0] - 1
     low = high = 0.0
@@ -147,15 +160,22 @@ def _stop(
 def _touches(
     box: Array, x: float, y: float, radius: float, error: float, slack: float, c: Limits
 ) -> bool:
-    """Return whether a body with its centre within ``radius`` of (x, y) may meet the front's box.
+    """Return whether a body with its centre within ``radius`` of (x, y) may touch the front's box.
 
-    (x, y) is off by ``error`` [m] at most.
+    Args:
+        box: Rectangle of the front, and clearance.
+        x: Coordinate [m].
+        y: Coordinate [m].
+        radius: Radius [m] of the disc in which the centre is.
+        error: Largest error [m] of (x, y).
+        slack: Distance [m] added to the clearance.
+        c: Limits of the ego's and people's motion.
     """
     d_x, d_y = x - box[0], y - box[1]
     along, across = d_x * box[2] + d_y * box[3], d_y * box[2] - d_x * box[3]
-    behind = c.walking_speed * c.time_step + error  # it gets there within the step
+    behind = c.walking_speed * c.time_step + error  # distance [m] that a person walks in a step
     if along + radius < box[4] - behind:
-        return False  # it can only walk into the side
+        return False  # the person can only walk into the side of the body
     off = max(box[4] - along, 0.0, along - box[5])
     aside = max(box[6] - across, 0.0, across - box[7])
     reach = radius + (box[8] + error) + slack
@@ -172,18 +192,18 @@ def _may_meet(
     c: Limits,
     boxes: Array,
 ) -> bool:
-    """Return whether a person seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
+    """Return whether a person perceived at (x, y) with velocity (v_x, v_y) can meet the front.
 
-    A person who accelerates by at most a_max is within a_max t^2/2 of x + v t, and one who walks
+    A person who accelerates by at most a_max is within a_max t^2/2 of x + v t. A person who walks
     at most at v_max is within v_max t of x. A person on a sidewalk, ``depth`` [m] from the kerb in
     the direction (to_x, to_y), gets no farther in this direction than :func:`towards_kerb` says.
 
     Args:
-        person: x, y [m], v_x, v_y [m/s], and the error of the position [m].
-        kerb: Direction to the kerb (to_x, to_y), and its distance [m]; 0 off the sidewalk.
-        steps: Steps until the ego stands.
+        person: Position x, y [m], velocity v_x, v_y [m/s], and largest error [m] of the position.
+        kerb: Unit vector to the kerb (to_x, to_y), and its distance [m]; 0 off the sidewalk.
+        steps: Number of steps until the ego stands.
         slack: Distance [m] added to the clearance.
-        c: Limits of people and vehicle.
+        c: Limits of the ego's and people's motion.
         boxes: Rectangles that hold the front, one for each instant.
     """
     (x, y, v_x, v_y, error), (to_x, to_y, depth) = person, kerb
@@ -209,14 +229,14 @@ def _may_meet(
 
 @inner
 def towards_kerb(t: float, pace: float, depth: float, setting_out: float, most: float) -> float:
-    """Return how far [m] a person on a sidewalk gets towards its kerb, or beyond, within ``t`` [s].
+    """Return the largest distance [m] that a person on a sidewalk walks towards the kerb.
 
     Args:
-        t: Time from now on [s].
-        pace: Speed towards the kerb now [m/s].
-        depth: Distance to the kerb [m], > 0.
-        setting_out: Largest acceleration [m/s^2] towards the kerb until they get there ...
-        most: ... and largest acceleration [m/s^2] from then on.
+        t: Time [s] from now on.
+        pace: Speed [m/s] towards the kerb now.
+        depth: Distance [m] to the kerb, > 0.
+        setting_out: Largest acceleration [m/s^2] until the person reaches the kerb.
+        most: Largest acceleration [m/s^2] beyond the kerb.
     """
     fastest = sqrt(pace * pace + 2.0 * setting_out * depth)
     there = (fastest - pace) / setting_out
@@ -228,7 +248,7 @@ def towards_kerb(t: float, pace: float, depth: float, setting_out: float, most: 
 
 @inner
 def _nearest(box: Array, to_x: float, to_y: float) -> float:
-    """The least of what a box's points have in the direction (to_x, to_y) [m]."""
+    """The least coordinate [m] of a box's points in the direction (to_x, to_y)."""
     along, across = to_x * box[2] + to_y * box[3], to_y * box[2] - to_x * box[3]
     least: float = box[0] * to_x + box[1] * to_y
     least += min(along * box[4], along * box[5]) + min(across * box[6], across * box[7])
@@ -245,14 +265,14 @@ def is_safe(
     memory: tuple[Array, Array],
     slack: float,
 ) -> bool:
-    """Return whether after ``force`` the ego can stop without moving into anybody.
+    """Return whether the ego can stop after ``force`` without its front hitting a person.
 
     Args:
         force: Force [N] of the present step.
         speed: Speed of the ego [m/s].
         front: Poses (k, 4) of the front ahead, and the distance [m] between them.
         people: Positions (n, 2), velocities (n, 2), errors (n,) or more, and kerbs (n, 3) or none.
-        c: Limits of people and vehicle.
+        c: Limits of the ego's and people's motion.
         memory: Forces of the past, and the rectangles, which are overwritten.
         slack: Distance [m] added to the clearance.
     """
