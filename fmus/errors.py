@@ -1,8 +1,8 @@
-"""The errors of an FMU, one class per thing that a user can do something about."""
+"""The errors of an FMU, one class per problem that a user can solve."""
 
 
 class FmuError(Exception):
-    """Root of all errors of this package. The message is one line and names the FMU."""
+    """The root of all errors of this package. The message is one line and names the FMU."""
 
 
 class FmuFileError(FmuError):
@@ -18,11 +18,11 @@ class FmuProfileError(FmuError):
 
 
 class FmuInterfaceError(FmuError):
-    """The FMU does not offer what is needed: an interface that can be run here."""
+    """The FMU has no interface that can be run here."""
 
 
 class FmuPlatformError(FmuError):
-    """The FMU has no binary for this platform, or it cannot be loaded."""
+    """The FMU has no binary for this platform, or the binary cannot be loaded."""
 
 
 class FmuVariableError(FmuError):

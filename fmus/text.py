@@ -1,9 +1,9 @@
-"""Text that came from an FMU, made fit for a terminal and a log."""
+"""The text of an FMU, made safe for a terminal and a log."""
 
 import unicodedata
 from collections.abc import Sequence
 
-LIMIT = 200  # characters of one message
+LIMIT = 200  # Largest number of characters of a message
 _SPACES = frozenset({"Zl", "Zp", "Zs"})
 
 
@@ -11,7 +11,7 @@ def printable(text: object, limit: int = LIMIT) -> str:
     """Return one line of visible characters, at most ``limit`` long.
 
     Control characters, direction marks and half surrogates become ``?``: an FMU must be able
-    neither to steer the terminal nor to break a line.
+    neither to control the terminal nor to break a line.
     """
     words = str(text)[: 4 * limit].split()
     line = "".join(map(_visible, " ".join(words)))

@@ -1,1 +1,1 @@
-"""Zip archives: the check of a foreign FMU's archive, and archives with reproducible bytes."""
+"""Zip archives: the check of a foreign FMU, and writing with reproducible bytes."""

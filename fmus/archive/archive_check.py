@@ -1,6 +1,6 @@
 """The archive check: an FMU's archive is examined before anything is unpacked or loaded.
 
-An FMU is a zip file from somebody else. It is refused if unpacking it could write outside its
+An FMU is a zip file of unknown origin. It is refused if unpacking it could write outside its
 folder, fill the memory or the disk, or read other files. Everything else passes, including FMUs of
 several hundred megabytes.
 """
@@ -47,7 +47,7 @@ LOCAL_HEADER: Final = 30  # [bytes] size of the header before the name of a memb
 
 @dataclass(frozen=True, eq=False)
 class Archive:
-    """An FMU's archive that has passed the check; an unchanged file may yield the same object."""
+    """An FMU's archive that has passed the check; an unchanged file may give the same object."""
 
     path: Path
     members: Mapping[str, zipfile.ZipInfo]  # files only, by their name
@@ -58,11 +58,13 @@ class Archive:
 def open_archive(path: Path) -> Archive:
     """Examine an FMU's archive, and read its model description into memory.
 
-    Recent results are kept until the file changes, because preparing a vehicle asks repeatedly.
+    Recent results are kept until the file changes, because preparing a vehicle needs them
+    repeatedly.
 
     Raises:
         FmuArchiveError: the archive is hostile, damaged or too large.
-        FmuFileError: it is missing, unreadable, no zip archive or without a model description.
+        FmuFileError: the file is missing, unreadable, no zip archive or without a model
+            description.
     """
     status = _require_file(path)
     return _open(path, (status.st_ino, status.st_size, status.st_mtime_ns))
@@ -83,7 +85,7 @@ def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
         check_xml(description, f"{path}: {DESCRIPTION}", ROOT)
         if sum(member.file_size for member in members.values()) <= CHECKED_AT_ONCE:
             for member in members.values():
-                deque(_chunks(archive, member), maxlen=0)  # at its end the check sum is compared
+                deque(_chunks(archive, member), maxlen=0)  # the check sum is compared at the end
     with path.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     return Archive(path, MappingProxyType(members), description, digest)
@@ -120,10 +122,10 @@ def extract(archive: Archive, folder: Path, prefixes: Sequence[str]) -> None:
 
 @lru_cache(maxsize=4)
 def read_start(archive: Archive, name: str, size: int) -> bytes:
-    """The first bytes of a member.
+    """Return the first bytes of a member.
 
     Raises:
-        FmuArchiveError: it is damaged there.
+        FmuArchiveError: the member is damaged there.
     """
     with _reading(archive.path) as source, source.open(archive.members[name]) as member:
         return member.read(size)
@@ -228,10 +230,10 @@ def _require_same(
     members: Mapping[str, zipfile.ZipInfo],
     copies: Sequence[zipfile.ZipInfo],
 ) -> None:
-    """Refuse a name that stands for two contents (some tools write the same file twice).
+    """Refuse a name with two different contents (some tools write the same file twice).
 
     Raises:
-        FmuArchiveError: which of them counts would depend on who reads the archive.
+        FmuArchiveError: the archive's reader would decide which content counts.
     """
     for info in copies:
         pairs = zip_longest(_chunks(archive, members[info.filename]), _chunks(archive, info))
@@ -240,7 +242,7 @@ def _require_same(
 
 
 def _fault(info: zipfile.ZipInfo) -> str:
-    """Return the fault of a member, as a phrase; empty if there is none."""
+    """Return the fault of a member as a phrase, or an empty text."""
     name = info.orig_filename  # zipfile cuts it at a NUL
     file_type = stat.S_IFMT(info.external_attr >> 16)
     parts = name.removesuffix("/").split("/")

@@ -32,11 +32,11 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def get(self, name: str, default: str = "") -> str:
-        """An attribute's value."""
+        """Return the value of an attribute."""
         return self.attributes.get(name, default)
 
     def every(self, *tags: str) -> Iterator[Element]:
-        """All descendants at the end of a chain of tags."""
+        """Yield all descendants at the end of a chain of tags."""
         for child in self.children:
             if child.tag == tags[0]:
                 if len(tags) == 1:
@@ -45,12 +45,12 @@ class Element:
                     yield from child.every(*tags[1:])
 
     def first(self, *tags: str) -> Element | None:
-        """The first of :meth:`every`."""
+        """Return the first of :meth:`every`, or None."""
         return next(self.every(*tags), None)
 
 
 def check_xml(data: bytes, where: str, root: str) -> None:
-    """Refuse an XML file that cannot be a model description, and keep nothing of it.
+    """Refuse an XML file that cannot be a model description; nothing of it is kept.
 
     Args:
         data: Contents of the XML file.
@@ -58,18 +58,18 @@ def check_xml(data: bytes, where: str, root: str) -> None:
         root: Name of the first element.
 
     Raises:
-        FmuArchiveError: it has a document type or is too large.
-        FmuFileError: it is not well-formed or has another first element.
+        FmuArchiveError: the file has a document type or is too large.
+        FmuFileError: the file is not well-formed or has another first element.
     """
     _LimitedParser(where, root, None, lambda _tag: None).go(data)
 
 
 def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
-    """Return the first element, with those descendants whose names are among ``kept``.
+    """Return the first element, with the descendants whose names are among ``kept``.
 
     Raises:
-        FmuArchiveError: it has a document type or is too large.
-        FmuFileError: it is not well-formed or has another first element.
+        FmuArchiveError: the file has a document type or is too large.
+        FmuFileError: the file is not well-formed or has another first element.
     """
     top = Element("", {}, 0)
     open_elements = [top]
@@ -101,7 +101,7 @@ class _LimitedParser:
     Args:
         where: Name of the document in messages.
         root: Name of the first element.
-        start: Function that receives each element's name, attributes and line; None: not needed.
+        start: Function that receives each element's name, attributes and line, or None.
         end: Function that receives each element's name at its end.
     """
 
@@ -123,8 +123,8 @@ class _LimitedParser:
         """Parse the whole document.
 
         Raises:
-            FmuArchiveError: it has a document type or is too large.
-            FmuFileError: it is not well-formed or has another first element.
+            FmuArchiveError: the document has a document type or is too large.
+            FmuFileError: the document is not well-formed or has another first element.
         """
         parser = self._parser
         try:

@@ -37,7 +37,7 @@ class CheckReport:
         findings: Findings in the order of the tests.
         traces: Traces of the drives that ran, by name.
         expected: Properties that were expected.
-        convergence: Convergence of the step-halving test; None: it was not run.
+        convergence: Result of the step-halving test, or None if it was not run.
     """
 
     expected: Expected
@@ -72,13 +72,13 @@ def check(
     Args:
         opener: Function that opens the vehicle.
         step_size: Step size of the run [s].
-        fmu_step: Step of the FMU itself [s]; None: ``step_size``.
-        unguarded: Function that opens the vehicle without guards, for when they
-            stop it.
-        profile: Profile of the vehicle, for what to change in it.
-        mass: Mass [kg] of the vehicle and M of the controller's model; None: unknown. Then the
-            controller's M is that of the profile's [model], or 1000 kg without one.
-        vehicle_class: Vehicle class of SUMO, which tells roughly what the vehicle weighs.
+        fmu_step: Step of the FMU itself [s], or None for ``step_size``.
+        unguarded: Function that opens the vehicle without guards, for a drive that guards have
+            stopped.
+        profile: Profile of the vehicle, for advice on its lines.
+        mass: Mass [kg] of the vehicle, which is also M of the controller's model, or None if it is
+            unknown. Then M is that of the profile's [model], or 1000 kg without one.
+        vehicle_class: Vehicle class of SUMO, from which the mass is roughly known.
         friction: Friction alpha of the controller's model [N.s/m].
         horizon: Horizon of the MPC [steps].
         force_limit: Largest force u_max [N].
@@ -109,7 +109,7 @@ def check(
 def _drive_all(
     report: CheckReport, opener: Opener, unguarded: Opener | None, tell: Callable[[str], None]
 ) -> bool:
-    """Do the drives in turn, and return whether the step-halving test still makes sense."""
+    """Do the drives in turn; return whether the step-halving test still makes sense."""
     for name in _DRIVES:
         tell(name)
         attempt = _attempt(name, report.expected, opener)
@@ -125,7 +125,7 @@ def _drive_all(
         if name == "response" and unguarded is not None and isinstance(error, FmuOutputError):
             _look_closer(report, unguarded)
         if name != "rolling" or isinstance(error, FmuCrashError):
-            # Steps that are too coarse may show as a failing output or step: halving them tells.
+            # Too coarse steps may cause a failing output or step, which halving them shows.
             may_diverge = isinstance(error, FmuOutputError | FmuStepError)
             return may_diverge and not isinstance(error, FmuCrashError)
     return True
@@ -137,9 +137,9 @@ def _attempt(name: str, expected: Expected, opener: Opener) -> Attempt:
 
 
 def _look_closer(report: CheckReport, unguarded: Opener) -> None:
-    """Repeat without guards the response that a guard has stopped, to see what is wrong.
+    """Repeat a response that a guard has stopped, without guards, to find the fault.
 
-    Units in which a force is a thousand times too strong need a thousandth of it.
+    If a force is a thousand times too strong by a wrong unit, a thousandth of it is needed.
     """
     for share in (1.0, 1e-3):
         expected = replace(report.expected, force=share * report.expected.force)
@@ -172,7 +172,7 @@ def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:
     try:
         result = convergence(opener, fmu_step, force=expected.force, start_speed=start_speed)
     except FmuError as error:
-        if report.passed:  # otherwise a finding says so already
+        if report.passed:  # otherwise a finding reports it already
             report.findings.append(Finding(name, "fail", plain(error)))
         return
     report.convergence = result

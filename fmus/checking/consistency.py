@@ -18,7 +18,7 @@ _ACCELERATION_UNITS = (("g", 1 / 9.80665), ("km/h/s", 3.6), ("cm/s2", 1e2), ("ft
 
 
 def position_follows_speed(response: Trace, expected: Expected) -> Finding:
-    """Is the speed the rate of change of the position?"""
+    """Test whether the speed is the rate of change of the position."""
     name = "speed and position"
     if expected.profile and expected.profile.outputs.position is None:
         return Finding(name, "skip", "no position among the outputs: the speed is integrated")
@@ -63,7 +63,7 @@ def _position_remedy(text: str, ratio: float, profile: VehicleProfile | None) ->
 
 
 def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
-    """Is the acceleration the rate of change of the speed?"""
+    """Test whether the acceleration is the rate of change of the speed."""
     name = "acceleration"
     if expected.profile and expected.profile.outputs.acceleration is None:
         return Finding(name, "skip", "not among the outputs: the speed's difference is taken")
@@ -89,9 +89,9 @@ def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
 
 
 def _acceleration_ratio(response: Trace) -> tuple[float, float]:
-    """The factor from the speed's slope to the acceleration, and the misfit.
+    """Return the factor from the speed's slope to the acceleration, and the misfit.
 
-    Some FMUs give the mean over the step, others the value at its end. The better fit counts.
+    Some FMUs give the mean over the step, others the value at its end. The better fit is used.
     """
     v, h = response.speed, response.step_size
     changes = np.flatnonzero(np.diff(response.force)) + 1
@@ -105,7 +105,7 @@ def _acceleration_ratio(response: Trace) -> tuple[float, float]:
 
 
 def _ratio(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
-    """The factor from x to y by least squares, and the largest misfit relative to y's largest."""
+    """Return the least-squares factor from x to y, and the misfit relative to y's largest value."""
     power = float(x @ x)
     if power == 0.0:
         return np.nan, 0.0
@@ -115,5 +115,5 @@ def _ratio(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float
 
 
 def unit_of(ratio: float, units: tuple[tuple[str, float], ...]) -> str:
-    """The unit whose numbers are ``ratio`` times those of SI; empty if none is."""
+    """Return the unit whose numbers are ``ratio`` times those of SI, or an empty text."""
     return next((u for u, f in units if abs(ratio / f - 1.0) <= RATIO_TOLERANCE), "")

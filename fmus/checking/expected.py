@@ -18,7 +18,7 @@ class Expected:
         start_speed: Start speed of the run [m/s].
         force: Force of the manoeuvres [N].
         largest_force: Largest force u_max [N].
-        profile: Profile of the vehicle; None: the FMU is ours.
+        profile: Profile of the vehicle, or None for a shipped FMU.
         known: Masses of the vehicle that the user or the profile states.
     """
 
@@ -33,7 +33,7 @@ class Expected:
 
     @property
     def identified(self) -> FittedModel | None:
-        """The model that an earlier identification wrote into the profile."""
+        """The model that an earlier identification wrote into the profile, or None."""
         return self.profile.model if self.profile else None
 
     @property

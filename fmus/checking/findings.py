@@ -12,10 +12,10 @@ class Finding:
 
     Attributes:
         name: Name of the test, a few words.
-        verdict: Result; "skip" where the test does not apply or has become impossible, "ask" where
-            only the user can tell.
-        text: Result with numbers and units, one line.
-        remedy: Advice, ideally the line to add to the profile; empty if there is none.
+        verdict: Result: "skip" if the test does not apply or is no longer possible, "ask" if only
+            the user can tell.
+        text: Result with numbers and units, in one line.
+        remedy: Advice, ideally the line to add to the profile; empty without advice.
     """
 
     name: str

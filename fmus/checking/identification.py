@@ -1,6 +1,6 @@
 """Identification: step tests yield M and alpha, so that the MPC's model fits the vehicle.
 
-The vehicle is taken as the controller sees it: force in, position and speed out. For a vehicle
+The vehicle is treated as the controller sees it: force in, position and speed out. For a vehicle
 driven by an acceleration, a speed or pedals, this includes the inverse map.
 """
 
@@ -25,7 +25,7 @@ from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
-LEVELS = (0.1, 0.25, 0.5, 1.0)  # shares of the largest force of the tests
+LEVELS = (0.1, 0.25, 0.5, 1.0)  # Shares of the largest force in the tests
 SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] speeds at the start of the tests
 HARDEST = 8.0  # [m/s2] largest deceleration or acceleration of a test
 LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s] durations of the phases
@@ -44,8 +44,9 @@ class Identification:
     Attributes:
         model: Model for the profile.
         intervals: Half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
-        drive_limit: Largest drive force that the vehicle carries out [N]; None: not reached.
-        brake_limit: Largest brake force that arrives [N]; None: not reached.
+        drive_limit: Largest drive force [N] that the vehicle carries out, or None if it was not
+            reached.
+        brake_limit: Largest brake force [N] that arrives, or None if it was not reached.
         largest_force: Largest force of the tests [N].
         fit: Fitted M and alpha with lag and dead time.
         tests: Drives that were fitted.
@@ -94,7 +95,7 @@ def identify(
         step_size: Step size of the MPC, dt [s].
         horizon: Horizon of the MPC, N [steps].
         force_limit: Largest force u_max of the MPC [N]; no test uses more.
-        profile: Profile of the vehicle, for what to change in it.
+        profile: Profile of the vehicle, for advice on its lines.
         speeds: Speeds from which the tests start [m/s].
         progress: Function that receives the numbers of drives done and of all drives.
 

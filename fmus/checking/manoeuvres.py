@@ -17,9 +17,8 @@ from fmus.isolation import open_vehicle
 from fmus.profile.vehicle_profile import Limits, VehicleProfile
 
 Opener = Callable[[float | None], Vehicle]
-"""Makes a fresh vehicle whose FMU does steps of the size given [s]; None: as its profile says.
-
-The steps of the vehicle itself (how long a force is held) are always the same.
+"""Function that makes a new vehicle whose FMU does steps of the size given [s], or with None as its
+profile says. The vehicle's own step, for which a force is held, does not change.
 """
 
 
@@ -27,7 +26,7 @@ UNGUARDED = Limits(speed=1e9, position_jump=1e9)
 
 
 def without_guards(profile: VehicleProfile) -> VehicleProfile:
-    """The profile with limits that only absurd values exceed."""
+    """Return the profile with limits that only absurd values exceed."""
     return profile.model_copy(update={"limits": UNGUARDED})
 
 
@@ -46,7 +45,7 @@ def opener_of(
         step_size: Step size for which a force is held [s].
         profile: Profile of the vehicle.
         start_values: Further start values by variable name.
-        isolated: True: run it in a process of its own; None: unless it is a shipped FMU.
+        isolated: True to run it in a process of its own; None for this unless it is a shipped FMU.
     """
 
     def open_with(fmu_step: float | None) -> Vehicle:
@@ -121,7 +120,7 @@ def drive(
         opener: Function that opens the vehicle.
         phases: Phases, one after the other.
         speed: Speed at the start [m/s].
-        fmu_step: Step of the FMU itself [s]; None: as its profile says.
+        fmu_step: Step of the FMU itself [s], or None for the profile's.
 
     Raises:
         FmuError: the vehicle cannot be opened or started, or fails on the way.
@@ -137,7 +136,7 @@ def drive(
 class Attempt:
     """A drive up to its end or failure."""
 
-    trace: Trace | None  # None: the vehicle did not start
+    trace: Trace | None  # None if the vehicle did not start
     error: FmuError | None  # error that ended the drive
 
 
@@ -161,7 +160,7 @@ def try_to_drive_from(
 ) -> list[Attempt]:
     """Do the same as :func:`try_to_drive` from several speeds in turn, until one drive fails.
 
-    One vehicle starts anew for each speed, so that its FMU is unpacked only once.
+    One vehicle is started again for each speed, so that its FMU is unpacked only once.
     """
     attempts: list[Attempt] = []
     vehicle: Vehicle | None = None

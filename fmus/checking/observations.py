@@ -16,8 +16,8 @@ from fmus.profile.advice import gain_line
 
 MOVES = 0.02  # [m/s] change of speed above which the vehicle moves
 CREEPS = 0.1  # [m/s] tolerated speed in the wrong direction
-START_TOLERANCE = 0.05  # [m/s]
-MASS_TOLERANCE = 0.05  # relative, of the controller's M
+START_TOLERANCE = 0.05  # Largest error of the start speed [m/s]
+MASS_TOLERANCE = 0.05  # Largest relative error of the controller's M
 POSITION_TOLERANCE = 0.1  # [m] tolerance at the controller's horizon
 NO_VEHICLE = 0.3  # R squared below which M and alpha say nothing
 WEAK = 2.0  # [m/s2] deceleration below which a force limit hardly fits the vehicle
@@ -26,7 +26,7 @@ LATE = 2.0  # steps of lag and dead time from which on a warning is given
 
 
 def start_speed(rolling: Trace, expected: Expected) -> Finding:
-    """Test whether the vehicle starts with the speed that was asked for."""
+    """Test whether the vehicle starts with the commanded speed."""
     name, wanted, got = "start speed", expected.start_speed, float(rolling.speed[0])
     if abs(got - wanted) <= START_TOLERANCE:
         return Finding(name, "pass", f"{got:.3f} m/s, as asked")
@@ -43,7 +43,7 @@ def start_speed(rolling: Trace, expected: Expected) -> Finding:
 
 
 def reproducible(one: Trace, other: Trace) -> Finding:
-    """Test whether two fresh instances do the same, bit by bit."""
+    """Test whether two new instances do the same, bit by bit."""
     name = "reproducible"
     if one.same_motion(other):
         return Finding(name, "pass", "two runs, the same bits")
@@ -198,7 +198,7 @@ def _lead_remedy(lead: float) -> str:
 
 
 def _speed_unit(expected: Expected) -> str:
-    """Return the unit that the profile gives to the speed; empty if the FMU's own counts."""
+    """Return the unit that the profile gives to the speed, or "" if the FMU's own counts."""
     return (expected.profile.outputs.speed.unit or "") if expected.profile else ""
 
 

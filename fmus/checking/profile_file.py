@@ -1,10 +1,10 @@
-"""The identified model in a profile's file. Comments and order of the file are kept."""
+"""The identified model in a profile's file, whose comments and order are kept."""
 
 import tomlkit
 
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
-DIGITS = 10  # significant digits: more than any fit knows
+DIGITS = 10  # Number of significant digits, more than a fit determines
 ROUNDING = 1e-12  # largest magnitude that counts as 0
 _COMMENTS = {
     "mass": "M [kg]",

@@ -1,4 +1,4 @@
-"""A comparison of a vehicle's mass with what is known of it; a large factor is a wrong unit."""
+"""A comparison of a vehicle's mass with known masses; a large factor is a wrong unit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Final
 
 from fmus.profile.vehicle_profile import VehicleProfile
 
-GROSS: Final = 3.0  # factor in the mass that no load and no fit explains
+GROSS: Final = 3.0  # Factor in the mass that neither load nor fit explains
 NEAR: Final = 1.3  # largest deviation, as a factor, from a ratio of units; loads differ
 FAR: Final = 1.5  # the same for 100 and 1000, which have no neighbours
 CLASS_MASSES: Final[Mapping[str, tuple[float, float]]] = {
@@ -40,7 +40,7 @@ _NAMES: Final = (  # factor of the mass, and the unit that the axis seems to hav
 
 @dataclass(frozen=True)
 class KnownMass:
-    """A mass of the vehicle as somebody states it.
+    """A mass of the vehicle from one source.
 
     Attributes:
         low: Lower bound [kg].
@@ -68,7 +68,7 @@ def known_masses(
 
     Args:
         profile: Profile with the identified model. A vehicle that is driven by an acceleration or a
-            speed seems as heavy as its [inverse_map], whatever it weighs.
+            speed has the mass of its [inverse_map] in the fit, whatever it weighs.
         mass: Mass given by the user [kg].
         vehicle_class: SUMO's vehicle class, given by the user.
     """
@@ -89,16 +89,16 @@ def known_masses(
 def gross_error(
     measured: float, known: KnownMass, role: str, speed_unit: str
 ) -> tuple[str, str] | None:
-    """Describe a mass that is far from the known one, and give the line that mends it.
+    """Describe a mass that is far from the known one, with the line that corrects it.
 
     Args:
         measured: Fitted M [kg].
-        known: Mass that it is compared with.
+        known: Mass with which it is compared.
         role: Role of the input that drives.
         speed_unit: Unit in which the speed is read.
 
     Returns:
-        None: it is within a factor of :data:`GROSS`.
+        Description and line, or None if the mass is within a factor of :data:`GROSS`.
     """
     excess = known.excess(measured)
     if 1.0 / GROSS < excess < GROSS:

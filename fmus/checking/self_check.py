@@ -1,8 +1,8 @@
 """The step-halving check: one step is compared with two halves before a run.
 
 A solver that is too coarse for its model diverges without any error: one OpenModelica export
-reaches 1e14 m/s at steps of 50 ms and returns OK. First-order methods such as forward Euler pass:
-their error is of the size of one step's change.
+reaches 1e14 m/s at steps of 50 ms and returns OK. First-order methods such as forward Euler pass,
+since their error is of the size of one step's change.
 """
 
 from dataclasses import dataclass
@@ -24,8 +24,8 @@ from fmus.isolation import processes_reused
 
 DIVISORS = (1, 2, 5, 10, 20, 50, 100)  # divisors of the step, from coarse to fine
 RELATIVE = 0.05  # largest difference, relative to the largest speed or distance of the finer run
-SPEED_FLOOR = 0.05  # [m/s]
-POSITION_FLOOR = 0.05  # [m]
+SPEED_FLOOR = 0.05  # Speed difference [m/s] that is always allowed
+POSITION_FLOOR = 0.05  # Position difference [m] that is always allowed
 LARGEST_ACCELERATION = 15.0  # [m/s2] bound of the change in one step
 _CLEARLY = 0.1  # [m/s2] difference from which a response counts as reversed
 DRIVE, COAST, BRAKE = 1.0, 0.5, 1.5  # [s] durations of the manoeuvre's parts
@@ -49,12 +49,12 @@ class Convergence:
     """The result of the self-check.
 
     Attributes:
-        step: The FMU's, as the run would take it [s].
-        finer: Step [s] that it was compared with; None if the FMU can do no finer steps.
-        problem: why ``step`` is too coarse, one clause; empty if it is not.
-        advised: The largest step that converges [s]; None: none was found, or none is needed.
-        traces: Traces of the manoeuvre from the start speed: with ``step`` and ``finer``, where
-            they ran.
+        step: Step of the FMU in the run [s].
+        finer: Step [s] with which it was compared, or None if the FMU can do no finer steps.
+        problem: Reason why ``step`` is too coarse, one clause; empty if it is not.
+        advised: Largest step [s] that converges, or None if none was found or none is needed.
+        traces: Traces of the manoeuvre from the start speed with ``step`` and ``finer``, if they
+            ran.
     """
 
     step: float
@@ -72,11 +72,12 @@ def require_converged(
     force: float = 4000.0,
     start_speed: float = 0.0,
 ) -> Convergence:
-    """Have a vehicle drive, coast and brake at its step and at finer ones, and compare.
+    """Let a vehicle drive, coast and brake at its step and at finer ones, and compare.
 
     Args:
-        opener: makes the vehicle for a step of its FMU; how long a force is held stays the same.
-        fmu_step: The FMU's in the run [s].
+        opener: Function that makes the vehicle for a step of its FMU; the time for which a force is
+            held does not change.
+        fmu_step: Step of the FMU in the run [s].
         path: Path of the FMU, for messages.
         force: Force [N] that drives and brakes.
         start_speed: Start speed of the run [m/s]; the manoeuvre is driven from it and from rest.
@@ -146,12 +147,12 @@ class _Drives:
 
     @property
     def shown(self) -> tuple[Trace, ...]:
-        """The last manoeuvre, if it has begun."""
+        """The last manoeuvre that has begun, in a tuple, or an empty one."""
         return self.traces[-1:]
 
     @property
     def steps_done(self) -> int:
-        """Number of steps before the end or the failure."""
+        """The number of steps before the end or the failure."""
         return sum(trace.force.size for trace in self.traces)
 
 
@@ -166,21 +167,21 @@ class _StepSizes:
         self._drives: dict[int, _Drives] = {}
 
     def run(self, divisor: int) -> _Drives:
-        """The drives of one divisor.
+        """Return the drives of one divisor.
 
         Raises:
-            FmuCrashError: a dead process says nothing about steps, and a hang costs minutes.
+            FmuCrashError: a dead process shows nothing about steps, and a hang costs minutes.
         """
         if divisor not in self._drives:
             self._drives[divisor] = self._attempt(None if divisor == 1 else self._step / divisor)
         return self._drives[divisor]
 
     def first_able(self) -> int | None:
-        """The coarsest of the finer steps that the FMU can do: some FMUs accept their own only."""
+        """Return the coarsest finer step that the FMU can do; some FMUs can do only their own."""
         return next((d for d in DIVISORS[1:] if self.run(d).error is None), None)
 
     def problem(self, coarse: int, fine: int) -> str:
-        """Return why the coarse step is too coarse; empty if it is not."""
+        """Return why the coarse step is too coarse, or an empty text if it is not."""
         for one, two in zip(self.run(coarse).traces, self.run(fine).traces, strict=True):
             found = compare(one, two)
             if found:
@@ -192,7 +193,7 @@ class _StepSizes:
         return ""
 
     def first_converged(self) -> int | None:
-        """The coarsest of the finer steps that agrees with the next finer one."""
+        """Return the coarsest of the finer steps that agrees with the next finer one."""
         able = [divisor for divisor in DIVISORS[1:] if self.run(divisor).error is None]
         for coarse, fine in pairwise(able):
             if not self.problem(coarse, fine):
@@ -221,14 +222,14 @@ def _do_not_converge(step: float) -> str:
 
 
 def manoeuvre(force: float) -> list[Phase]:
-    """Drive, coast, brake."""
+    """Return the phases: drive, coast, brake."""
     return [Phase(force, DRIVE), Phase(0.0, COAST), Phase(-force, BRAKE)]
 
 
 def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
     """Return the worst difference of two drives under the same forces, or None if they agree.
 
-    First order passes: a finer run may differ by what one step changes, and by 5 %.
+    First-order methods pass: a finer run may differ by what one step changes, and by 5 %.
     """
     step = coarse.step_size
     change = min(float(np.abs(np.diff(fine.speed)).max()), LARGEST_ACCELERATION * step)
@@ -252,9 +253,9 @@ def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
 
 
 def goes_the_wrong_way(trace: Trace) -> bool:
-    """Return whether a forward force slows the vehicle, more than no or a backward force does.
+    """Return whether a forward force slows the vehicle more than no or a backward force.
 
-    With the right sign, driving helps even where a slope or a slow actuator makes the vehicle lose
+    With the right sign, driving helps even if a slope or a slow actuator makes the vehicle lose
     speed.
 
     Args:
@@ -267,12 +268,12 @@ def goes_the_wrong_way(trace: Trace) -> bool:
 
 
 def milliseconds(step: float) -> str:
-    """A step as text: ``50 ms``."""
+    """Return a step as text: ``50 ms``."""
     return f"{1000.0 * step:.4g} ms"
 
 
 def plain(error: FmuError) -> str:
-    """An error without the path that the whole message begins with."""
+    """Return an error without the path with which the whole message begins."""
     text = str(error)
     head, separator, rest = text.partition(": ")
     return rest if separator and (".fmu" in head or "/" in head) else text

@@ -63,10 +63,10 @@ def this_platform() -> Platform:
 
 
 def binary_of(model: Model, interface: Interface) -> str:
-    """The archive's member that is this platform's library for an interface.
+    """Return the archive's member that is this platform's library for an interface.
 
     Raises:
-        FmuPlatformError: there is none that could be loaded here.
+        FmuPlatformError: there is no library that can be loaded here.
     """
     archive = open_archive(model.path)
     here = this_platform()
@@ -86,7 +86,7 @@ def binary_of(model: Model, interface: Interface) -> str:
 
 
 def platforms_of(archive: Archive) -> tuple[str, ...]:
-    """The folders that hold binaries."""
+    """Return the folders that hold binaries."""
     names = (name.split("/") for name in archive.members if name.startswith("binaries/"))
     return tuple(sorted({parts[1] for parts in names if len(parts) > 2}))
 
@@ -111,8 +111,8 @@ def misfit(start: bytes, wanted: Platform) -> str:
     """Return why a library cannot be loaded on a platform, as a phrase; empty if it seems to fit.
 
     Args:
-        start: Its first bytes, up to :data:`START`.
-        wanted: Platform on which it is to run.
+        start: First bytes of the library, up to :data:`START`.
+        wanted: Platform on which it has to run.
     """
     try:
         system, processors, library = _header(start)
@@ -128,7 +128,7 @@ def misfit(start: bytes, wanted: Platform) -> str:
 
 
 def _header(start: bytes) -> tuple[str, tuple[str, ...], bool]:
-    """System, processors and whether it is a shared library, by the file's header."""
+    """Return system, processors and whether it is a shared library, by the file's header."""
     if start[:4] == b"\x7fELF":
         order = "<" if start[5] == 1 else ">"
         kind, machine = struct.unpack_from(f"{order}HH", start, 16)

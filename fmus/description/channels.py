@@ -13,15 +13,15 @@ _ELEMENT = re.compile(r"(?P<name>.*)\[(?P<number>[0-9]{1,9})\]")
 
 
 def find_channel(model: Model, place: str, name: str) -> Channel:
-    """The variable, or the element of an array, that is called ``name``.
+    """Return the variable, or the element of an array, that is called ``name``.
 
     Args:
         model: Model of the FMU.
         place: Place of the name in the profile, for errors.
-        name: ``x``, or ``x[2]`` for an array's second element.
+        name: Name as ``x``, or ``x[2]`` for an array's second element.
 
     Raises:
-        FmuVariableError: there is none, or it is a whole array.
+        FmuVariableError: there is no such variable, or it is a whole array.
     """
     here, variables = f"{model.path}: {place}", model.variables
     if name in variables:
@@ -56,7 +56,7 @@ def _element(here: str, name: str, variable: Variable, number: int) -> Channel:
 
 
 def known_names(names: Iterable[str]) -> str:
-    """The first of the names that a message could have meant, and how many more there are."""
+    """Return the first names that a message could have meant, and the number of the others."""
     return listed(list(names), 8) or "the FMU has none"
 
 
@@ -64,10 +64,10 @@ def known_names(names: Iterable[str]) -> str:
 
 
 def start_channels(model: Model, values: Mapping[str, Value]) -> dict[Channel, Value]:
-    """The start values by channel; a whole array stands as its first element.
+    """Return the start values by channel; a whole array is given by its first element.
 
     Raises:
-        FmuVariableError: one is missing, cannot be set, or not to this value.
+        FmuVariableError: a variable is missing, cannot be set, or not to this value.
     """
     return {_start_channel(model, name, value): value for name, value in values.items()}
 

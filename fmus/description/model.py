@@ -10,7 +10,7 @@ class Kind(enum.StrEnum):
     """The kinds in which an FMU is stepped."""
 
     CO_SIMULATION = "co-simulation"  # it brings its own solver
-    MODEL_EXCHANGE = "model-exchange"  # it gives derivatives; the solver is ours
+    MODEL_EXCHANGE = "model-exchange"  # it gives derivatives, and giveway integrates
 
 
 REAL_TYPES = frozenset({"Real", "Float64", "Float32"})
@@ -25,7 +25,7 @@ Value = bool | int | float | str | list[float]
 """A start value of a variable, as a profile writes it."""
 
 Dimension = tuple[int, int, int, int, int, int, int, int]
-"""Exponents of kg, m, s, A, K, mol, cd, rad."""
+"""Exponents of the base units kg, m, s, A, K, mol, cd, rad."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class FmuDescription:
     name: str  # the model's name
     fmi_version: str  # e.g. "2.0"
     guid: str  # FMI 2's GUID, FMI 3's instantiation token
-    generation_tool: str  # empty where the FMU does not say
+    generation_tool: str  # name of the tool; empty if the FMU does not say
     sha256: str  # SHA-256 of the .fmu file
 
 
@@ -45,7 +45,7 @@ class Unit:
 
     Attributes:
         name: Name as the FMU writes it.
-        dimension: Exponents of the base units; None: the FMU does not tell.
+        dimension: Exponents of the base units, or None if the FMU does not give them.
     """
 
     name: str
@@ -70,11 +70,11 @@ class Variable:
     minimum: float | None = None  # smallest value, in the variable's unit
     maximum: float | None = None
     settable: bool = False  # True if it can be set before the start
-    negated: bool = False  # FMI 1's negatedAlias: what stands under the reference, times -1
+    negated: bool = False  # FMI 1's negatedAlias: the value is that of the reference, times -1
 
     @property
     def scalar(self) -> bool:
-        """True if the variable is not an array."""
+        """True if the variable is no array."""
         return not self.shape
 
     @property
@@ -123,8 +123,8 @@ class Interface:
     """One of the kinds in which an FMU can run.
 
     Attributes:
-        identifier: The name of its binaries.
-        flags: Its capability flags that are numbers or text or true, as the FMU writes them.
+        identifier: Name of its binaries.
+        flags: Capability flags that are numbers, text or true, as the FMU writes them.
     """
 
     kind: Kind
@@ -139,7 +139,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Model:
-    """An FMU's model description, and where its binary for this platform is."""
+    """The model description of an FMU, and the place of its binary for this platform."""
 
     path: Path
     fmi_version: str  # "1.0", "2.0" or "3.0"
@@ -151,13 +151,13 @@ class Model:
     variables: Mapping[str, Variable]
     units: Mapping[str, Unit]
     platforms: tuple[str, ...]  # folders of the archive that hold binaries
-    states: int  # continuous ones
+    states: int  # number of continuous states
     event_indicators: int
     default_step: float | None  # [s] step of its default experiment
     default_tolerance: float | None
 
     def unit_of(self, variable: Variable) -> Unit | None:
-        """The unit of a variable; None without one."""
+        """Return the unit of a variable, or None if it has none."""
         if not variable.unit:
             return None
         return self.units.get(variable.unit, Unit(variable.unit))

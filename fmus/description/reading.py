@@ -1,7 +1,7 @@
-"""Reading what an FMU says about itself: its model description.
+"""The reading of an FMU's model description.
 
-FMPy's reader is not used here: it refuses FMUs that run without a fault, knows
-neither FMI 1's capabilities nor the units of declared types, and does not tell the line of a fault.
+FMPy's reader is not used, because it refuses FMUs that run without a fault, knows neither FMI 1's
+capabilities nor the units of declared types, and does not report the line of a fault.
 """
 
 import math
@@ -43,18 +43,18 @@ BASE: Final = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 def read_model(path: Path) -> Model:
-    """Read everything that an FMU says about itself, without loading or unpacking it.
+    """Read an FMU's model description, without loading or unpacking the FMU.
 
     Raises:
         FmuFileError: the file is missing or refused, or its model description is broken.
-        FmuInterfaceError: a version of FMI, or an interface, that cannot be run.
+        FmuInterfaceError: the FMU has a version of FMI, or an interface, that cannot be run.
     """
     return model_of(open_archive(path))
 
 
-@lru_cache(maxsize=2)  # preparing a vehicle asks repeatedly
+@lru_cache(maxsize=2)  # preparing a vehicle needs it repeatedly
 def model_of(archive: Archive) -> Model:
-    """The same as :func:`read_model` for an archive that is open already."""
+    """Return the same as :func:`read_model` for an archive that is open already."""
     path, where = archive.path, f"{archive.path}: {DESCRIPTION}"
     root = parse(archive.description, where, ROOT, KEPT)
     version = _version(root, path)
@@ -91,7 +91,7 @@ def describe(path: str | os.PathLike[str]) -> FmuDescription:
 
     Raises:
         FmuFileError: the file is missing or refused, or has no model description.
-        FmuInterfaceError: a version of FMI that cannot be run.
+        FmuInterfaceError: the FMU has a version of FMI that cannot be run.
     """
     archive = open_archive(Path(path))
     where = f"{archive.path}: {DESCRIPTION}"
@@ -153,7 +153,7 @@ def _interface(kind: Kind, element: Element, version: str, where: str) -> Interf
 
 
 def _fmi1_interface(root: Element, where: str) -> dict[Kind, Interface]:
-    """The one interface of an FMI 1 file, whose capabilities have an element of their own."""
+    """Return the one interface of an FMI 1 file, whose capabilities are a separate element."""
     identifier = _identifier(root, where)
     implementation = root.first("Implementation")
     if implementation is None:
@@ -199,7 +199,7 @@ def _nothing_to_run(root: Element) -> str:
 def _structure(
     root: Element, version: str, where: str, variables: Mapping[str, Variable]
 ) -> tuple[int, int]:
-    """Numbers of continuous states and event indicators; all references must exist."""
+    """Return the numbers of continuous states and event indicators; all references must exist."""
     indicators = whole(where, root, "numberOfEventIndicators") or 0
     if version == "1.0":
         return whole(where, root, "numberOfContinuousStates") or 0, indicators
@@ -248,6 +248,6 @@ def _unit(name: str, base: Element, where: str) -> Unit:
 
 
 def _positive(where: str, element: Element | None, name: str) -> float | None:
-    """Return an attribute that is of use only as a positive number, otherwise None."""
+    """Return an attribute that is useful only as a positive number, otherwise None."""
     value = number(where, element, name) if element else None
     return value if value is not None and 0.0 < value < math.inf else None

@@ -1,4 +1,4 @@
-"""Units by their names: the meaning of ``km/h`` in an FMU that does not define it.
+"""The units by their names, such as ``km/h`` in an FMU that does not define it.
 
 SI = factor * raw + offset. A name is a product of known symbols in the notations that tools write:
 ``m/s2``, ``m.s-2``, ``m/s^2``, ``m*s**-2``, ``m/s²``, ``N.s/m``, ``kg/(m.s2)``. Capitals matter:
@@ -166,7 +166,7 @@ def to_si(unit: Unit) -> Unit:
     no definition.
 
     Returns:
-        the unit; its dimension stays None if the name is unknown.
+        The unit; its dimension stays None if the name is unknown.
     """
     defined = unit.dimension is not None
     empty = unit.dimension == NONE and unit.factor == 1.0 and unit.offset == 0.0
@@ -181,7 +181,7 @@ def to_si(unit: Unit) -> Unit:
 
 
 def named(name: str) -> Unit:
-    """The unit of a name, as a profile gives it."""
+    """Return the unit of a name, as a profile gives it."""
     return to_si(Unit(name))
 
 
@@ -269,7 +269,7 @@ class _Parser:
 
 
 def _times(one: _Symbol, other: _Symbol, power: int) -> _Symbol:
-    """The product of two units; offsets, as that of degC, have no meaning in products."""
+    """Return the product of two units; offsets, as that of degC, have no meaning in products."""
     exponents = (a + power * b for a, b in zip(one.dimension, other.dimension, strict=True))
     factor = one.factor * other.factor**power if power > 0 else one.factor / other.factor**-power
     kg, m, s, a, k, mol, cd, rad = exponents

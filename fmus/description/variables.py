@@ -30,17 +30,17 @@ MAX_DESCRIPTION: Final = 500
 
 
 def broken(where: str, element: Element, what: str) -> FmuFileError:
-    """The error for a line of the model description."""
+    """Return the error for a line of the model description."""
     return FmuFileError(f"{where}, line {element.line}: {what}; export the model again")
 
 
 def number(where: str, element: Element, name: str) -> float | None:
-    """An attribute that must be a number; None without it."""
+    """Return an attribute that must be a number, or None without it."""
     return _converted(where, element, name, float, "a number")
 
 
 def whole(where: str, element: Element, name: str) -> int | None:
-    """An attribute that must be a whole number; None without it."""
+    """Return an attribute that must be a whole number, or None without it."""
     return _converted(where, element, name, int, "a whole number")
 
 
@@ -57,15 +57,15 @@ def _converted(
 
 
 def read_variables(root: Element, version: str, where: str) -> dict[str, Variable]:
-    """All variables by name, in the order of the file.
+    """Return all variables by name, in the order of the file.
 
     Args:
         root: Root of the model description.
         version: "1.0", "2.0" or "3.0".
-        where: named in errors.
+        where: Name of the file in errors.
 
     Raises:
-        FmuFileError: with the line.
+        FmuFileError: a variable is malformed; the message names the line.
     """
     types = _types(root, version)
     extents = _extents(root, where) if version == "3.0" else {}
@@ -76,7 +76,7 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
         for name in (variable.name, *(alias.get("name") for alias in element.every("Alias"))):
             if not name:
                 raise broken(where, element, "a variable without a name")
-            if clean(name, MAX_NAME) != name:  # it is shown in messages
+            if clean(name, MAX_NAME) != name:  # the name is shown in messages
                 what = f"name {printable(name, 60)} too long or with control characters"
                 raise broken(where, element, what)
             if name in variables:
@@ -90,7 +90,7 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
 
 
 def _elements(root: Element, version: str, where: str) -> Iterator[tuple[Element, Element]]:
-    """Each variable's element, and the element that gives its type (in FMI 1 and 2 a child)."""
+    """Yield each variable's element, and the element of its type (in FMI 1 and 2 a child)."""
     for element in _children(root, "ModelVariables"):
         if version == "3.0":
             if element.tag in TYPES:
@@ -116,7 +116,8 @@ def _variable(
     if declared and declared not in types:
         what = f"type {printable(declared, 100)} of variable {_name(element)} is not defined"
         raise broken(where, element, what)
-    layers = (value, types[declared]) if declared else (value,)  # a variable's own attributes win
+    # a variable's own attributes count first
+    layers = (value, types[declared]) if declared else (value,)
     causality, variability = _roles(element, value.tag, version)
     shape = _shape(element, where, extents) if version == "3.0" else ()
     start = _start(value)
@@ -142,8 +143,9 @@ def _variable(
 
 
 def _roles(element: Element, kind: str, version: str) -> tuple[str, str]:
-    """Causality and variability, with the defaults of the standard (FMI 3: 2.4.7.4)."""
-    causality = clean(element.get("causality", "local"), MAX_UNIT)  # it is shown in messages
+    """Return causality and variability, with the defaults of the standard (FMI 3: 2.4.7.4)."""
+    # the causality is shown in messages
+    causality = clean(element.get("causality", "local"), MAX_UNIT)
     variability = clean(element.get("variability"), MAX_UNIT)
     if version == "1.0":
         if variability == "parameter":
@@ -202,7 +204,7 @@ def _expected(kind: str) -> str:
 
 
 def _extents(root: Element, where: str) -> dict[int, str]:
-    """Start values of the variables that an FMI 3 array's dimensions may refer to."""
+    """Return the start values of the variables to which an FMI 3 array's dimensions may refer."""
     return {
         _reference(where, element): element.get("start")
         for element in _children(root, "ModelVariables")

@@ -1,1 +1,1 @@
-"""Driving a vehicle FMU in this process: start, steps, motion, and checks of plausibility."""
+"""The driving of a vehicle FMU in this process: start, steps, motion, and plausibility checks."""

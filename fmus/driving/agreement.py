@@ -8,15 +8,15 @@ SLIP = 0.2  # largest difference as a share of the distance, where that is more
 
 
 class Agreement:
-    """Compares the distance by position with that by speed, lately and since the start.
+    """The comparison of the distance by position with that by speed, lately and since the start.
 
-    A position that counts in steps, as an odometer does, stands and jumps; it may be behind or
-    ahead by one of its steps, which is learnt from its jumps. Until the first one it may stand as
-    long as a jump is allowed to be.
+    A position that counts in steps, like an odometer, stands still and jumps. It may be behind or
+    ahead by one of its steps, whose size is learnt from the jumps. Before the first jump it may
+    stand still for the largest allowed jump.
 
     Args:
-        jump: Largest difference [m] of position and integrated speed in one step and altogether;
-            beyond the usual 1 m it widens the tolerance within the window, too.
+        jump: Largest difference [m] of position and integrated speed in one step and in total.
+            Above the usual 1 m it also widens the tolerance within the window.
     """
 
     def __init__(self, jump: float) -> None:
@@ -32,7 +32,7 @@ class Agreement:
     def lost(
         self, moved: float, way: float, slack: float, duration: float
     ) -> tuple[float, float, float] | None:
-        """Take over one step, and return how position and speed have come apart, or None.
+        """Take over one step; return how position and speed differ, or None if they agree.
 
         Args:
             moved: Change of the position [m].
@@ -42,7 +42,7 @@ class Agreement:
 
         Returns:
             The distance by position [m], the distance by speed [m] and the time [s] in which they
-            came apart (0 s: since the start); None if they agree.
+            came to differ (0 s: since the start). None if they agree.
         """
         self._count(moved, way)
         self._drift += moved - way

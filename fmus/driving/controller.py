@@ -18,15 +18,15 @@ class ControllerFmu:
     is no lag, whether the FMU computes its outputs with its inputs or with its step.
 
     Args:
-        prepared: The controller.
-        folder: Folder of its unpacked FMU, which stays.
+        prepared: Prepared controller.
+        folder: Folder of the unpacked FMU, which is not removed.
 
     Attributes:
         answer: Answer of the last step, in the FMU's own unit.
         time: Time at the end of that step [s].
 
     Raises:
-        FmuPlatformError: it has no binary that can be loaded.
+        FmuPlatformError: the FMU has no binary that can be loaded.
     """
 
     def __init__(self, prepared: PreparedController, folder: Path) -> None:
@@ -57,13 +57,13 @@ class ControllerFmu:
         self._instance.start(wiring.start_values, channels, [wiring.answer.channel])
 
     def step(self, told: Sequence[float]) -> None:
-        """Do one control step; an FMU whose step is longer is asked once in each of its own steps.
+        """Do one control step; an FMU with longer steps is called once in each of its own steps.
 
         Args:
             told: Values of its inputs, in its own units.
 
         Raises:
-            FmuStepError: it does not do the step.
+            FmuStepError: the FMU does not do the step.
         """
         step_plan, instance = self.prepared.step_plan, self._instance
         if self._steps % step_plan.stretch == 0:

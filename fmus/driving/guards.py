@@ -12,7 +12,7 @@ class Guard:
 
     Args:
         limits: Limits of the profile.
-        names: The FMU's names of its speed, position and acceleration.
+        names: Names in the FMU of its speed, position and acceleration.
     """
 
     def __init__(self, limits: Limits, names: dict[str, str]) -> None:
@@ -61,7 +61,7 @@ class Guard:
         Args:
             moved: Distance by the position [m].
             way: Distance by the integrated speed [m].
-            duration: Time over which they were driven [s]; 0: since the start.
+            duration: Time [s] over which they were driven; 0 means since the start.
             at: Time [s].
         """
         position, speed = self._names["position"], self._names["speed"]
@@ -72,7 +72,7 @@ class Guard:
         )
 
     def watch(self, changed: bool, force: float, speed: float, step: float, at: float) -> str:
-        """Return a warning if the state stands still although it is driven, or an empty text.
+        """Return a warning if the state does not change although it is driven, or an empty text.
 
         Args:
             changed: True if the motion has changed in this step.
@@ -94,7 +94,7 @@ class Guard:
         )
 
     def once(self, kind: str, warning: str) -> str:
-        """Return the warning the first time, and an empty text afterwards."""
+        """Return the warning when it is given for the first time, and an empty text afterwards."""
         if kind in self._warned:
             return ""
         self._warned.add(kind)

@@ -1,7 +1,7 @@
-"""The folder of a shipped FMU in a process with many runs: it is unpacked once for all.
+"""The folder of a shipped FMU in a process with many runs, into which it is unpacked once.
 
-Some file systems take longer to remove its four folders than a quarter of a run's steps takes.
-Our plant writes nothing into them, and its instances share nothing.
+Some file systems take longer to remove its four folders than a quarter of a run's steps takes. The
+shipped vehicle writes nothing into them, and its instances share nothing.
 """
 
 import tempfile
@@ -19,7 +19,7 @@ _keeping: Final[set[bool]] = set()
 def keep_unpacked() -> None:
     """Unpack each shipped FMU only once from now on, into the folder for temporary files.
 
-    For a process whose folder for temporary files is its own, and is removed with it.
+    This is for a process whose own folder for temporary files is removed with it.
     """
     _keeping.add(True)
 

@@ -18,7 +18,7 @@ class Motion:
     """Position, speed and acceleration along the path, as the FMU gives them or as derived.
 
     Args:
-        prepared: The vehicle.
+        prepared: Prepared vehicle.
 
     Attributes:
         position: Position [m].
@@ -43,7 +43,7 @@ class Motion:
         self._guard = Guard(limits, self.names)
         self._trusted = prepared.ours
         self._last_effective = 0.0  # [N] force under which the speed last changed
-        self._origin = 0.0  # [m] position at which the FMU's own is 0
+        self._origin = 0.0  # [m] run's position at which the FMU's own is 0
         self._agreement = Agreement(limits.position_jump)
 
     @property
@@ -65,7 +65,7 @@ class Motion:
             )
         if self._position_output is not None:
             self.position = wires[self._position_output].to_si(outputs[self._position_output])
-        self._last_effective = nan if self.speed else 0.0  # already moving: unknown
+        self._last_effective = nan if self.speed else 0.0  # a moving vehicle: the force is unknown
         self._judge(0.0, 0.0, 0.0)
 
     def count_from(self, position: float) -> None:
@@ -80,7 +80,7 @@ class Motion:
 
         Args:
             outputs: Outputs of the FMU.
-            force: Held over the step [N].
+            force: Force [N] held over the step.
             duration: Duration of the step [s].
             time: Time at its end [s].
 
@@ -120,7 +120,7 @@ class Motion:
         faster = abs(speed - before) > _STILL
         if faster or isnan(self._last_effective):
             self._last_effective = force
-        if self._position_output is None:  # until the force changes, a car may be cruising
+        if self._position_output is None:  # until the force changes, a car may keep its speed
             changed = faster or abs(force - self._last_effective) < DRIVEN
         else:
             changed = faster or abs(position - here) > _STILL
@@ -133,7 +133,7 @@ class Motion:
             self._note(self._guard.once("reverse", backwards))
 
     def _judge(self, jump: float, slack: float, time: float) -> None:
-        """Refuse a state that no car can have, apart from ``slack`` [m] of its ``jump`` [m]."""
+        """Refuse a state that no car can have, allowing ``slack`` [m] of its ``jump`` [m]."""
         good = (
             -self._limit <= self.speed <= self._limit
             and abs(jump) <= self._jump + slack

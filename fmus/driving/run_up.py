@@ -1,4 +1,4 @@
-"""Bringing a vehicle to its initial speed where the FMU has no parameter for it."""
+"""The run-up of a vehicle to its initial speed, if the FMU has no parameter for it."""
 
 from fmus.errors import FmuStartError
 from fmus.interfaces.vehicle import Drivable
@@ -13,14 +13,14 @@ _RESPONSE = 0.5  # [s] time constant of the approach
 _INTEGRATION = 4.0  # [s] time constant of the integrator, for resistance beyond the model's
 _BACKWARDS = 1.0  # [m/s] backward speed that is more than creeping
 _STILL = 0.02  # [m/s] change of speed up to which the vehicle stands still
-_STRONGEST = 3.0  # [m/s2] largest acceleration asked for
+_STRONGEST = 3.0  # Largest commanded acceleration [m/s2]
 
 
 def run_up(vehicle: Drivable, speed: float) -> float:
     """Drive ``vehicle`` until it keeps ``speed`` [m/s], and return the time that it took [s].
 
     Raises:
-        FmuStartError: it does not get there.
+        FmuStartError: the vehicle does not reach the speed.
     """
     profile = vehicle.prepared.profile
     known = profile.model or profile.inverse_map
@@ -30,7 +30,7 @@ def run_up(vehicle: Drivable, speed: float) -> float:
         error = speed - vehicle.speed
         wanted = error / _RESPONSE + integral
         acceleration = min(max(wanted, -_STRONGEST), _STRONGEST)
-        if abs(error) < _CLOSE:  # farther away the integrator would wind up
+        if abs(error) < _CLOSE:  # farther away, the integrator would wind up
             integral += error * h / (_RESPONSE * _INTEGRATION)
         vehicle.step(mass * acceleration + friction * speed)
         settled = settled + h if abs(speed - vehicle.speed) <= _NEAR else 0.0
@@ -57,7 +57,7 @@ def run_up(vehicle: Drivable, speed: float) -> float:
 
 
 def _idle(vehicle: Drivable) -> str:
-    """Return the inputs that the profile does not drive, as the end of a message."""
+    """Return the inputs that the profile does not use, as the end of a message."""
     prepared = vehicle.prepared
     driven = {wire.channel.variable.name for wire in prepared.wiring.inputs}
     idle = [

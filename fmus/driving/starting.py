@@ -34,12 +34,12 @@ def reach(vehicle: Drivable, speed: float) -> float | None:
     """Check that the vehicle starts at a speed [m/s], or drive up to it.
 
     Returns:
-        Duration of the drive [s]; None if the FMU starts at the speed.
+        Duration of the drive [s], or None if the FMU starts at the speed.
 
     Raises:
         FmuStartError: the vehicle cannot get to the speed.
         FmuStepError: the FMU failed on the way there.
-        FmuOutputError: the same.
+        FmuOutputError: the FMU's outputs were implausible on the way there.
     """
     if _fits(vehicle.speed, speed):
         return None
@@ -69,7 +69,7 @@ def require_position(vehicle: Drivable, position: float) -> None:
     """Check that an FMU with a parameter for its first position [m] starts there.
 
     Raises:
-        FmuStartError: it starts elsewhere.
+        FmuStartError: the FMU starts elsewhere.
     """
     wiring = vehicle.prepared.wiring
     initial = wiring.initial_position

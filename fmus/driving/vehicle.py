@@ -27,10 +27,10 @@ class VehicleFmu(Drivable):
     Its position, speed, acceleration and time are those of :class:`Vehicle`.
 
     Args:
-        path: The .fmu file.
+        path: Path of the .fmu file.
         step_size: Step size of the controller [s].
-        profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
-            names and units if it leaves no doubt.
+        profile: Roles of the FMU's variables. With None it is the shipped FMUs' own, or a draft
+            from names and units if it leaves no doubt.
         start_values: Further start values by variable name, set at every :meth:`start`.
 
     Raises:
@@ -60,7 +60,7 @@ class VehicleFmu(Drivable):
 
     @classmethod
     def unpacked(cls, prepared: Prepared, folder: Path) -> Self:
-        """The vehicle of an FMU that has been unpacked into ``folder``, which stays."""
+        """Return the vehicle of an FMU that is unpacked in ``folder``, which is not removed."""
         vehicle = cls.__new__(cls)
         with ExitStack() as stack:
             vehicle._set_up(prepared, folder, stack)
@@ -87,7 +87,7 @@ class VehicleFmu(Drivable):
             prepared.binary,
             solver=prepared.profile.fmu.solver,
             tolerance=prepared.profile.fmu.tolerance,
-            rewinds=not prepared.ours,  # keeping the state costs time at every step
+            rewinds=not prepared.ours,  # keeping the state takes time in every step
             stop_time=prepared.profile.fmu.stop_time,
         )
         stack.callback(self._instance.close)
@@ -126,7 +126,8 @@ class VehicleFmu(Drivable):
         )
         self._inputs = self._instance.inputs
         self._outputs = self._instance.outputs
-        self.recorded = self._outputs[len(wiring.outputs) :]  # a view: always the last step's
+        # a view, which always has the last step's values
+        self.recorded = self._outputs[len(wiring.outputs) :]
         self._tick = self._instance.tick
         self._motion = motion = Motion(self.prepared)
         self.warnings = motion.warnings

@@ -1,7 +1,7 @@
-"""Loading and calling FMUs: the only package that talks to FMPy.
+"""The loading and calling of FMUs; only this package uses FMPy.
 
-Instances call the FMU's C functions themselves, without FMPy's wrappers: a step takes as long as it
-takes in C, and a missing function is an error only where it is needed.
+Instances call the FMU's C functions themselves, without FMPy's wrappers. A step takes as long as in
+C, and a missing function is an error only where it is needed.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ def load(
         model: Model description of the FMU.
         interface: Interface that is to run.
         folder: Folder with the extracted FMU; the caller removes it after :meth:`Instance.close`.
-        binary: this platform's library, by its name in the archive.
-        solver: Solver of Model Exchange; None: CVode where it runs.
-        tolerance: Relative tolerance of Model Exchange's solver, or the one told to Co-Simulation.
-        rewinds: True: keep the state before each step, so that a discarded step can be done again
-            in smaller ones; only with Co-Simulation FMUs that can save their state.
-        stop_time: End of the simulation as told to the FMU [s]; None: not told.
+        binary: Library for this platform, by its name in the archive.
+        solver: Solver of Model Exchange, or None for CVode if it runs.
+        tolerance: Relative tolerance of Model Exchange's solver, or of the FMU in Co-Simulation.
+        rewinds: True to keep the state before each step, so that a discarded step can be repeated
+            in smaller ones. It works only with Co-Simulation FMUs that can save their state.
+        stop_time: End of the simulation [s] that the FMU is given, or None.
 
     Raises:
         FmuInterfaceError: this version and kind cannot be run.

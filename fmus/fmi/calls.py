@@ -18,7 +18,7 @@ from fmus.fmi.status import ERROR, WARNING, named
 
 
 class CallFailedError(Exception):
-    """A function of the FMU did not do what it should.
+    """A function of the FMU failed.
 
     Attributes:
         status: Status that the function returned.
@@ -44,7 +44,7 @@ class NoInstanceError(CallFailedError):
 
 @dataclass(frozen=True)
 class CType:
-    """An FMI type's C type, and how the names of its functions end."""
+    """The C type of an FMI type, and the end of the names of its functions."""
 
     type: type[Any]
     suffix: str
@@ -54,7 +54,7 @@ class CType:
 class Progress:
     """The answer of an FMU about a step that it did not complete."""
 
-    reached: float | None  # [s]; None: the FMU does not say
+    reached: float | None  # [s] time that it reached, or None if the FMU does not say
     ended: bool  # the FMU wants to end the simulation
 
 
@@ -107,8 +107,9 @@ class Calls(ABC):
         self.folder = folder
         self.messages = messages
         self.component: c_void_p | None = None
-        self.stop_time: float | None = None  # [s] told to the FMU; None: it has none
-        self.event_mode = False  # FMI 3's Co-Simulation: of the instances that are made
+        # [s] end of the simulation that the FMU is given, or None
+        self.stop_time: float | None = None
+        self.event_mode = False  # FMI 3's Co-Simulation: True for instances with event mode
         self.prefix = f"fmi{model.fmi_version[0]}"  # beginning of all functions' names
         self.exchanges = interface.kind == Kind.MODEL_EXCHANGE
         self._functions: dict[str, Function] = {}
@@ -123,7 +124,7 @@ class Calls(ABC):
 
     @abstractmethod
     def instantiate(self) -> None:
-        """Make an instance.
+        """Make an instance of the model.
 
         Raises:
             CallFailedError: the FMU refuses.
@@ -133,7 +134,7 @@ class Calls(ABC):
         """Keep the instance that a function has made.
 
         Raises:
-            NoInstanceError: it has made none.
+            NoInstanceError: the function has made none.
         """
         if not component:
             raise NoInstanceError(function)
@@ -160,7 +161,7 @@ class Calls(ABC):
     # ---- values ----
 
     def name(self, verb: str, suffix: str = "") -> str:
-        """A function's name, e.g. of ``Set`` and ``Real``."""
+        """Return a function's name, e.g. of ``Set`` and ``Real``."""
         return f"{self.prefix}{verb}{suffix}"
 
     def arguments(self, references: Sequence[int], values: Any) -> tuple[Any, ...]:
@@ -181,7 +182,7 @@ class Calls(ABC):
 
     @abstractmethod
     def stepper(self, start: ctypes.c_double, step: ctypes.c_double) -> Stepper:
-        """The function that does a step, with its arguments."""
+        """Return the function that does a step, with its arguments."""
 
     # ---- Model Exchange ----
 
@@ -206,19 +207,19 @@ class Calls(ABC):
         """Tell the FMU that a step is done; return whether it wants event mode, and to end."""
 
     def exchange_names(self) -> Mapping[str, str]:
-        """The names of the functions that Model Exchange calls often, by what they do."""
+        """Return the names of the functions that Model Exchange calls often, by their purpose."""
         return {what: self.name(verb) for what, verb in self.exchange.items()}
 
     # ---- state ----
 
     def save(self) -> c_void_p:
-        """The FMU's state."""
+        """Return the FMU's state."""
         state = c_void_p()
         self.call(self.name("Get", self.state_word), ctypes.byref(state))
         return state
 
     def restore(self, state: c_void_p) -> None:
-        """Go back to a saved state."""
+        """Restore a saved state."""
         self.call(self.name("Set", self.state_word), state)
 
     def free_state(self, state: c_void_p) -> None:
@@ -228,10 +229,10 @@ class Calls(ABC):
     # ---- calling ----
 
     def function(self, name: str) -> Function:
-        """A function, looked up once.
+        """Return a function, which is looked up once.
 
         Raises:
-            FmuPlatformError: the FMU has none.
+            FmuPlatformError: the FMU has no such function.
         """
         found = self._functions.get(name)
         if found is None:
@@ -242,7 +243,7 @@ class Calls(ABC):
         """Call a function of the instance.
 
         Raises:
-            CallFailedError: it did not do what it should.
+            CallFailedError: the function failed.
         """
         status = self.function(name)(self.component, *arguments)
         if status not in (0, WARNING):
@@ -263,7 +264,7 @@ class Setting:
 class Stepper:
     """A step of Co-Simulation.
 
-    ``flags[0]`` is not 0 after a step that FMI 3 calls done although it ended early.
+    ``flags[0]`` is not 0 after a step that FMI 3 calls completed although it ended early.
 
     ``event`` is a C value that is true after a step that ended with an event (FMI 3).
     ``final`` is a C value among the arguments: the FMU's state will not be set back to a time
@@ -286,7 +287,7 @@ else:
 
 
 def allocators() -> tuple[c_void_p, c_void_p]:
-    """C's own calloc and free, for FMUs that use the host's functions for memory."""
+    """Return C's own calloc and free, for FMUs that use the host's functions for memory."""
     return (
         ctypes.cast(_c_library.calloc, c_void_p),
         ctypes.cast(_c_library.free, c_void_p),

@@ -1,10 +1,10 @@
 """Co-Simulation: the FMU brings its own solver and is asked to step.
 
-An FMU may discard a step; it then says how far it came, and the rest is done from there. If that
+An FMU may discard a step. It then reports how far it came, and the rest is done from there. If that
 fails, the state before the step is restored and the step is done in halves, quarters, ...
 
-FMI 3 FMUs with events may need the importer to handle them (event mode). They are run without it
-first; if a step fails, a new instance is made with it and brought to where the first one was.
+FMI 3 FMUs with events may need the importer to handle them (event mode). They are first run without
+it. If a step fails, a new instance is made with event mode and brought to the same point.
 """
 
 from contextlib import suppress
@@ -28,8 +28,9 @@ class CoSimulation(Instance):
 
     Args:
         calls: The FMU's functions.
-        tolerance: relative, told to the FMU; None: its own.
-        rewinds: Save the state before every step, so that it can be done again in smaller ones.
+        tolerance: Relative tolerance that the FMU is given, or None for its own.
+        rewinds: True to save the state before every step, so that it can be repeated in smaller
+            ones.
     """
 
     def __init__(self, calls: Calls, tolerance: float | None, *, rewinds: bool) -> None:
@@ -127,11 +128,11 @@ class CoSimulation(Instance):
         return ERROR
 
     def _with_events(self, event_tick: Tick, failed: int) -> int:
-        """Do all steps again with event mode, the last of which has failed without it.
+        """Repeat all steps with event mode; the last of them has failed without it.
 
         Args:
-            event_tick: does a step.
-            failed: The status without event mode; it stays if there is no instance with it.
+            event_tick: Function that does a step.
+            failed: Status without event mode, which is returned if no instance has event mode.
         """
         past, self._past = self._past, None
         component = self.calls.component
@@ -160,14 +161,14 @@ class CoSimulation(Instance):
         return status
 
     def _save(self) -> None:
-        """Keep the state before a step, in a new handle: some FMUs do not reuse an old one."""
+        """Keep the state before a step in a new handle, since some FMUs do not reuse an old one."""
         if self._rewinds:
             before, self._before = self._before, None
             try:
                 if before is not None:
                     self.calls.free_state(before)
                 self._before = self.calls.save()
-            except (CallFailedError, FmuPlatformError):  # the FMU can do less than it says
+            except (CallFailedError, FmuPlatformError):  # the FMU can do less than it declares
                 self._rewinds = False
 
     def _complete(self, status: int, time: float, size: float) -> int:
@@ -233,7 +234,8 @@ class CoSimulation(Instance):
     def _drop_state(self) -> None:
         before, self._before = self._before, None
         if before is not None and self.calls.component and self._worst != FATAL:
-            with suppress(CallFailedError, FmuPlatformError):  # a state that stays does no harm
+            # a state that is not freed does no harm
+            with suppress(CallFailedError, FmuPlatformError):
                 self.calls.free_state(before)
 
     def stop(self) -> None:  # noqa: D102

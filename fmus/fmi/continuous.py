@@ -47,7 +47,7 @@ class ContinuousSystem:
             self._get_indicators = calls.function(names["get_indicators"])
 
     def states(self) -> NDArray[np.float64]:
-        """The FMU's states now."""
+        """The present states of the FMU."""
         x = np.zeros(self.nx)
         if self.nx:
             status = self._get_states(self._component, x.ctypes.data_as(c_void_p), self._size)
@@ -69,12 +69,12 @@ class ContinuousSystem:
         return np.where(np.isfinite(x) & (x > 0.0), x, 1.0)
 
     def set_time(self, time: float) -> None:
-        """Tell the FMU the time [s]."""
+        """Set the time [s] of the FMU."""
         self._time.value = time
         self._require(self._set_time(self._component, self._time), "set_time")
 
     def set(self, time: float, x: NDArray[np.float64]) -> None:
-        """Bring the FMU to a point of its trajectory."""
+        """Set the FMU to a point of its trajectory."""
         self.set_time(time)
         if self.nx:
             self._put(x.ctypes.data)
@@ -155,7 +155,7 @@ class Solver(Protocol):
         """
 
     def at(self, time: float) -> NDArray[np.float64]:
-        """The states at a time within the last step."""
+        """Return the states at a time within the last step."""
 
     def close(self) -> None:
         """Free everything."""
@@ -167,7 +167,7 @@ def locate(
     """Return the time [s] of a crossing by bisection, at most ``resolution`` after it.
 
     Args:
-        crossed: Function that tells whether it has happened at a time between the two.
+        crossed: Function that returns whether the crossing has happened at a time between the two.
         before: Time [s] at which it has not happened.
         after: Time [s] at which it has happened.
         resolution: Resolution [s].

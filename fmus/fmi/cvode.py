@@ -1,4 +1,4 @@
-"""CVode of SUNDIALS: variable order and step, implicit, for stiff systems too.
+"""The solver CVode of SUNDIALS: implicit, with variable order and step, also for stiff systems.
 
 Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363. FMPy brings the compiled libraries; its own
 solver class is not used, because it only prints errors of the FMU and goes on.
@@ -39,7 +39,7 @@ def available() -> bool:
     """Return whether FMPy has SUNDIALS for this platform."""
     try:
         _libraries()
-    except Exception:  # loading a foreign library can raise anything
+    except Exception:  # loading a foreign library can raise any exception
         return False
     return True
 
@@ -137,20 +137,20 @@ class Cvode:
             self._core["SUNContext_Free"](byref(self._context))
 
     def _evaluate(self, time: float, x: int, slope: int, _data: int | None) -> int:
-        """CVode's right-hand side: the FMU reads and writes CVode's own vectors."""
+        """Evaluate the right-hand side for CVode; the FMU reads and writes CVode's own vectors."""
         try:
             target = self._address(slope)
             self._system.derivatives(time, self._address(x), target)
             self._undefined = self._system.undefined(self._at_address(target), time)
         except UndefinedError as undefined:
             self._undefined = str(undefined)
-        except BaseException as error:  # nothing may be raised into C
+        except BaseException as error:  # no exception may reach C
             self._problem = error
             return _GIVE_UP
         return _TRY_SMALLER if self._undefined else 0
 
     def _create(self, function: Any, *arguments: Any) -> Any:
-        """An object of SUNDIALS, in its context."""
+        """Return an object of SUNDIALS, in its context."""
         function.restype = c_void_p
         pointer = function(*arguments, self._context)
         if not pointer:

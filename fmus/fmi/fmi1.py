@@ -1,4 +1,4 @@
-"""FMI 1.0: functions' names begin with the model's identifier; booleans are characters."""
+"""The functions of FMI 1.0; names begin with the model's identifier, booleans are characters."""
 
 import ctypes
 from collections.abc import Mapping, Sequence
@@ -146,7 +146,7 @@ class Fmi1Calls(Calls):
     # ---- Model Exchange ----
 
     def enter_event_mode(self) -> None:
-        """FMI 1 has no modes."""
+        """Do nothing, since FMI 1 has no modes."""
 
     def update_discrete_states(self) -> EventInfo:  # noqa: D102
         if self._first is not None:  # FMI 1's initialisation is the first update
@@ -157,7 +157,7 @@ class Fmi1Calls(Calls):
         return info.read()
 
     def enter_continuous_time_mode(self) -> None:
-        """FMI 1 has no modes."""
+        """Do nothing, since FMI 1 has no modes."""
 
     def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
         event = c_byte()

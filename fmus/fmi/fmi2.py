@@ -1,4 +1,4 @@
-"""FMI 2.0."""
+"""The functions of FMI 2.0."""
 
 import ctypes
 from collections.abc import Mapping, Sequence

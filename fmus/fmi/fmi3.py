@@ -1,4 +1,4 @@
-"""FMI 3.0."""
+"""The functions of FMI 3.0."""
 
 import ctypes
 import os
@@ -109,7 +109,7 @@ class Fmi3Calls(Calls):
 
         final = c_bool(True)
         arguments = (self.component, start, step, final, *report)
-        seen = memoryview(flags).cast("B").cast("H")  # both flags in one look
+        seen = memoryview(flags).cast("B").cast("H")  # both flags in one read
         return Stepper(self.function("fmi3DoStep"), arguments, final, seen, event, progress)
 
     # ---- Model Exchange ----

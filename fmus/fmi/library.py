@@ -11,7 +11,7 @@ from fmus.errors import FmuPlatformError
 from fmus.text import printable
 
 Function = Callable[..., int]
-"""A C function that takes ready-made ctypes objects as they are and returns an int."""
+"""Type of a C function that takes ready-made ctypes objects and returns an int."""
 
 _ALTERED_SEARCH_PATH = 0x8  # Windows looks for dependencies in the library's folder
 
@@ -21,10 +21,10 @@ class Library:
 
     Args:
         path: Path of the library.
-        fmu: named in errors.
+        fmu: Name of the FMU in errors.
 
     Raises:
-        FmuPlatformError: it cannot be loaded.
+        FmuPlatformError: the library cannot be loaded.
     """
 
     def __init__(self, path: Path, fmu: Path) -> None:
@@ -40,10 +40,10 @@ class Library:
             ) from error
 
     def function(self, name: str) -> Function:
-        """A function that the FMU must have.
+        """Return a function that the FMU must have.
 
         Raises:
-            FmuPlatformError: it has none.
+            FmuPlatformError: the FMU has no such function.
         """
         found = self.optional(name)
         if found is None:
@@ -54,24 +54,24 @@ class Library:
         return found
 
     def optional(self, name: str) -> Function | None:
-        """A function that the FMU may have."""
+        """Return a function that the FMU may have, or None."""
         try:
             return self._library[name]
         except (AttributeError, ValueError):
             return None
 
     def instantiator(self, name: str) -> Callable[..., int | None]:
-        """A function that returns a pointer.
+        """Return a function that returns a pointer.
 
         Raises:
-            FmuPlatformError: the FMU has none.
+            FmuPlatformError: the FMU has no such function.
         """
         found: Any = self.function(name)
         found.restype = ctypes.c_void_p
         return found  # type: ignore[no-any-return]
 
     def close(self) -> None:
-        """Unload it."""
+        """Unload the library."""
         handle = self._library._handle
         if sys.platform == "win32":
             _ctypes.FreeLibrary(handle)

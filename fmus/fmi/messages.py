@@ -95,12 +95,12 @@ class Arguments:
         self._stack: Iterator[int] = iter(slots[doubles:])
 
     def integer(self) -> int:
-        """Return the next integer; StopIteration after the last that can be reached."""
+        """Return the next integer, or raise StopIteration after the last reachable one."""
         value = next(self._integers, None)
         return next(self._stack) if value is None else value
 
     def double(self) -> float:
-        """Return the next double; StopIteration after the last that can be reached."""
+        """Return the next double, or raise StopIteration after the last one that can be reached."""
         value = next(self._doubles, None)
         if value is not None:
             return value
@@ -112,7 +112,7 @@ class Arguments:
 
 
 def formatted_receiver(messages: MessageLog) -> Any:
-    """The logger of FMI 1 and 2, which writes to ``messages``; keep it while the FMU is loaded."""
+    """Return the logger of FMI 1 and 2; keep it as long as the FMU is loaded."""
 
     def receive(
         _owner: int | None,
@@ -130,7 +130,7 @@ def formatted_receiver(messages: MessageLog) -> Any:
 
 
 def plain_receiver(messages: MessageLog) -> Any:
-    """The logger of FMI 3, whose messages need no formatting."""
+    """Return the logger of FMI 3, whose messages need no formatting."""
 
     def receive(
         _owner: int | None, status: int, _category: int | None, message: int | None
@@ -222,7 +222,7 @@ def _string(address: int, match: re.Match[bytes], precision: str) -> bytes:
 
 
 def read_text(address: int | None) -> bytes:
-    """The start of the C string at an address; empty where the memory is not readable."""
+    """Return the start of the C string at an address, or an empty one if it cannot be read."""
     text = b""
     while address and len(text) < _LONGEST:
         here = address + len(text)

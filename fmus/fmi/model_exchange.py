@@ -1,6 +1,6 @@
-"""Model Exchange: the FMU gives derivatives and event indicators, the solver is ours.
+"""Model Exchange: the FMU gives derivatives and event indicators, and giveway integrates.
 
-One step of the co-simulation is: event mode with the new inputs, then continuous time up to the
+One step of the co-simulation is: event mode with the new inputs; then continuous time up to the
 first of a state event, a time event, an event that the FMU wants after an integrator's step, and
 the end of the step; event mode again; and so on (FMI 2.0.4, section 3.2; FMI 3.0.1, section 3).
 """
@@ -16,13 +16,13 @@ from fmus.fmi.running import Instance, Tick
 from fmus.fmi.status import ENDED, ERROR, PENDING, WARNING
 from fmus.fmi.values import Transfer
 
-TOLERANCE = 1e-6  # relative
+TOLERANCE = 1e-6  # Relative tolerance of the solver
 RESOLUTION = 1e-12  # resolution of times, relative to the greater of the time and 1 s
 ROUNDS = 100  # largest number of rounds of one event iteration
 EVENTS = 200  # largest number of events in one step
 INTERNAL_STEPS = 5_000  # largest number of internal steps in one step
 PATIENCE = 500  # internal steps of CVode in one step, before another solver is tried
-DENSE = 500  # states up to which CVode's dense Jacobian is affordable
+DENSE = 500  # Largest number of states for CVode's dense Jacobian
 
 
 class _EndedError(Exception):
@@ -34,8 +34,8 @@ class ModelExchange(Instance):
 
     Args:
         calls: The FMU's functions.
-        tolerance: relative, of the solver; None: :data:`TOLERANCE`.
-        solver: None: CVode where it runs.
+        tolerance: Relative tolerance of the solver, or None for :data:`TOLERANCE`.
+        solver: Name of the solver, or None for CVode if it runs.
 
     Raises:
         FmuInterfaceError: CVode does not run here.
@@ -204,10 +204,10 @@ class ModelExchange(Instance):
             return self.solver.step(stop)
 
     def _fall_back(self, time: float) -> bool:
-        """Go on with Runge-Kutta where CVode makes no progress, unless the profile names a solver.
+        """Continue with Runge-Kutta if CVode makes no progress and the profile names no solver.
 
-        CVode shrinks its steps without end where derivatives jump and no event is declared: dry
-        friction written as a sign of the speed holds a car at rest by such jumps.
+        CVode reduces its steps without end if derivatives jump and no event is declared: dry
+        friction that is written as a sign of the speed holds a car at rest by such jumps.
         """
         if self._wanted is not None or not isinstance(self._solver, cvode.Cvode):
             return False
@@ -255,5 +255,5 @@ class ModelExchange(Instance):
 
 
 def _resolution(time: float) -> float:
-    """The difference below which two times are the same [s]."""
+    """Return the difference [s] below which two times are the same."""
     return RESOLUTION * max(1.0, abs(time))

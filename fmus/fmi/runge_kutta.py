@@ -1,4 +1,4 @@
-"""The classical Runge-Kutta method of order 4, with its step from an estimate of the error."""
+"""The classical Runge-Kutta method of order 4, with a step size from an error estimate."""
 
 from math import isfinite
 
@@ -18,7 +18,7 @@ SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # factors of a step's length: Hairer, Norse
 
 
 class RungeKutta:
-    """Does each step once whole and once in halves; the difference estimates the error.
+    """An integrator that does each step once whole and once in halves to estimate the error.
 
     Both results combined are of order 5 (Richardson; Hairer, Norsett & Wanner 1993, II.4).
 
@@ -91,7 +91,7 @@ class RungeKutta:
     def _propose(
         self, time: float, x: NDArray[np.float64], h: float
     ) -> tuple[NDArray[np.float64], float]:
-        """The states after ``h``, and the error relative to the tolerance."""
+        """Return the states after ``h``, and the error relative to the tolerance."""
         whole = self._classical(time, x, h)
         halves = self._classical(time + 0.5 * h, self._classical(time, x, 0.5 * h), 0.5 * h)
         difference = (halves - whole) / 15.0

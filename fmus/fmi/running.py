@@ -21,13 +21,13 @@ class Instance(ABC):
 
     Args:
         calls: The FMU's functions.
-        tolerance: relative, told to the FMU; None: its own.
+        tolerance: Relative tolerance that the FMU is given, or None for its own.
 
     Attributes:
         inputs: One double per input channel; the next :attr:`tick` hands them to the FMU.
-        outputs: One double per output channel, as of the last tick.
-        tick: does one step and fills :attr:`outputs`.
-        messages: The FMU's last messages, and what was found wrong with it.
+        outputs: One double per output channel, with the values of the last tick.
+        tick: Function that does one step and fills :attr:`outputs`.
+        messages: Last messages of the FMU, and the faults found in it.
     """
 
     def __init__(self, calls: Calls, tolerance: float | None) -> None:
@@ -107,10 +107,10 @@ class Instance(ABC):
 
     @abstractmethod
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:
-        """The function that does a step."""
+        """Return the function that does a step."""
 
     def note_status(self, status: int) -> int:
-        """Remember the worst status, and return the status (ERROR if FMI does not know it)."""
+        """Remember the worst status; return the status (ERROR if FMI does not know it)."""
         if not 0 <= status <= PENDING:
             self.messages.add(ERROR, f"it returned {named(status)}, which FMI does not know")
             status = ERROR

@@ -14,5 +14,5 @@ STATUS_NAMES: Final = (
 
 
 def named(status: int) -> str:
-    """A status in words."""
+    """Return a status in words."""
     return f"'{STATUS_NAMES[status]}'" if 0 <= status < len(STATUS_NAMES) else f"status {status}"

@@ -100,12 +100,12 @@ def _unfit(calls: Calls, variable: Variable, value: Any, expected: str) -> FmuSt
 
 
 def _negated(variable: Variable, value: Any) -> Any:
-    """The value of a negated alias: not, or minus, the value of the other variable."""
+    """Return the value of a negated alias: not, or minus, the value of the other variable."""
     return 1 - value if variable.is_boolean else -value
 
 
 def bounds(ctype: CType) -> tuple[int, int]:
-    """The smallest and the greatest whole number of a C type."""
+    """Return the smallest and the largest whole number of a C type."""
     bits = 8 * sizeof(ctype.type)
     unsigned = ctype.type(-1).value > 0
     return (0, (1 << bits) - 1) if unsigned else (-(1 << bits - 1), (1 << bits - 1) - 1)
@@ -117,8 +117,8 @@ def bounds(ctype: CType) -> tuple[int, int]:
 class Transfer:
     """Carries one side's channels between a buffer of doubles and the FMU.
 
-    Where every channel is a scalar double, the FMU reads or writes the buffer itself: ``function``
-    is then the C function. Otherwise values are copied, and whole arrays are set or got.
+    If every channel is a scalar double, the FMU reads or writes the buffer itself, and ``function``
+    is the C function. Otherwise values are copied, and whole arrays are set or read.
 
     Attributes:
         view: One double per channel.
@@ -151,7 +151,7 @@ class Transfer:
         self.function = self._copy
 
     def _copy(self) -> int:
-        """Set or get all groups; returns the worst status."""
+        """Set or get all groups, and return the worst status."""
         worst = 0
         for group in self._groups:
             if self._setting:

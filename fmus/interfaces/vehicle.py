@@ -1,4 +1,4 @@
-"""The interface of every vehicle, wherever its FMU runs."""
+"""The interface of every vehicle, in whatever process its FMU runs."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -25,8 +25,8 @@ class Vehicle(ABC):
         time: Time [s]: the number of steps times the step size, never a running sum.
         step_size: Step size of the controller [s].
         knows_grades: True if it has an input for the road's grade.
-        record: Variables that the profile wants to have recorded.
-        recorded: Values of the profile's ``record`` as of the last step, in the FMU's own units.
+        record: Variables that the profile lists for recording.
+        recorded: Values of the profile's ``record`` after the last step, in the FMU's own units.
         warnings: Warnings for the user since the last start.
     """
 
@@ -83,11 +83,11 @@ class Vehicle(ABC):
             )
 
     def _refuse(self, reason: str) -> None:
-        """Have all steps refused for this reason until the next start."""
+        """Let all steps be refused for this reason until the next start."""
         self._refusal = f"{self.path}: the vehicle {reason}"
 
     def _fail(self) -> None:
-        """Have all steps refused because the last start or step has failed."""
+        """Let all steps be refused because the last start or step has failed."""
         self._refuse(f"failed at {self.time:.10g} s; start it again")
 
 
@@ -95,7 +95,7 @@ class Drivable(Vehicle):
     """A vehicle whose FMU has been prepared and whose steps can be counted.
 
     Attributes:
-        prepared: Its FMU, with the wiring of the profile.
+        prepared: FMU of the vehicle, with the wiring of the profile.
     """
 
     prepared: Prepared

@@ -1,4 +1,4 @@
-"""Foreign vehicle FMUs run in a process of their own, so that a crash of one ends no run."""
+"""The isolation of foreign FMUs in processes of their own, so that a crash of one ends no run."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def open_vehicle(
     start_values: Mapping[str, Value] | None = None,
     isolated: bool | None = None,
 ) -> Vehicle:
-    """A vehicle that runs an FMU.
+    """Return a vehicle that runs an FMU.
 
     Args:
-        path: The .fmu file.
+        path: Path of the .fmu file.
         step_size: Step size [s].
-        profile: Roles of the FMU's variables; None: see :func:`fmus.prepare`.
+        profile: Roles of the FMU's variables, or None as in :func:`fmus.prepare`.
         start_values: Further start values by variable name.
-        isolated: Run it in a process of its own; None: yes, unless it is a shipped FMU.
+        isolated: True to run it in a process of its own; None for this unless it is a shipped FMU.
 
     Raises:
         FmuError: see :class:`IsolatedVehicle`.

@@ -1,4 +1,4 @@
-"""Removing what an FMU leaves behind: processes and folders."""
+"""The removal of processes and folders that an FMU leaves behind."""
 
 import os
 import shutil
@@ -9,16 +9,17 @@ from pathlib import Path
 from time import sleep
 from typing import Final
 
-LOG: Final = "watchdog.log"  # file in the vehicle's folder: the messages of its watchdog
-_ROUNDS: Final = 50  # rounds of looking for processes: killed ones may have started others
+# Name of the file with the messages of the vehicle's watchdog, in the vehicle's folder
+LOG: Final = "watchdog.log"
+_ROUNDS: Final = 50  # Number of searches for processes, since killed ones may have started others
 _PAUSE: Final = 0.02  # [s] time for killed processes to disappear
 
 
 def scratch_of(folder: Path) -> Path:
-    """The folder in which an FMU's processes work; it is also their TMPDIR.
+    """Return the folder in which an FMU's processes work, which is also their TMPDIR.
 
     Args:
-        folder: The vehicle's temporary one.
+        folder: Temporary folder of the vehicle.
     """
     return folder / "scratch"
 
@@ -26,7 +27,7 @@ def scratch_of(folder: Path) -> Path:
 def kill_marked(folder: Path) -> None:
     """Kill the processes that were started with a vehicle's TMPDIR, however they hid (Linux).
 
-    This is the last resort: it serves when the watchdog, which would kill them, is dead itself.
+    This is the last resort, for a watchdog that is dead and cannot kill them.
     """
     mark = b"TMPDIR=" + os.fsencode(scratch_of(folder)) + b"\0"
     for _round in range(_ROUNDS):
@@ -61,7 +62,7 @@ def remove(folder: Path) -> None:
 
 
 def _make_accessible(folder: Path) -> None:
-    """Allow ourselves to enter all folders inside: the FMU's umask may have forbidden it."""
+    """Give this process access to all folders inside, which the FMU's umask may have denied."""
     for place, names, _files in os.walk(folder):
         for inner in (Path(place, name) for name in names):
             with suppress(OSError):

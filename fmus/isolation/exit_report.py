@@ -1,4 +1,4 @@
-"""A report of how an FMU's process ended, in numbers and in words."""
+"""The report of how an FMU's process ended, as numbers and in words."""
 
 import json
 import signal
@@ -24,11 +24,11 @@ class ExitReport:
     """The way in which a process ended.
 
     Attributes:
-        code: Its exit status, or minus the signal that killed it; None: unknown, because the
-            watchdog is dead too.
-        killed: giveway killed it.
-        oom: meanwhile the system killed some process for lack of memory.
-        printed: The last line that it printed; empty without one.
+        code: Exit status of the process, or minus the signal that killed it. None if it is unknown
+            because the watchdog is dead, too.
+        killed: True if giveway killed it.
+        oom: True if the system killed a process for lack of memory in the meantime.
+        printed: Last line that it printed; empty without one.
     """
 
     code: int | None
@@ -37,12 +37,12 @@ class ExitReport:
     printed: str
 
     def encoded(self) -> bytes:
-        """The report as bytes, for :func:`decode_report`."""
+        """Return the report as bytes, for :func:`decode_report`."""
         return json.dumps(asdict(self)).encode()
 
     @property
     def cause(self) -> str:
-        """A predicate such as 'died of ...', to follow a subject."""
+        """Return a predicate such as 'died of ...', to follow a subject."""
         if self.code is None:
             return "killed the process that watches over it"
         if self.killed or self.code == CONNECTION_LOST:
@@ -59,12 +59,12 @@ class ExitReport:
 
     @property
     def after_printing(self) -> str:
-        """A clause ', after printing ...'; empty if nothing was printed."""
+        """Return a clause ', after printing ...', or an empty text if nothing was printed."""
         return f", after printing '{self.printed}'" if self.printed else ""
 
 
 def decode_report(message: bytes) -> ExitReport:
-    """The report that :meth:`ExitReport.encoded` turned into bytes."""
+    """Return the report from the bytes of :meth:`ExitReport.encoded`."""
     return ExitReport(**json.loads(message))
 
 
@@ -75,11 +75,11 @@ class PrintedTail:
         self._end = b""
 
     def add(self, piece: bytes) -> None:
-        """Take in another piece of output."""
+        """Add another piece of output."""
         self._end = (self._end + piece)[-_TAIL:]
 
     def last_line(self) -> str:
-        """The last line that is not blank, fit for a message; empty if there is none."""
+        """Return the last line that is not blank, made fit for a message, or an empty text."""
         lines = (
             printable(line) for line in reversed(self._end.decode("utf-8", "replace").splitlines())
         )

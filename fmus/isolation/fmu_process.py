@@ -1,4 +1,4 @@
-"""An FMU's process for its client: started anew for every episode, asked, ended."""
+"""The process of an FMU as its client sees it: started anew for every episode, called, ended."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _END_PATIENCE = 1.0  # [s] between the end of the connection and that of the pro
 
 
 class FmuProcess:
-    """A process for an FMU: whatever the FMU does there, this process goes on.
+    """The process of an FMU; whatever the FMU does there, this process goes on.
 
     Args:
         hosted: Adapter that runs the FMU in that process.
@@ -36,12 +36,12 @@ class FmuProcess:
 
     Attributes:
         warnings: Warnings of the FMU, since its last start.
-        failed: True after a failed episode: then the FMU is no longer asked to end.
+        failed: True after a failed episode: the FMU is then not asked to end.
         last: Numbers of the reply that reported an error; empty without one.
         last_time: Time [s] of its last step.
 
     Raises:
-        FmuError: it cannot be unpacked, or no process can be started.
+        FmuError: the FMU cannot be unpacked, or no process can be started.
     """
 
     def __init__(self, hosted: type[Hosted], prepared: Prepared | PreparedController) -> None:
@@ -72,7 +72,7 @@ class FmuProcess:
         return not self._closing.alive
 
     def begin(self) -> None:
-        """End the last episode; a new process is there for the next one."""
+        """End the last episode, and start a new process for the next one."""
         self.warnings = []
         self.end()
         self.failed, self.last = False, ()
@@ -81,20 +81,20 @@ class FmuProcess:
     def ask(
         self, what: bytes, numbers: Sequence[float], timeout: float, when: Callable[[], str]
     ) -> Sequence[float]:
-        """Have something done.
+        """Let the FMU's process carry out a request.
 
         Args:
             what: Kind of the request.
             numbers: Numbers of the request.
-            timeout: Timeout in which it must be done [s].
-            when: Function that tells the time of the request, for messages.
+            timeout: Time [s] within which it must be done.
+            when: Function that returns the time of the request in words, for messages.
 
         Returns:
             The numbers of the reply.
 
         Raises:
-            FmuError: what the FMU's process reports.
-            FmuCrashError: it died, or did not answer in time.
+            FmuError: the error that the FMU's process reports.
+            FmuCrashError: the process died, or did not answer in time.
         """
         assert self._client is not None  # it exists while no call is refused
         try:
@@ -106,7 +106,7 @@ class FmuProcess:
         except (TimeoutError, EOFError, GarbledError) as problem:
             self.failed, self._host.sound = True, False
             raise self._crash(what, when(), problem, timeout) from None
-        except BaseException:  # Ctrl-C: the reply would be taken for that of the next step
+        except BaseException:  # after Ctrl-C, the reply would be taken for that of the next step
             self.failed, self._host.sound = True, False
             raise
         return state
@@ -123,7 +123,7 @@ class FmuProcess:
         return kind(message)
 
     def _crash(self, what: bytes, when: str, problem: Exception, timeout: float) -> FmuCrashError:
-        """End the process; the error tells when it ended, why, and its last output."""
+        """End the process; the error says when it ended, why, and its last output."""
         lost = isinstance(problem, EOFError)
         report = self._host.end_process(_END_PATIENCE if lost else 0.0)
         if lost:
@@ -143,7 +143,7 @@ class FmuProcess:
         return kind(f"{self.path}: {reason}; {advice}")
 
     def end(self) -> None:
-        """End the process if there is one, after asking it to end unless it has failed."""
+        """End the process, if there is one; unless it has failed, it is asked to end first."""
         client, self._client = self._client, None
         if client is None:
             return

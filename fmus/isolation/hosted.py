@@ -13,7 +13,7 @@ from fmus.profile.preparation import Prepared
 
 
 class Hosted(Protocol):
-    """The adapter of one FMU for one episode.
+    """The adapter that runs one FMU for one episode.
 
     Attributes:
         warnings: Warnings for the user.
@@ -35,13 +35,13 @@ class Hosted(Protocol):
         """Return the numbers of values in each request and in each reply."""
 
     def start(self, numbers: Sequence[float]) -> None:
-        """Begin at time 0."""
+        """Begin the episode at time 0."""
 
     def step(self, numbers: Sequence[float]) -> None:
         """Do one step; the first number is the client's processor."""
 
     def state(self) -> Sequence[float]:
-        """The numbers of a reply."""
+        """Return the numbers of a reply."""
 
     def close(self) -> None:
         """End the FMU."""
@@ -51,7 +51,7 @@ class HostedVehicle:
     """Adapter of a vehicle: START position [m], speed [m/s]; STEP force [N], grade [rad].
 
     Args:
-        prepared: The vehicle.
+        prepared: Prepared vehicle.
         folder: Folder of its unpacked FMU.
     """
 
@@ -97,7 +97,7 @@ class HostedController:
     """Adapter of a controller: START nothing; STEP its inputs, in its own units.
 
     Args:
-        prepared: The controller.
+        prepared: Prepared controller.
         folder: Folder of its unpacked FMU.
     """
 
@@ -111,7 +111,7 @@ class HostedController:
 
     @property
     def warnings(self) -> list[str]:
-        """Empty: the client checks the inputs, and warns."""
+        """The warnings, which are empty: the client checks the inputs and warns."""
         return []
 
     @property

@@ -14,12 +14,12 @@ from fmus.profile.controllers.controller_preparation import PreparedController
 
 
 class IsolatedController:
-    """Asks a controller FMU for its answer; inputs and answer are in SI units.
+    """A controller FMU in a process of its own; inputs and answer are in SI units.
 
-    Nothing is started before the first question. Every :meth:`restart` uses a new process.
+    Nothing is started before the first call. Every :meth:`restart` uses a new process.
 
     Args:
-        prepared: The controller.
+        prepared: Prepared controller.
 
     Attributes:
         warnings: Warnings for the user.
@@ -35,14 +35,14 @@ class IsolatedController:
         self._steps = 0
 
     def ask(self, seen: Sequence[float]) -> float:
-        """Return the FMU's answer at this step, which may be no finite number.
+        """Return the FMU's answer at this step, which may not be a finite number.
 
         Args:
-            seen: Number for each of its inputs [SI]; infinite for an input without a value.
+            seen: Value of each input [SI]; infinite for an input without a value.
 
         Raises:
-            FmuError: it does not start, or does not do the step.
-            FmuCrashError: its process died, or did not answer in time.
+            FmuError: the FMU does not start, or does not do the step.
+            FmuCrashError: the process died, or did not answer in time.
         """
         if not self._begun:
             self._begin()
@@ -52,7 +52,7 @@ class IsolatedController:
         return self._prepared.wiring.answer.to_si(raw)
 
     def restart(self) -> None:
-        """Forget the past, so that the next question is the first one."""
+        """Forget the past, so that the next call is the first one."""
         self._begun = False
 
     def close(self) -> None:

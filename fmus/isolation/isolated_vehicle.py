@@ -16,7 +16,7 @@ from fmus.profile.vehicle_profile import VehicleProfile
 
 
 class IsolatedVehicle(Vehicle):
-    """Runs a vehicle FMU in a process of its own, as :class:`fmus.VehicleFmu` does in this one.
+    """A vehicle FMU in a process of its own, with the interface of :class:`fmus.VehicleFmu`.
 
     A crash, hang or end of the process becomes an :class:`FmuCrashError`. Changes of the process
     (working directory, locale, floating-point traps, signals, output) do not reach this one. Every
@@ -24,9 +24,9 @@ class IsolatedVehicle(Vehicle):
     is reported there.
 
     Args:
-        path: The .fmu file.
+        path: Path of the .fmu file.
         step_size: Step size [s].
-        profile: Roles of the FMU's variables, and time-outs; None as for ``VehicleFmu``.
+        profile: Roles of the FMU's variables, and time limits, or None as for ``VehicleFmu``.
         start_values: Further start values by variable name.
 
     Raises:
@@ -68,7 +68,7 @@ class IsolatedVehicle(Vehicle):
             FmuPlatformError: the FMU's binary cannot be loaded.
             FmuStartError: the FMU refuses its start values.
             FmuOutputError: an output is not a finite number.
-            FmuCrashError: its process died, or did not answer in time.
+            FmuCrashError: the process died, or did not answer in time.
             FmuStateError: the vehicle has been closed.
         """
         if self._process.closed:
@@ -86,7 +86,7 @@ class IsolatedVehicle(Vehicle):
 
         Raises:
             FmuStepError: the force is not a finite number, or the FMU does not do the step.
-            FmuCrashError: its process died, or did not answer in time.
+            FmuCrashError: the process died, or did not answer in time.
             FmuOutputError: an output is not a finite number, or none that a car can have.
             FmuStateError: the vehicle is not running.
         """
@@ -115,7 +115,7 @@ class IsolatedVehicle(Vehicle):
                 msg = f"{self.path}: position {x} m, speed {v} m/s, acceleration {a} m/s2"
                 raise FmuOutputError(f"{msg} at {self.time:.10g} s; expected finite numbers")
         except FmuOutputError:
-            if process.last:  # as reported: the rows show where it was
+            if process.last:  # the reported state: the rows show where the vehicle was
                 self.time = process.last_time
                 self.position, self.speed, self.acceleration = process.last[:3]
             self._fail()

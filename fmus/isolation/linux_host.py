@@ -1,6 +1,6 @@
 """The process host of Linux: a watchdog process forks the FMU's processes.
 
-The watchdog imports what they need while the vehicle's own process goes on with other things.
+The watchdog imports the needed modules while the vehicle's own process does other work.
 """
 
 import socket
@@ -18,11 +18,11 @@ _UNKNOWN_END: Final = ExitReport(None, killed=False, oom=False, printed="")
 
 
 class LinuxHost:
-    """Has a watchdog process fork the FMU's processes; see :mod:`fmus.isolation.watchdog`.
+    """A host whose watchdog process forks the FMU's processes; see :mod:`fmus.isolation.watchdog`.
 
     Args:
         path: Path of the FMU.
-        folder: Temporary; the watchdog removes it when this process has ended.
+        folder: Temporary folder, which the watchdog removes when this process has ended.
 
     Attributes:
         sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.
@@ -40,7 +40,7 @@ class LinuxHost:
         except OSError:
             proven = self._watchdog.has_answered
             self._watchdog.end()
-        if proven:  # it has worked before, so the FMU of the last episode has killed it
+        if proven:  # it has worked before, so the FMU of the last episode has killed the watchdog
             self._watchdog = WatchdogProcess(self._path, self._folder)
             with suppress(OSError):
                 return self._request_worker()

@@ -17,11 +17,11 @@ _READ_TIMEOUT: Final = 1.0  # [s] wait for the last output: a process left behin
 
 
 class PortableHost:
-    """Starts a new interpreter for every episode.
+    """A host that starts a new interpreter for every episode.
 
     Args:
         path: Path of the FMU.
-        folder: Temporary.
+        folder: Temporary folder.
 
     Attributes:
         sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.

@@ -17,7 +17,7 @@ class ProcessHost(Protocol):
     """Starts and ends the processes of one FMU.
 
     Attributes:
-        sound: The FMU has not crashed, hung or broken its connection so far.
+        sound: True as long as the FMU has not crashed, hung or broken its connection.
     """
 
     sound: bool
@@ -26,14 +26,14 @@ class ProcessHost(Protocol):
         """Start a new process for the FMU and return the connection to it.
 
         Raises:
-            FmuCrashError: it cannot be started.
+            FmuCrashError: the process cannot be started.
         """
 
     def end_process(self, patience: float = 0.0) -> ExitReport:
-        """End the FMU's process and everything that it has started; return how it ended.
+        """End the FMU's process and all processes that it has started; return how it ended.
 
         Args:
-            patience: Time that it has to end by itself first [s].
+            patience: Time [s] in which it may end by itself.
         """
 
     def close(self) -> None:
@@ -41,12 +41,12 @@ class ProcessHost(Protocol):
 
 
 def make_process_host(order: Order, folder: Path) -> ProcessHost:
-    """The process host for this platform.
+    """Return the process host for this platform.
 
     Args:
         order: FMU and adapter that run in its processes.
-        folder: Temporary, for the host to write to; by the time that a process starts, the
-            unpacked FMU is in the order's folder.
+        folder: Temporary folder to which the host may write. The unpacked FMU must be in the
+            order's folder before a process starts.
     """
     (folder / "order").write_bytes(pickle.dumps(order))
     scratch_of(folder).mkdir()

@@ -1,10 +1,10 @@
-"""A vehicle and its FMU's process take turns on one processor (Linux).
+"""The sharing of one processor by a vehicle and its FMU's process (Linux).
 
 One of the two always waits for the other. On two processors, each step wakes both of them from
-sleep; on one, the system only switches between them, in a quarter of the time. Therefore the FMU's
-thread follows the vehicle, and the vehicle, for the time of a quick step, lets others go first
-instead of falling asleep. An FMU with threads of its own keeps all processors, and so does every
-FMU on other systems.
+sleep. On one, the system only switches between them, which takes a quarter of the time. Therefore
+the FMU's thread follows the vehicle to its processor, and during a quick step the vehicle lets
+other processes go first instead of sleeping. An FMU with threads of its own keeps all processors,
+as does every FMU on other systems.
 """
 
 import ctypes
@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Final
 
 UNKNOWN: Final = -1
-_SETTLED: Final = 20  # steps after which an FMU that works in threads has started them
-_CHECK_INTERVAL: Final = 1000  # steps between two looks at its threads
+_SETTLED: Final = 20  # Number of steps after which an FMU that uses threads has started them
+_CHECK_INTERVAL: Final = 1000  # Number of steps between two checks of its threads
 
 
 def _lookup() -> Callable[[], int]:
@@ -29,11 +29,11 @@ def _lookup() -> Callable[[], int]:
 
 
 current: Final = _lookup()
-"""The number of the processor that this thread runs on; UNKNOWN where the system does not say."""
+"""Function that returns the number of the processor of this thread, or UNKNOWN."""
 
 
 class Follower:
-    """Keeps the FMU's thread on its vehicle's processor; made in the FMU's process."""
+    """Keeps the FMU's thread on its vehicle's processor; it is made in the FMU's process."""
 
     def __init__(self) -> None:
         self._steps = 0
@@ -45,7 +45,7 @@ class Follower:
         """Move to the processor of the vehicle, before a step.
 
         Args:
-            processor: Processor that the vehicle runs on, as :data:`current` tells it.
+            processor: Processor of the vehicle, as :data:`current` returns it.
         """
         self._steps += 1
         if self._gave_up or (processor == self._at and self._steps % _CHECK_INTERVAL):

@@ -1,4 +1,4 @@
-"""Starting Python interpreters that run a module of this package, and killing them."""
+"""The start of Python interpreters that run a module of this package, and their end."""
 
 import json
 import os
@@ -33,15 +33,15 @@ def spawn(
     """Start an interpreter like this one that runs ``main`` of a module of this package.
 
     Args:
-        path: Path of the FMU, named in errors.
+        path: Path of the FMU, for errors.
         module: Name of the module in this package.
         arguments: Arguments of its ``main``: numbers and texts.
-        folder: The vehicle's temporary folder.
+        folder: Temporary folder of the vehicle.
         output: File for the output of the interpreter.
         pass_fds: File descriptors that it inherits.
 
     Raises:
-        FmuCrashError: it cannot be started.
+        FmuCrashError: the interpreter cannot be started.
     """
     scratch = str(scratch_of(folder))
     values = [a if isinstance(a, int) else str(a) for a in arguments]

@@ -1,12 +1,13 @@
 """The watchdog of a vehicle: a process that starts the FMU's processes and ends them (Linux).
 
-It never runs an FMU itself. For every episode it forks a worker from its own clean state, with
-everything imported. It reads what the worker prints, so that a flood of output neither blocks the
-worker nor fills a disk. When the worker ends it kills every process that the FMU may have started,
-however it hid. The watchdog, not the vehicle's process, is the FMU's parent.
+It never runs an FMU itself. For every episode it forks a worker from its own clean state, with all
+modules imported. It reads what the worker prints, so that a flood of output neither blocks the
+worker nor fills a disk. When the worker ends, it kills every process that the FMU may have started,
+even hidden ones. The watchdog, not the vehicle's process, is the FMU's parent.
 
 When the vehicle's process has ended, the watchdog removes the temporary folder and ends too. When
-the vehicle is closed it may be told to wait for another one, with nothing left of the first.
+the vehicle is closed, the watchdog may be told to wait for another one, with nothing left of the
+first.
 """
 
 import ctypes
@@ -30,7 +31,7 @@ from fmus.isolation.wire import END_WORKER, MESSAGE, RETIRE, SERVE, START_WORKER
 from fmus.isolation.worker import Order, read_order, serve
 
 _CHECK_INTERVAL: Final = 1000  # [ms] between checks that the vehicle's process still runs
-_CONNECTION_NUMBER: Final = 200  # high: FMUs that close files of others by number try low ones
+_CONNECTION_NUMBER: Final = 200  # a high number: FMUs that wrongly close other files try low ones
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 _PTRACE_DETACH: Final = 17
 _IGNORED_SIGNALS = (  # an FMU may send them to its parent process
@@ -45,8 +46,8 @@ def main(control: int, parent: int, folder: str) -> None:
 
     Args:
         control: File descriptor of a socket of whole messages (SOCK_SEQPACKET).
-        parent: Process id.
-        folder: The vehicle's temporary folder, with the pickled order in ``order``.
+        parent: Process id of the vehicle's process.
+        folder: Temporary folder of the vehicle, with the pickled order in ``order``.
     """
     # os.fork warns of threads (Python 3.12): those of libraries sleep, and no FMU has run here.
     warnings.simplefilter("ignore", DeprecationWarning)
@@ -66,12 +67,13 @@ class _Watchdog:
         self, control: socket.socket, parent: int, order: Order, folders: list[Path]
     ) -> None:
         self._control, self._parent, self._order = control, parent, order
-        self._folders = folders  # the vehicle's; none while there is no vehicle
+        self._folders = folders  # folders of the vehicle; empty while there is none
         self._worker: int | None = None
         self._report: ExitReport | None = None
         self._printed, self._output = PrintedTail(), -1
         self._oom_kills = 0
-        _prctl(_PR_SET_CHILD_SUBREAPER)  # we inherit the FMU's child processes when it ends
+        # the watchdog becomes the parent of processes that the FMU leaves behind
+        _prctl(_PR_SET_CHILD_SUBREAPER)
         self._wake, wake = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)
         signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
@@ -99,7 +101,7 @@ class _Watchdog:
         self._end_worker()
 
     def _answer_request(self) -> bool:
-        """Do what the vehicle asks for, and return whether it still runs."""
+        """Carry out a request of the vehicle, and return whether the vehicle still runs."""
         try:
             message, files, _flags, _sender = socket.recv_fds(self._control, MESSAGE, 1)
             if not message:
@@ -116,12 +118,12 @@ class _Watchdog:
                 self._serve(Path(os.fsdecode(argument)))
             self._control.send(b"%s %s" % (number, answer))
         except OSError as error:
-            sys.stderr.write(f"{error}\n")  # the vehicle reads it, if it still runs
+            sys.stderr.write(f"{error}\n")  # the vehicle reads this if it still runs
             return False
         return True
 
     def _retire(self) -> None:
-        """Leave nothing of the vehicle, and wait for another one."""
+        """Remove all traces of the vehicle, and wait for another one."""
         self._end_worker()
         os.chdir("/")
         _print_to(Path(os.devnull))
@@ -129,7 +131,7 @@ class _Watchdog:
             remove(self._folders.pop())
 
     def _serve(self, folder: Path) -> None:
-        """Serve the vehicle of a folder as one for which this process was started."""
+        """Serve the vehicle of a folder as if this process had been started for it."""
         self._folders.append(folder)
         scratch = str(scratch_of(folder))
         os.environ["TMPDIR"] = tempfile.tempdir = scratch
@@ -143,7 +145,7 @@ class _Watchdog:
         self._printed, self._report = PrintedTail(), None
         self._oom_kills = out_of_memory_kills()
         self._output, output = os.pipe()
-        os.set_blocking(self._output, False)  # only our end: the worker's prints must not be lost
+        os.set_blocking(self._output, False)  # only this end: the worker's output must not be lost
         watchdog = os.getpid()
         worker = os.fork()
         if worker == 0:
@@ -213,7 +215,7 @@ def _print_to(file: Path) -> None:
 
 
 def _become_worker(watchdog: int, connection: int, output: int) -> socket.socket:
-    """Detach this process from the watchdog, but have it killed when the watchdog ends."""
+    """Detach this process from the watchdog, but let it be killed when the watchdog ends."""
     _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != watchdog:
         os._exit(1)

@@ -1,4 +1,4 @@
-"""A watchdog for its vehicle's process, and those that wait for the next vehicle (Linux)."""
+"""The watchdog processes as their clients see them: of a vehicle, or waiting for one (Linux)."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _scopes: Final[list[None]] = []
 
 
 class WatchdogProcess:
-    """A watchdog (:mod:`fmus.isolation.watchdog`), which imports while its vehicle goes on.
+    """A watchdog process (:mod:`fmus.isolation.watchdog`), which imports while its vehicle goes on.
 
     Args:
-        path: Path of the FMU, named in errors.
-        folder: Folder of the vehicle, temporary; the watchdog removes it when this process has
+        path: Path of the FMU, for errors.
+        folder: Temporary folder of the vehicle, which the watchdog removes when this process has
             ended.
 
     Attributes:
@@ -35,14 +35,14 @@ class WatchdogProcess:
         has_answered: True after its first answer.
 
     Raises:
-        FmuCrashError: it cannot be started.
+        FmuCrashError: the watchdog cannot be started.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:
         self.has_answered = False
         self._number = 0  # number of the last request
         self._owner, self._setting = os.getpid(), _setting()
-        self._folders = [folder]  # one whose TMPDIR it was started with, and the present one
+        self._folders = [folder]  # the folder whose TMPDIR it was started with, and the present one
         self._control, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         arguments = ("watchdog", control.fileno(), self._owner, folder)
         with control, (folder / LOG).open("wb") as log:
@@ -60,7 +60,7 @@ class WatchdogProcess:
             files: Files to be handed over.
 
         Raises:
-            OSError: there is none.
+            OSError: there is no answer.
         """
         self._number += 1
         self._resume()
@@ -76,7 +76,7 @@ class WatchdogProcess:
                 return answer
 
     def end(self) -> None:
-        """End the watchdog: closing its socket ends it and all that it watches over."""
+        """End the watchdog by closing its socket; this ends all processes that it watches, too."""
         self._resume()
         self._control.close()
         if not self.has_answered:  # it is still importing and would not notice the closed socket
@@ -89,23 +89,23 @@ class WatchdogProcess:
             self.kill_workers()
 
     def kill_workers(self) -> None:
-        """Kill the processes that the watchdog watches over, without its help."""
+        """Kill the processes that the watchdog watches, without its help."""
         for folder in self._folders:
             kill_marked(folder)
 
     def serve(self, folder: Path) -> bool:
-        """Serve another vehicle in its ``folder``; False if the watchdog must be ended instead."""
+        """Serve another vehicle in its ``folder``; return False if the watchdog must be ended."""
         if self._setting != _setting() or self.process.poll() is not None:
             return False
         self._folders[1:] = [folder]
         return self._does(SERVE, os.fsencode(folder), IMPORT_TIMEOUT)
 
     def retire(self) -> bool:
-        """End the vehicle's process and remove its folder; the result is that of :meth:`serve`."""
+        """End the vehicle's process and remove its folder; the result is as for :meth:`serve`."""
         return self._does(RETIRE, b"", END_TIMEOUT)
 
     def is_ours(self) -> bool:
-        """Return whether this process has started it, and is no fork of that."""
+        """Return whether this process has started the watchdog, and is not a fork of it."""
         return self._owner == os.getpid()
 
     def _does(self, what: bytes, argument: bytes, timeout: float) -> bool:
@@ -116,7 +116,7 @@ class WatchdogProcess:
         return True
 
     def _resume(self) -> None:
-        """Let the watchdog go on: an FMU may have stopped it with a signal."""
+        """Let the watchdog go on, since an FMU may have stopped it with a signal."""
         with suppress(OSError):
             self.process.send_signal(signal.SIGCONT)
 
@@ -128,11 +128,11 @@ def _setting() -> object:
 
 @contextmanager
 def processes_reused() -> Iterator[None]:
-    """Reuse watchdogs within this context: that of a closed vehicle serves the next one.
+    """Reuse watchdogs within this context: the watchdog of a closed vehicle serves the next one.
 
-    The watchdog has imported everything and has never run an FMU; each start of one is a new
+    The watchdog has imported everything and has never run an FMU; each start of an FMU is a new
     process. The watchdog of an FMU that has crashed, hung or broken its connection is ended. All
-    waiting watchdogs end with the outermost context. Other systems than Linux have none.
+    waiting watchdogs end with the outermost context. Other systems than Linux have no watchdogs.
     """
     _scopes.append(None)
     try:
@@ -157,7 +157,7 @@ def watchdog_for(path: Path, folder: Path) -> WatchdogProcess:
 
 
 def let_wait(watchdog: WatchdogProcess) -> bool:
-    """Let the watchdog of a closed vehicle wait for the next; False if it must be ended."""
+    """Let the watchdog of a closed vehicle wait for the next; return False if it must be ended."""
     if not (_scopes and watchdog.is_ours() and watchdog.retire()):
         return False
     _waiting.append(watchdog)

@@ -1,11 +1,11 @@
 """The messages between a vehicle or controller and its FMU's process.
 
 Requests and replies have a fixed head, so that a step costs one write and one read on each side.
-The number of values in it is agreed on at the beginning.
+The number of values is agreed on at the beginning.
 
 Replies of the FMU's process are not trusted, because an FMU can write into any open file. Nothing
-is unpickled, every head must carry the number of its request, and the text that follows it is JSON
-of bounded size.
+is unpickled, every head must have the number of its request, and the text that follows it is JSON
+of limited size.
 """
 
 import json
@@ -26,17 +26,17 @@ DONE: Final = b"done"  # numbers: the state, e.g. position [m], speed [m/s], acc
 FAILED: Final = b"fail"  # the same numbers; the text is the error
 TEXT_LIMIT: Final = 1 << 16  # [bytes] largest text
 START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
-END_WORKER: Final = b"end"  # with a patience [ms] before the kill; answered by the report
+END_WORKER: Final = b"end"  # with the time [ms] to wait before the kill; the answer is the report
 RETIRE: Final = b"retire"  # to the watchdog of a closed vehicle: end all, and wait for the next
-SERVE: Final = b"serve"  # to one that waits, with the folder of the next vehicle
+SERVE: Final = b"serve"  # to a watchdog that waits, with the folder of the next vehicle
 MESSAGE: Final = 4096  # [bytes] largest message from and to the watchdog
 CONNECTION_LOST: Final = 113  # exit status of a process whose connection has been closed
 
-_TURNS = 50  # looks for a reply before waiting: some 50 us if nobody else wants the processor
+_TURNS = 50  # number of tries to read a reply before waiting, about 50 us on an idle processor
 
 Text = dict[str, Any]
 Reply = tuple[bool, Sequence[float], Text]
-"""Whether the request was done, the numbers, the text."""
+"""A reply: True if the request was done, the numbers, the text."""
 
 
 class GarbledError(Exception):
@@ -47,7 +47,7 @@ class Client:
     """The vehicle's or controller's end of the connection.
 
     Args:
-        connection: A stream socket, owned by the client from now on.
+        connection: Stream socket, which the client owns from now on.
         asked: Number of values in each request.
         answered: Number of values in each reply.
     """
@@ -57,8 +57,8 @@ class Client:
         self._layout = reply_layout(answered)
         self._asked = asked
         self._connection = connection
-        self._prompt = connection.dup()  # the same one, for calls that do not wait
-        self._prompt.settimeout(None)  # saves a system call in each of them
+        self._prompt = connection.dup()  # the same socket, for calls that do not wait
+        self._prompt.settimeout(None)  # set once, so that the calls need not set it
         self._closing = weakref.finalize(self, _close, connection, self._prompt)
         self._number = 0
         self._timeout: float | None = None
@@ -70,14 +70,14 @@ class Client:
         Args:
             what: Kind of the request.
             numbers: Values of the request; missing ones are 0.
-            timeout: Timeout in which the reply must come [s].
+            timeout: Time [s] within which the reply must come.
 
         Raises:
             TimeoutError: no reply came.
             EOFError: no reply will come, because the process has ended.
             GarbledError: the bytes received are no reply.
         """
-        if timeout != self._timeout:  # saves a system call in every step
+        if timeout != self._timeout:  # set only if it differs
             self._connection.settimeout(timeout)
             self._timeout = timeout
         self._number = number = (self._number + 1) & 0xFFFFFFFF
@@ -103,7 +103,7 @@ class Client:
         self._closing()
 
     def _receive_head(self) -> int:
-        """The number of bytes that the reply's head begins with."""
+        """Return the number of bytes that have been read of the reply's head."""
         if sys.platform == "linux":
             for _ in range(_TURNS):  # let the FMU's process go first; see fmus.isolation.processor
                 os.sched_yield()
@@ -142,19 +142,19 @@ def _close(*connections: socket.socket) -> None:
 
 
 def request_layout(numbers: int) -> struct.Struct:
-    """The head of requests: what, their number, and so many numbers."""
+    """Return the layout of the head of requests: kind, number, and the numbers."""
     return struct.Struct(f"<4sI{numbers}d")
 
 
 def reply_layout(numbers: int) -> struct.Struct:
-    """The head of replies: how it went, the request's number, the text's size, so many numbers."""
+    """Return the layout of the head of replies: status, request's number, text size, numbers."""
     return struct.Struct(f"<4sII{numbers}d")
 
 
 def receive(
     connection: socket.socket, layout: struct.Struct
 ) -> tuple[bytes, int, Sequence[float]] | None:
-    """Receive the next request in the FMU's process; None if the connection is closed."""
+    """Receive the next request in the FMU's process, or None if the connection is closed."""
     head = connection.recv(layout.size, socket.MSG_WAITALL)
     if len(head) != layout.size:
         return None

@@ -34,19 +34,20 @@ from fmus.isolation.wire import (
 )
 from fmus.text import printable
 
-_WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays below its limit
+# Largest numbers: of warnings, of characters of a warning, of characters of an error
+_WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000
 
 
 @dataclass(frozen=True)
 class Order:
-    """The order for a process: the FMU, its adapter, and the folder that holds it unpacked."""
+    """The order for a process: the FMU, its adapter, and the folder of the unpacked FMU."""
 
     hosted: type[Hosted]
     prepared: Any
     folder: Path
 
     def load(self) -> Hosted:
-        """The FMU, loaded into this process."""
+        """Return the adapter of the FMU, loaded into this process."""
         return self.hosted(self.prepared, self.folder)
 
     def import_ahead(self) -> None:
@@ -58,7 +59,7 @@ class Order:
 
 
 def read_order(folder: str) -> Order:
-    """The order that its client has left in its temporary folder."""
+    """Return the order that the client has left in its temporary folder."""
     order = pickle.loads(Path(folder, "order").read_bytes())
     assert isinstance(order, Order)
     return order
@@ -89,16 +90,16 @@ def main(port: int, token: str, folder: str) -> NoReturn:
 def serve(order: Order, connection: socket.socket) -> NoReturn:
     """Answer requests until the connection is closed, then end the process."""
     status = CONNECTION_LOST
-    with suppress(BaseException):  # whatever happens, the other side notices the closed connection
+    with suppress(BaseException):  # on any exception, the other side notices the closed connection
         _protect()
         _Worker(order, connection).run()
         status = 0
-    os._exit(status)  # runs neither the FMU's exit handlers nor ours
+    os._exit(status)  # runs no exit handlers, neither the FMU's nor giveway's
 
 
 def _protect() -> None:
-    """Have the FMU's output flushed line by line, and no core file written at a crash."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by our client
+    """Let the FMU's output be flushed line by line, and no core file be written at a crash."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the client handles Ctrl-C
     if sys.platform != "win32":
         import resource
 
@@ -128,7 +129,8 @@ class _Worker:
                 text = self._do(what, numbers)
             except FmuError as error:
                 self._refuse(number, type(error).__name__, str(error))
-            except Exception as error:  # a fault of giveway, or an FMU that tampers with Python
+            # a fault of giveway, or of an FMU that changes Python's state
+            except Exception as error:
                 self._refuse(number, "", f"{type(error).__name__}: {printable(error)}")
             else:
                 reply(self._connection, DONE, number, self._state(), self._layout, text)
@@ -149,7 +151,7 @@ class _Worker:
         return self._new_warnings()
 
     def _new_warnings(self) -> Text | None:
-        """Warnings that have not been sent yet."""
+        """Return the warnings that have not been sent yet."""
         warnings = self._hosted.warnings if self._hosted is not None else []
         if len(warnings) == self._warned:
             return None

@@ -1,4 +1,4 @@
-"""Lines to write into a profile, given its present contents."""
+"""The lines to write into a profile, given its present contents."""
 
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -10,7 +10,7 @@ def gain_line(
     """Return the line that multiplies an axis's gain: ``gain = 1.0`` for ``gain = -1.0``.
 
     Args:
-        profile: Profile of the vehicle; None: without a gain.
+        profile: Profile of the vehicle, or None without a gain.
         table: ``inputs`` or ``outputs``.
         role: Role of the table.
         factor: Factor by which the gain is wrong.

@@ -1,4 +1,4 @@
-"""The shipped FMUs: their places and their profile."""
+"""The shipped FMUs: their paths and their profile."""
 
 import hashlib
 from functools import cache, lru_cache
@@ -15,24 +15,24 @@ FILES: Final[dict[FmiVersion, str]] = {"2.0": f"{MODEL}.fmi2.fmu", "3.0": f"{MOD
 
 BUNDLED_PROFILE: Final = VehicleProfile(
     fmu=Fmu(self_check=False),
-    inputs=Inputs(force=Axis(variable="force"), block_reverse=False),  # its brakes hold
+    inputs=Inputs(force=Axis(variable="force"), block_reverse=False),  # its brakes hold the vehicle
     outputs=Outputs(
         speed=Axis(variable="speed"),
         position=Axis(variable="position"),
         acceleration=Axis(variable="acceleration"),
     ),
     initial=Initial(position=Axis(variable="s0"), speed=Axis(variable="v0")),
-    limits=Limits(speed=1e9, position_jump=1e9),  # it computes whatever is asked for
+    limits=Limits(speed=1e9, position_jump=1e9),  # it computes any motion
 )
 
 
 def bundled_fmu(fmi_version: FmiVersion = "2.0") -> Path:
-    """The shipped vehicle FMU for an FMI version; FMI 2.0 is set up faster."""
+    """Return the path of the shipped vehicle FMU for an FMI version; FMI 2.0 starts faster."""
     return Path(__file__).parent.parent / FILES[fmi_version]
 
 
 def is_bundled(path: Path) -> bool:
-    """Return whether this is a shipped FMU, or a copy of one, byte by byte."""
+    """Return whether a file is a shipped FMU, or a copy of one, byte by byte."""
     try:
         return any(
             _state(path)[1] == bundled_fmu(version).stat().st_size

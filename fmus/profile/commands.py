@@ -1,8 +1,8 @@
 """The inverse maps: from the controller's force to the inputs of an FMU.
 
 The controller's model is M v' + alpha v = u (Yang & Özgüner 2019, eq. (2)). An FMU without a force
-input gets the values that move this model's car in the same way. M and alpha are those of the
-profile's ``inverse_map``.
+input gets the values that give the same motion in this model, with M and alpha of the profile's
+``inverse_map``.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ class Command(ABC):
         """Fill the inputs, in the FMU's units.
 
         Args:
-            force: u [N], forwards positive.
-            speed: v [m/s] now.
+            force: Force u [N], forwards positive.
+            speed: Present speed v [m/s].
             inputs: Inputs to be filled.
         """
 
@@ -111,7 +111,7 @@ class SetpointCommand(Command):
 
 
 def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: float) -> Command:
-    """The inverse map for the inputs that a profile names.
+    """Return the inverse map for the inputs that a profile names.
 
     Args:
         profile: Profile of the FMU.
@@ -129,6 +129,6 @@ def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: floa
     if inputs.throttle is not None and inputs.brake is not None:
         full_drive, full_brake = inputs.throttle.full_force, inputs.brake.full_force
         return PedalCommand(wires[0], wires[1], full_drive, full_brake)
-    assert inputs.speed_setpoint is not None  # the profile has one of the five
+    assert inputs.speed_setpoint is not None  # the profile has one of the five kinds of input
     lead = inputs.speed_setpoint.lead or step_size
     return SetpointCommand(wires[0], M, alpha, lead)

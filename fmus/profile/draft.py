@@ -1,4 +1,4 @@
-"""A draft of a vehicle profile: certain settings, open questions, and the file with both."""
+"""The draft of a vehicle profile: certain settings, open questions, and the file with both."""
 
 import re
 from collections.abc import Container
@@ -33,10 +33,10 @@ class Entry:
     """A table of the profile, certain or open.
 
     Attributes:
-        table: Such as ``inputs.force``.
+        table: Name of the table, such as ``inputs.force``.
         why: Evidence for it.
         doubt: Open decision; empty if there is none.
-        sure: The table belongs to the draft, even if one of its lines is a question.
+        sure: True if the table belongs to the draft, even if one of its lines is a question.
     """
 
     table: str
@@ -47,7 +47,7 @@ class Entry:
 
     @property
     def confident(self) -> bool:
-        """Return whether it can be used as it is."""
+        """Return whether the table can be used as it is."""
         return self.sure and not self.doubt
 
     def __str__(self) -> str:
@@ -78,17 +78,17 @@ class Draft:
 
     @property
     def doubts(self) -> list[str]:
-        """Open decisions, one phrase for each table."""
+        """The open decisions, one phrase for each table."""
         return [f"[{entry.table}] {entry.doubt}" for entry in self.entries if entry.doubt]
 
     @property
     def open_lines(self) -> bool:
-        """Return whether any line is marked as open, even one that may stay so."""
+        """Return whether any line is marked as open, even an optional one."""
         return any(not (e.sure and all(line.sure for line in e.lines)) for e in self.entries)
 
     @property
     def values(self) -> dict[str, Any]:
-        """Certain settings, as the profile's nested tables."""
+        """Return the certain settings as the profile's nested tables."""
         values: dict[str, Any] = {}
         for entry in self.entries:
             if entry.sure:
@@ -100,7 +100,7 @@ class Draft:
 
     @property
     def toml(self) -> str:
-        """The draft as a file."""
+        """Return the draft as a file."""
         head = [
             f"# Vehicle profile of {printable(self.model.path.name, 100)}, drafted from what the "
             "FMU says about itself."
@@ -114,12 +114,12 @@ class Draft:
 
 
 def toml_key(name: str) -> str:
-    """A key as TOML writes it."""
+    """Return a key as TOML writes it."""
     return name if BARE.fullmatch(name) else toml_value(name)
 
 
 def toml_value(value: Text) -> str:
-    """A value as TOML writes it."""
+    """Return a value as TOML writes it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -129,7 +129,7 @@ def toml_value(value: Text) -> str:
 
 
 def _parameters(model: Model, taken: Container[Text]) -> list[str]:
-    """The FMU's parameters with their values, as comments that a user can activate."""
+    """Return the FMU's parameters with their values, as comments that a user can activate."""
     free = [
         v
         for v in model.variables.values()

@@ -1,6 +1,6 @@
-"""A vehicle profile drafted from what an FMU says about itself.
+"""The drafting of a vehicle profile from an FMU's own description.
 
-What is certain is written as a setting; what is open is written as a question, in lines that begin
+What is certain is written as a setting. What is open is written as a question, in lines that begin
 with ``# ?``. A draft without questions is a profile that runs.
 """
 
@@ -26,12 +26,12 @@ from fmus.profile.step_plan import divides
 from fmus.profile.vehicle_profile import VehicleProfile, make_profile
 from fmus.text import listed, printable
 
-CONTROL_STEP: Final = 0.05  # [s] the usual one
-NAMED: Final = 3  # doubts in an error
+CONTROL_STEP: Final = 0.05  # Usual control step [s]
+NAMED: Final = 3  # Largest number of doubts in an error
 
 
 def draft_profile(model: Model) -> Draft:
-    """Guess a profile from names, units and causality."""
+    """Return a draft from names, units and causality."""
     inputs = [v for v in model.variables.values() if v.causality == "input"]
     entries, used = _inputs(model, inputs) if numbers(inputs) else _without_inputs(model)
     idle = [v.name for v in inputs if v.name not in used]
@@ -40,7 +40,7 @@ def draft_profile(model: Model) -> Draft:
 
 
 def require_confident(draft: Draft, path: Path) -> VehicleProfile:
-    """The profile of a draft in which nothing is open.
+    """Return the profile of a draft in which nothing is open.
 
     Raises:
         FmuProfileError: something is open; the message says what, and the lines to write.
@@ -84,7 +84,7 @@ WAYS: Final = (
 
 
 def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[str]]:
-    """The tables of the way in which the vehicle is driven, and the variables that they use."""
+    """Return the tables for one way to drive the vehicle, and the variables that they use."""
     ranked = {role: guesses(model, role, inputs) for way in WAYS for role in way}
     ways = sorted(
         (way for way in WAYS if all(ranked[role] for role in way) and _distinct(ranked, way)),
@@ -106,7 +106,7 @@ def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[
 
 
 def _choice(ranked: dict[str, list[Guess]], ways: tuple[tuple[str, ...], ...]) -> str:
-    """The question which of several ways to drive is meant."""
+    """Return the question which of several ways to drive is meant."""
     names = [" and ".join(f"'{ranked[role][0].channel.name}'" for role in way) for way in ways]
     roles = [" and ".join(way) for way in ways]
     if len(set(names)) == 1:
@@ -121,7 +121,7 @@ def _distinct(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> bool:
 
 
 def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
-    """Rate a way to drive by its weakest guess; two inputs of its own beat a single one."""
+    """Rate a way to drive by its weakest guess; two inputs are better than a single one."""
     weakest = min(ranked[role][0].score for role in way)
     fits = min(-1 if ranked[role][0].fits is False else 0 for role in way)
     both = 1 if len(way) > 1 and way != ("throttle", "brake") else 0
@@ -129,7 +129,7 @@ def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
 
 
 def _without_inputs(model: Model) -> tuple[list[Entry], set[str]]:
-    """The way to drive by tunable parameters, which some tools export in place of inputs."""
+    """Return the way to drive by tunable parameters, which some tools export instead of inputs."""
     tunable = [
         v
         for v in model.variables.values()
@@ -199,7 +199,8 @@ def _outputs(model: Model) -> list[Entry]:
     if position:
         entries.append(_axis("outputs", "position", position))
     acceleration = guesses(model, "measured_acceleration", outputs)
-    if unambiguous(acceleration) and acceleration[0].fits:  # optional: not worth a question
+    # it is optional, and not worth a question
+    if unambiguous(acceleration) and acceleration[0].fits:
         entries.append(_axis("outputs", "acceleration", acceleration))
     return entries
 
@@ -208,7 +209,7 @@ def _outputs(model: Model) -> list[Entry]:
 
 
 def _initial(model: Model) -> list[Entry]:
-    """Return the variables for the start; without a clear one the vehicle is run up to speed."""
+    """Return the variables for the start; without a clear one, the vehicle is run up to speed."""
     free = [
         v
         for v in model.variables.values()
@@ -231,7 +232,7 @@ def _initial(model: Model) -> list[Entry]:
 
 
 def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = False) -> Entry:
-    """The table of a role, written for its best guess, which comes first."""
+    """Return the table of a role, written for its best guess, which comes first."""
     best = ranked[0]
     variable, name = best.channel.variable, channel_name(best.channel)
     place = f"{table}.{role}"

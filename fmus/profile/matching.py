@@ -1,4 +1,4 @@
-"""The roles that an FMU's variables may play, judged by name, unit and causality.
+"""The roles that an FMU's variables may have, judged by name, unit and causality.
 
 A wrong guess could drive a car by its steering angle. Therefore the draft asks a question where two
 variables fit equally well or a unit contradicts a name.
@@ -157,11 +157,12 @@ FORCES: Final = frozenset({"force", "drive_force", "brake_force"})
 
 @dataclass(frozen=True)
 class Guess:
-    """A variable that may play a role.
+    """A variable that may have a role.
 
     Attributes:
-        name_score: 10 for a name of the role, 9 with fillers, 6 for a part of it, 0 for the unit.
-        fits: True if its unit is of the role's dimension; None without a known unit.
+        name_score: 10 for a name of the role, 9 with fillers, 6 for a part of it, 0 for the unit
+            only.
+        fits: True if its unit has the role's dimension, or None without a known unit.
     """
 
     channel: Channel
@@ -176,7 +177,7 @@ class Guess:
 
 
 def guesses(model: Model, role: str, variables: Iterable[Variable]) -> list[Guess]:
-    """The variables that may play a role, the best first.
+    """Return the variables that may have a role, the best first.
 
     Variables whose unit contradicts their name are listed only if no other variable fits.
     """
@@ -197,7 +198,7 @@ def unambiguous(ranked: list[Guess]) -> bool:
 
 
 def words_of(name: str) -> list[str]:
-    """The words of a name's last part: ``vehicle.tractiveForce_x`` -> tractive, force, x."""
+    """Return the words of a name's last part: ``vehicle.tractiveForce_x`` -> tractive, force, x."""
     return _words(_parts(name)[-1])
 
 
@@ -226,15 +227,15 @@ def _guess(model: Model, role: str, variable: Variable) -> Guess | None:
 
 
 def _name_score(of_role: str, name: str) -> float | None:
-    """Rate how well a name fits a role; None if it excludes the role."""
+    """Return how well a name fits a role, or None if it excludes the role."""
     derivative = re.fullmatch(r"der\((.+)\)", name)
-    if derivative is not None:  # Modelica's name of it: der(vehicle.s)
+    if derivative is not None:  # Modelica's name of a derivative: der(vehicle.s)
         inner = _name_score(INTEGRALS[of_role], derivative[1]) if of_role in INTEGRALS else None
-        return inner - 1.0 if inner else None  # a variable of its own is the better one
+        return inner - 1.0 if inner else None  # a variable of its own is better
     role = ROLES[of_role]
     *parents, last = _parts(name)
     if any(OTHER_PARTS & set(_words(parent)) for parent in parents):
-        return None  # something of a part of the vehicle
+        return None  # a quantity of a part of the vehicle
     words = _words(last)
     plain = [word for word in words if word not in FILLERS]
     shallow = 0.0 if parents else 0.5

@@ -1,4 +1,4 @@
-"""Preparing a vehicle: its FMU is read, a profile is chosen, and both are checked.
+"""The preparation of a vehicle: reading its FMU, choosing a profile, and checking both.
 
 Faults of a file or a profile are reported here, before native code is loaded. The result can be
 handed to another process.
@@ -46,8 +46,8 @@ class Prepared:
         step_plan: Relation of the controller's steps to the FMU's steps.
         bounds: Bounds of the inputs.
         step_size: Step size of the controller [s].
-        binary: this platform's binary in the archive.
-        ours: True for a shipped FMU: its outputs are trusted, and its state need not be saved.
+        binary: Library for this platform, by its name in the archive.
+        ours: True for a shipped FMU, whose outputs are trusted and whose state need not be saved.
     """
 
     model: Model
@@ -76,10 +76,10 @@ def prepare(
     """Check and read an FMU, and fit a profile to it.
 
     Args:
-        path: The .fmu file.
+        path: Path of the .fmu file.
         step_size: Step size of the controller [s].
-        profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
-            names and units if it leaves no doubt.
+        profile: Roles of the FMU's variables. With None it is the shipped FMUs' own, or a draft
+            from names and units if it leaves no doubt.
         start_values: Further start values by variable name.
 
     Raises:
@@ -111,7 +111,7 @@ def prepare(
 
 
 def choose_profile(path: Path, profile: VehicleProfile | None) -> VehicleProfile:
-    """Return the profile to drive by: the given one, the shipped FMUs' own, or a draft.
+    """Return the profile for driving: the given one, the shipped FMUs' own, or a draft.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

@@ -10,18 +10,20 @@ from fmus.profile.draft import Line
 from fmus.profile.matching import FORCES, OTHER_PARTS, ROLES, Guess, words_of
 from fmus.text import printable
 
-PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] for a car of 1000 kg
+# Force [N] of a fully pressed pedal of a car of 1000 kg
+PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}
 DRIVES_ONLY: Final = frozenset(["drive", "driving", "propulsion", "propulsive", "accelerating"])
 MISSING: Final = {  # further inputs that an FMU needs
     "drive_force": "brake_force", "brake_force": "drive_force",
     "throttle": "brake", "brake": "throttle",
 }  # fmt: skip
-LEAD: Final = 0.5  # [s] assumed lead of a speed controller
-POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])  # they drive
+LEAD: Final = 0.5  # Assumed time constant [s] of a speed controller
+# Words for parts that may drive the vehicle
+POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])
 
 
 def unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tuple[Line, str]:
-    """The question about a variable without a unit, or with an unknown one."""
+    """Return the question about a variable without a unit, or with an unknown one."""
     common = units.COMMON[wanted]
     name = printable(variable.name, 60)
     told = _unit_in(variable.name, wanted) or _unit_described(variable.description, wanted)
@@ -37,7 +39,7 @@ def unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tupl
 
 
 def _unit_in(name: str, wanted: Dimension) -> str:
-    """The unit that a name ends with, as it is usually written: km/h for ``speed_kmh``."""
+    """Return the unit at the end of a name, as it is usually written: km/h for ``speed_kmh``."""
     last = re.split(r"[_.\s]", name)[-1]
     unit = units.named(last)
     if not last or last == name or unit.dimension != wanted:
@@ -47,7 +49,7 @@ def _unit_in(name: str, wanted: Dimension) -> str:
 
 
 def _unit_described(description: str, wanted: Dimension) -> str:
-    """The unit that a description gives: km/h for ``speed [km/h]`` or ``speed in km/h``."""
+    """Return the unit in a description: km/h for ``speed [km/h]`` or ``speed in km/h``."""
     found = re.findall(r"\[([^\]]+)\]|\(([^)]+)\)|\bin ([^\s,;]+)", description)
     words = (word.strip().rstrip(".") for match in found for word in match if word.strip())
     return next((word for word in words if units.named(word).dimension == wanted), "")
@@ -57,7 +59,7 @@ def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, 
     """Return the question about the only torque or percentage input: a gain makes it a force.
 
     Returns:
-        Name, line with the gain and question; None unless there is exactly one such input.
+        Name, line with the gain, and question, or None unless there is exactly one such input.
     """
     for dimension, what, line in (
         (units.TORQUE, "ratio of the gears / radius of the wheels [m]", "1/m"),
@@ -79,7 +81,7 @@ def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, 
 
 
 def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:
-    """The question about a variable whose unit contradicts its name."""
+    """Return the question about a variable whose unit contradicts its name."""
     unit, name = printable(variable.unit, 40), printable(variable.name, 60)
     what = f"'{name}' is in {unit}, {units.quantity(guess.found)}"
     wanted = ROLES[role].dimension if role in ROLES else units.NONE
@@ -94,7 +96,7 @@ def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, st
     return line, f'{what}, not {units.quantity(wanted)}; add the true unit: unit = "{usual}"'
 
 
-# ---- what decides about braking ----
+# ---- the effect of braking inputs ----
 
 
 def braking_question(role: str, variable: Variable) -> tuple[list[Line], str]:
@@ -156,10 +158,10 @@ def idle_brake(ranked: Mapping[str, Sequence[Guess]], way: Sequence[str]) -> str
 def signed_question(
     ranked: Mapping[str, Sequence[Guess]], inputs: Sequence[Variable]
 ) -> tuple[tuple[Line, ...], str] | None:
-    """Ask whether the only input, named after a drive or a brake, is both by its sign.
+    """Ask whether the only input, named after a drive or a brake, is both, depending on its sign.
 
     Returns:
-        Lines of [inputs.force] and question; None if the only input is neither.
+        Lines of [inputs.force] and question, or None if the only input is neither.
     """
     if len(numbers(inputs)) != 1:
         return None

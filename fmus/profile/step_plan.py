@@ -6,8 +6,8 @@ from pathlib import Path
 from fmus.description.model import Interface, Kind
 from fmus.errors import FmuProfileError
 
-_FIT = 1e-9  # relative error of a whole number of steps
-_MOST = 1_000_000  # substeps: more would take minutes
+_FIT = 1e-9  # Relative tolerance of a whole number of steps
+_MOST = 1_000_000  # Largest number of substeps; more would take minutes
 
 
 @dataclass(frozen=True)
@@ -16,8 +16,9 @@ class StepPlan:
 
     Attributes:
         step: Step of the FMU [s].
-        substeps: 1 unless the FMU's step is the shorter one.
-        stretch: 1 unless the FMU's step is the longer one; the force is held over it.
+        substeps: Number of FMU steps per control step; 1 unless the FMU's step is shorter.
+        stretch: Number of control steps per FMU step, over which the force is held; 1 unless the
+            FMU's step is longer.
     """
 
     step: float
@@ -59,17 +60,17 @@ def step_plan_of(
     default: float | None,
     step_size: float,
 ) -> StepPlan:
-    """Return the plan for the profile's step, or else for a step that the FMU can do.
+    """Return the plan for the profile's step, or for a step that the FMU can do.
 
     Args:
         path: Path of the FMU, for messages.
-        wanted: Step that the profile names [s].
+        wanted: Step that the profile names [s], or None.
         interface: Interface of the FMU.
         default: Step of the FMU's default experiment [s].
         step_size: Step size of the controller [s].
 
     Raises:
-        FmuProfileError: they do not fit each other.
+        FmuProfileError: the steps do not fit each other.
     """
     fixed = interface.fixed_internal_step
     if wanted is None and fixed is not None and not divides(fixed, step_size):
@@ -99,12 +100,12 @@ def step_plan_of(
 def divides(part: float, whole: float) -> bool:
     """Return whether ``whole`` is a multiple of ``part``, up to rounding."""
     if part < 1e-9 * whole:
-        return True  # finer than floating-point numbers can tell
+        return True  # the part is finer than the resolution of floating-point numbers
     return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
 
 
 def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
-    """Return the flag that a run needs for an FMU's step [s]; empty if the usual one fits."""
+    """Return the flag that a run needs for an FMU's step [s], or "" if the usual one fits."""
     try:
         make_step_plan(usual, fmu_step)
     except FmuProfileError:
@@ -115,13 +116,13 @@ def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
 def between(
     start: tuple[float, float], end: tuple[float, float], duration: float, share: float
 ) -> tuple[float, float]:
-    """Position [m] and speed [m/s] within a step, from those at its ends (cubic Hermite).
+    """Return position [m] and speed [m/s] within a step, from its ends (cubic Hermite).
 
     Args:
-        start: Position and speed.
-        end: Position and speed.
+        start: Position and speed at the beginning.
+        end: Position and speed at the end.
         duration: Duration of the step [s].
-        share: Share of the step that has passed, 0 to 1.
+        share: Share of the step that has passed, from 0 to 1.
     """
     (s_0, v_0), (s_1, v_1) = start, end
     r, h = share, duration

@@ -35,8 +35,8 @@ class Axis(Table):
     """
 
     variable: str = Field(min_length=1)
-    unit: str | None = None  # unit, where the FMU declares none or a wrong one
-    gain: float | None = None  # None: 1, and the unit must be of the right dimension
+    unit: str | None = None  # unit, if the FMU declares none or a wrong one
+    gain: float | None = None  # gain, or None for 1 with a unit of the right dimension
     offset: float = 0.0
 
     @model_validator(mode="after")
@@ -49,13 +49,16 @@ class Axis(Table):
 class Stepping(Table):
     """The settings for stepping an FMU."""
 
-    kind: Literal["co-simulation", "model-exchange"] | None = None  # None: the former if it can
-    step: float | None = Field(None, gt=0, le=10)  # [s] the FMU's own; None: the control step
-    stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] told to the FMU; None: no stop time
-    solver: Literal["cvode", "rk4"] | None = None  # Model Exchange; None: cvode where it runs
-    tolerance: float | None = Field(None, gt=0, le=0.1)  # relative, of Model Exchange
-    start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall clock
-    step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall clock
+    # None for co-simulation if it has it
+    kind: Literal["co-simulation", "model-exchange"] | None = None
+    # [s] step of the FMU, or None for the control step
+    step: float | None = Field(None, gt=0, le=10)
+    stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] end that the FMU is given, or None
+    # solver of Model Exchange, or None for cvode if it runs
+    solver: Literal["cvode", "rk4"] | None = None
+    tolerance: float | None = Field(None, gt=0, le=0.1)  # relative tolerance of Model Exchange
+    start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall-clock limit
+    step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall-clock limit
 
 
 def flat(values: Any) -> Any:
@@ -98,7 +101,7 @@ _Profile = TypeVar("_Profile", bound=Table)
 
 
 def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:
-    """The tables of a profile's TOML file.
+    """Return the tables of a profile's TOML file.
 
     Args:
         path: Path of the file.
@@ -117,17 +120,18 @@ def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:
         raise FmuProfileError(
             f"{path}: cannot be read ({reason}); expected {what} (TOML)"
         ) from None
-    except (ValueError, RecursionError) as error:  # not TOML's own: a number of thousands of digits
+    # other errors than TOML's: a number with thousands of digits
+    except (ValueError, RecursionError) as error:
         raise FmuProfileError(f"{path}: not valid TOML: {error}; mend the line named") from None
 
 
 def validated(kind: type[_Profile], values: dict[str, Any], origin: str, guide: str) -> _Profile:
-    """A profile of a kind.
+    """Return a profile of a kind.
 
     Args:
         kind: Kind of profile.
         values: Values with the keys of the TOML file.
-        origin: named in errors.
+        origin: Name of the source in errors.
         guide: Description of the keys, for messages.
 
     Raises:

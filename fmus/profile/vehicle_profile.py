@@ -18,13 +18,14 @@ from fmus.profile.tables import Axis, Parameters, Stepping, Table, read_tables, 
 class Pedal(Axis):
     """A throttle or brake: 0 is released, 1 is fully pressed (per cent where its unit says so)."""
 
-    full_force: float = Field(gt=0, le=1e7)  # [N] at the wheels, fully pressed
+    full_force: float = Field(gt=0, le=1e7)  # [N] force at the wheels when fully pressed
 
 
 class SpeedSetpoint(Axis):
     """The speed that the FMU's own controller is to drive at."""
 
-    lead: float | None = Field(None, gt=0, le=60)  # [s] the FMU's time constant; None: one step
+    # [s] time constant of the FMU's speed controller, or None for one step
+    lead: float | None = Field(None, gt=0, le=60)
 
 
 class Inputs(Table):
@@ -37,12 +38,13 @@ class Inputs(Table):
     force: Axis | None = None  # [N] forwards positive
     drive_force: Axis | None = None  # [N] never negative
     brake_force: Axis | None = None  # [N] never negative
-    acceleration: Axis | None = None  # [m/s2] wanted
+    acceleration: Axis | None = None  # [m/s2] commanded acceleration
     throttle: Pedal | None = None
     brake: Pedal | None = None
-    speed_setpoint: SpeedSetpoint | None = None  # [m/s]
-    grade: Axis | None = None  # [rad] of the road, uphill positive; or its tangent, as % or 1
-    block_reverse: bool = True  # at a standstill no braking force or acceleration is passed on
+    speed_setpoint: SpeedSetpoint | None = None  # [m/s] speed to drive at
+    grade: Axis | None = None  # [rad] grade of the road, uphill positive, or its tangent, as % or 1
+    # True: at a standstill, no braking force or acceleration is passed on
+    block_reverse: bool = True
 
     @model_validator(mode="after")
     def _one_way(self) -> Inputs:
@@ -74,30 +76,32 @@ class Outputs(Table):
     """The outputs that are read; without a position the speed is integrated (trapezoid rule)."""
 
     speed: Axis  # [m/s]
-    position: Axis | None = None  # [m] along the path
-    acceleration: Axis | None = None  # [m/s2]; None: the speed's difference over a step
+    position: Axis | None = None  # [m] position along the path
+    acceleration: Axis | None = None  # [m/s2], or None for the speed's difference over a step
 
 
 class Initial(Table):
     """The variables that set the FMU's first position and speed."""
 
-    speed: Axis | None = None  # [m/s] parameter or input with a start value
-    position: Axis | None = None  # [m]; None: the position counts from where the FMU starts
-    run_up: bool = True  # without a parameter for the speed: drive up to it before the start
+    speed: Axis | None = None  # [m/s] parameter, or input with a start value
+    position: Axis | None = None  # [m], or None: positions count from where the FMU starts
+    run_up: bool = True  # True: without a parameter for the speed, drive up to it before the start
 
 
 class Fmu(Stepping):
     """The settings for stepping a vehicle's FMU."""
 
-    self_check: bool = True  # compare one step with two half steps before the run
+    self_check: bool = True  # True: compare one step with two half steps before the run
 
 
 class Limits(Table):
     """The limits that no car exceeds. Beyond them the FMU is at fault and the run ends."""
 
-    speed: float = Field(100.0, gt=0, le=1e9)  # [m/s] absolute
-    position_jump: float = Field(1.0, gt=0, le=1e9)  # [m] more or less than the speed accounts for
-    frozen_time: float = Field(2.0, gt=0, le=1e6)  # [s] without any change while driven: a warning
+    speed: float = Field(100.0, gt=0, le=1e9)  # [m/s] largest absolute value
+    # [m] largest difference between position and integrated speed
+    position_jump: float = Field(1.0, gt=0, le=1e9)
+    # [s] time without any change while driven, after which a warning is given
+    frozen_time: float = Field(2.0, gt=0, le=1e6)
 
 
 class InverseMap(Table):
@@ -113,10 +117,12 @@ class FittedModel(Table):
     mass: float = Field(gt=0, le=1e6)  # M [kg]
     friction: float = Field(ge=0, le=1e6)  # alpha [N.s/m]
     lag: float = Field(0.0, ge=0, le=3)  # [s] first-order time constant of the actuator
-    delay: float = Field(0.0, ge=0, le=2)  # [s] dead time; who answers later cannot be driven
+    # [s] dead time; a vehicle with a longer one cannot be driven
+    delay: float = Field(0.0, ge=0, le=2)
     r_squared: float = Field(le=1)  # share of the variation of speed changes that is explained
     speed_error: float = Field(ge=0)  # [m/s] root mean square, one step ahead
-    position_error: float = Field(ge=0, le=1e4)  # [m] 95 % of the errors at the horizon are smaller
+    # [m] value that 95 % of the errors at the horizon do not exceed
+    position_error: float = Field(ge=0, le=1e4)
     horizon: float = Field(ge=1e-3, le=1e3)  # [s] horizon of position_error
     time_step: float = Field(gt=0)  # [s] time step of the fit
 
@@ -144,7 +150,7 @@ class VehicleProfile(Table):
 
 
 def read_profile(path: Path) -> VehicleProfile:
-    """The vehicle profile in a TOML file.
+    """Read the vehicle profile in a TOML file.
 
     Raises:
         FmuProfileError: the file is missing, not TOML, or a key or value cannot be used.
@@ -154,11 +160,11 @@ def read_profile(path: Path) -> VehicleProfile:
 
 
 def make_profile(values: dict[str, Any], origin: str) -> VehicleProfile:
-    """The vehicle profile in nested dictionaries.
+    """Return the vehicle profile in nested dictionaries.
 
     Args:
         values: Values with the keys of the TOML file.
-        origin: named in errors.
+        origin: Name of the source in errors.
 
     Raises:
         FmuProfileError: a key or value cannot be used.

@@ -46,12 +46,13 @@ _QUANTITIES = {  # dimension and the unit to suggest, by role
     "force_limit": (units.FORCE, "N"),
     "comfortable_deceleration": (units.ACCELERATION, "m/s2"),
 }
-_LARGEST = 1e12  # SI per raw unit, or its inverse, or an offset: beyond it a number is mistyped
+# Largest SI value per raw unit, its inverse, or offset; beyond it, a number is mistyped
+_LARGEST = 1e12
 
 
 @dataclass(frozen=True)
 class Wire:
-    """A role of the vehicle and the FMU's variable that plays it: SI = scale * raw + shift."""
+    """A role of the vehicle and the FMU's variable that has it: SI = scale * raw + shift."""
 
     role: str
     channel: Channel
@@ -60,7 +61,7 @@ class Wire:
     unit: str  # unit as shown to the user; empty without one
 
     def to_si(self, raw: float) -> float:
-        """The quantity in SI units."""
+        """Return the quantity in SI units."""
         return self.scale * raw + self.shift
 
     def to_raw(self, value: float) -> float:
@@ -69,10 +70,10 @@ class Wire:
 
 
 def interface_of(model: Model, wanted: str | None) -> Interface:
-    """Return the interface that a profile's ``kind`` asks for, by default Co-Simulation.
+    """Return the interface that a profile's ``kind`` names, by default Co-Simulation.
 
     Raises:
-        FmuInterfaceError: the FMU has not got it.
+        FmuInterfaceError: the FMU does not have it.
     """
     if wanted is None:
         first = Kind.CO_SIMULATION if Kind.CO_SIMULATION in model.interfaces else None
@@ -87,16 +88,16 @@ def interface_of(model: Model, wanted: str | None) -> Interface:
 
 
 def make_wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
-    """The wire of one role.
+    """Return the wire of one role.
 
     Args:
         model: Model of the FMU.
-        table: Table of the profile, and the role in it.
-        role: Role; see ``table``.
+        table: Table of the profile that names the role.
+        role: Role in that table.
         axis: Variable of the role, with its unit and gain.
 
     Raises:
-        FmuVariableError: the variable is missing, or cannot be used so.
+        FmuVariableError: the variable is missing, or cannot be used in this role.
         FmuProfileError: a unit is missing or of the wrong dimension.
     """
     channel = find_channel(model, f"[{table}.{role}]", axis.variable)
@@ -130,7 +131,7 @@ def is_output(variable: Variable) -> bool:
 
 
 def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel) -> Wire:
-    """The wire with the unit's factor and offset, and the profile's gain and offset."""
+    """Return the wire with the unit's factor and offset, and the profile's gain and offset."""
     declared = channel.variable.unit
     name = declared if axis.unit is None else axis.unit
     dimension, usual = _QUANTITIES[role]

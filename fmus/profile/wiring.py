@@ -1,4 +1,4 @@
-"""Fitting a profile to an FMU: each role gets a channel and its conversion to SI units."""
+"""The fitting of a profile to an FMU: each role gets a channel and its conversion to SI units."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -40,15 +40,16 @@ class Wiring:
 
     interface: Interface
     inputs: tuple[Wire, ...]
-    outputs: tuple[Wire, ...]  # speed, position, acceleration, as far as the profile names them
+    outputs: tuple[Wire, ...]  # speed, position, acceleration, if the profile names them
     initial_speed: Wire | None
     initial_position: Wire | None
     start_values: Mapping[Channel, Value]
-    recorded: tuple[Channel, ...] = ()  # read beside the outputs, in the FMU's own units
+    # channels that are read besides the outputs, in the FMU's own units
+    recorded: tuple[Channel, ...] = ()
 
     @property
     def read(self) -> list[Channel]:
-        """All values that are read after a step: the outputs, then the recorded variables."""
+        """All channels that are read after a step: the outputs, then the recorded variables."""
         return [*(wire.channel for wire in self.outputs), *self.recorded]
 
     @property
@@ -61,7 +62,7 @@ class Wiring:
 
     @property
     def grade(self) -> int | None:
-        """Index of the road's grade among the inputs, or None if it is not an input."""
+        """The index of the road's grade among the inputs, or None if it is no input."""
         last = len(self.inputs) - 1
         return last if self.inputs[last].role in {"grade", "slope"} else None
 
@@ -83,11 +84,12 @@ def wire(
     Args:
         model: Model of the FMU.
         profile: Roles of the FMU's variables.
-        start_values: Start values by variable name; they come after the profile's ``parameters``.
+        start_values: Start values by variable name, which are set after the profile's
+            ``parameters``.
 
     Raises:
-        FmuInterfaceError: the FMU has not the kind that the profile asks for.
-        FmuVariableError: a variable is missing, or cannot be used as the profile wants.
+        FmuInterfaceError: the FMU does not have the interface that the profile names.
+        FmuVariableError: a variable is missing, or cannot be used as the profile says.
         FmuProfileError: a unit is missing or of the wrong dimension.
     """
     outputs, initial = profile.outputs, profile.initial
@@ -110,7 +112,7 @@ def _recorded(model: Model, name: str) -> Channel:
     """Return a variable whose value is recorded.
 
     Raises:
-        FmuVariableError: there is none, or it is no number that changes.
+        FmuVariableError: there is no such variable, or it is no number that changes.
     """
     channel = find_channel(model, "record:", name)
     variable = channel.variable
@@ -145,7 +147,7 @@ def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
 
 
 def _grade_wire(model: Model, axis: Axis) -> Wire:
-    """The road's grade: an angle, or its tangent where the unit is 1 or per cent."""
+    """Return the wire of the road's grade: an angle, or its tangent for the units 1 and %."""
     variable = find_channel(model, "[inputs.grade]", axis.variable).variable
     name = axis.unit or variable.unit
     unit = units.to_si(model.units.get(name) or Unit(name)) if name else None

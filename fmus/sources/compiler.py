@@ -1,6 +1,6 @@
 """One pinned cross-compiler for all platforms: the ``ziglang`` of the extra ``giveway[build]``.
 
-The FMUs that we ship need that very compiler; to compile somebody else's, any C compiler will do.
+The shipped FMUs need exactly this compiler; for FMUs of other origin, any C compiler will do.
 """
 
 import importlib.util
@@ -40,7 +40,7 @@ UCRT: Final = tuple(
 
 @dataclass(frozen=True)
 class Target:
-    """A platform: zig's name for it, FMI 3's folder, and how a library is linked."""
+    """A platform: its name in zig, its folder in FMI 3, and how a library is linked."""
 
     zig: str
     folder: str
@@ -86,10 +86,10 @@ def compile_library(
 
 
 def require_compiler() -> None:
-    """Refuse to go on without the compiler that the FMUs' bytes depend on.
+    """Make sure that the compiler is there on which the FMUs' bytes depend.
 
     Raises:
-        FmuBuildError: it is missing, or another version is installed.
+        FmuBuildError: the compiler is missing, or another version is installed.
     """
     if importlib.util.find_spec("ziglang") is None:
         raise FmuBuildError(
@@ -106,7 +106,7 @@ def require_compiler() -> None:
 
 
 def fmi_headers() -> Path:
-    """FMPy's copy of the standard's C headers; found without importing FMPy."""
+    """Return the folder of FMPy's copy of the standard's C headers, without importing FMPy."""
     spec = importlib.util.find_spec("fmpy")
     folder = Path(spec.origin).parent / "c-code" if spec and spec.origin else None
     if folder is None or not (folder / "fmi3Functions.h").is_file():
@@ -122,7 +122,7 @@ def _zig(folder: Path, *arguments: str) -> None:
         raise FmuBuildError(f"zig {' '.join(arguments)}: {reason.strip()}")
 
 
-# ---- any compiler, for FMUs that are not ours ----
+# ---- any compiler, for FMUs of other origin ----
 
 FOREIGN: Final = ("-O2", "-g0", "-fPIC", "-w", "-ffp-contract=off")
 LONGEST: Final = 600.0  # [s] longest compilation of one file
@@ -181,10 +181,10 @@ class Compiler:
 
 
 def find_compiler() -> Compiler:
-    """The compiler named by CC, else ziglang, else the system's.
+    """Return the compiler named by CC, else ziglang, else the system's.
 
     Raises:
-        FmuBuildError: there is none.
+        FmuBuildError: there is no compiler.
     """
     named = shlex.split(os.environ.get("CC", ""))
     if named:

@@ -24,7 +24,7 @@ _OBSTACLE: Final = 100  # ... and OBSTACLE of instance.h
 
 @dataclass(frozen=True, slots=True)
 class _Variable:
-    """A variable. It is calculated if ``start`` is None."""
+    """A variable of the controller FMU. It is calculated if ``start`` is None."""
 
     name: str
     reference: int
@@ -127,7 +127,7 @@ def _parameters(version: FmiVersion, parameters: ControllerParameters) -> Iterat
 
 
 def variables_of(version: FmiVersion, parameters: ControllerParameters) -> list[_Variable]:
-    """All variables in the order of the model description."""
+    """Return all variables in the order of the model description."""
     own = list(_parameters(version, parameters))
     # FMI 2 can do without time; FMI Library reports as an error that it has no start value.
     time = [_TIME] if version == "3.0" else []
@@ -187,7 +187,7 @@ def _element(version: FmiVersion, v: _Variable) -> str:
 
 
 def _structure(version: FmiVersion, variables: list[_Variable]) -> Iterator[str]:
-    """Yield the dependencies: every output on every input, at the start on parameters, too."""
+    """Yield the dependencies: every output on every input, and at the start also on parameters."""
     inputs = [i for i, v in enumerate(variables, start=1) if v.causality == "input"]
     outputs = [i for i, v in enumerate(variables, start=1) if v.causality == "output"]
     if version == "2.0":
@@ -232,14 +232,14 @@ def model_description(
     tool: str,
     sources: tuple[str, ...],
 ) -> bytes:
-    """The file modelDescription.xml of an export.
+    """Return the file modelDescription.xml of an export.
 
     Args:
         version: Version of FMI.
-        parameters: The start values; in FMI 2 the horizon is also the number of inputs.
+        parameters: Start values; in FMI 2 the horizon is also the number of inputs.
         token: Token of :func:`token_of`.
         tool: Name of the tool that generated the FMU.
-        sources: The C files, in the order of compilation.
+        sources: C files in the order of compilation.
     """
     head = {
         "fmiVersion": version,

@@ -1,4 +1,4 @@
-"""Exporting the controller as an FMU: the shipped FMU with other start values."""
+"""The export of the controller as an FMU: the shipped FMU with other start values."""
 
 import zipfile
 from pathlib import Path
@@ -15,7 +15,7 @@ _DESCRIPTION: Final = "modelDescription.xml"
 
 
 def bundled_controller(fmi_version: FmiVersion = "2.0") -> Path:
-    """The shipped controller FMU, with the start values of the paper."""
+    """Return the path of the shipped controller FMU, which has the paper's start values."""
     return Path(__file__).parent.parent / CONTROLLER_FILES[fmi_version]
 
 
@@ -27,17 +27,17 @@ def export_controller(
 ) -> Path:
     """Write the controller as an FMU with these start values.
 
-    Needs no compiler: the binaries, for five platforms, are those of the shipped FMU. The same
+    It needs no compiler: the binaries, for five platforms, are those of the shipped FMU. The same
     parameters give the same bytes.
 
     Args:
-        path: Path of the .fmu file; one that is there is replaced.
-        parameters: Start values; None: those of the paper.
+        path: Path of the .fmu file; an existing file is replaced.
+        parameters: Start values, or None for those of the paper.
         fmi_version: "2.0" (N scalar inputs for the predicted positions) or "3.0" (an array whose
             size follows the structural parameter N).
 
     Raises:
-        FmuBuildError: the shipped FMU is not there, or there is none for this version.
+        FmuBuildError: the shipped FMU is missing, or there is none for this version.
         FmuFileError: the file cannot be written.
     """
     if fmi_version not in CONTROLLER_FILES:
@@ -61,7 +61,7 @@ def export_controller(
 def _with_parameters(
     shipped: bytes, parameters: ControllerParameters | None, version: FmiVersion
 ) -> bytes:
-    """The shipped FMU's description with other start values, but its build, tool and sources."""
+    """Return the shipped FMU's description with other start values; all else stays."""
     root = ElementTree.fromstring(shipped)
     token = root.get("guid" if version == "2.0" else "instantiationToken") or ""
     wanted = parameters or ControllerParameters()

@@ -1,8 +1,8 @@
-"""The four shipped .fmu files, made of the C sources in ``vehicle/`` and ``controller/``.
+"""The four shipped .fmu files, built from the C sources in ``vehicle/`` and ``controller/``.
 
-Each model comes in two FMI versions, for five platforms. The same bytes come out on every machine:
-the compiler is pinned, nothing of the build folder or the clock enters a binary, and the archive is
-stored (not compressed, which would depend on the zlib at hand) with fixed dates in a fixed order.
+Each model has two FMI versions, for five platforms. The bytes are the same on every machine: the
+compiler is pinned, neither the build folder nor the clock affects a binary, and the archive is
+stored (compression would depend on the zlib version) with fixed dates in a fixed order.
 """
 
 import hashlib
@@ -47,14 +47,14 @@ SHARED: Final[dict[FmiVersion, tuple[str, ...]]] = {  # shared files, in SOURCE
 
 @dataclass(frozen=True)
 class Recipe:
-    """The files that one of our models is made of.
+    """The files from which one of the shipped models is built.
 
     Attributes:
-        model: Its name, also that of the libraries.
+        model: Name of the model, also of the libraries.
         folder: Folder of the sources.
-        files: Headers and C files but for the front end, in the order of the archive.
+        files: Headers and C files except the front end, in the order of the archive.
         archives: The .fmu file per FMI version.
-        flags: More of them for the compiler.
+        flags: Further flags for the compiler.
     """
 
     model: str
@@ -64,7 +64,7 @@ class Recipe:
     flags: tuple[str, ...] = ()
 
     def read(self, name: str) -> bytes:
-        """Return a source file, with the line ends that it has in the repository."""
+        """Return a source file, with the line ends of the repository."""
         return (self.folder / name).read_bytes().replace(b"\r\n", b"\n")
 
     def c_files(self, version: FmiVersion) -> tuple[str, ...]:
@@ -112,7 +112,7 @@ def build(out: Path, recipes: Sequence[Recipe] = (VEHICLE_RECIPE,)) -> list[Path
 
 
 def _members(recipe: Recipe, version: FmiVersion) -> dict[str, bytes]:
-    """All files of one FMU, in the order of the archive."""
+    """Return all files of one FMU, in the order of the archive."""
     sources = {name: recipe.read(name) for name in (*recipe.files, FRONT_ENDS[version])}
     sources |= {name: VEHICLE_RECIPE.read(name) for name in SHARED[version]}
     build_token, description = _describe(recipe, version, sources)
@@ -142,7 +142,7 @@ def _members(recipe: Recipe, version: FmiVersion) -> dict[str, bytes]:
 def _describe(
     recipe: Recipe, version: FmiVersion, sources: Mapping[str, bytes]
 ) -> tuple[str, bytes]:
-    """The token that is compiled in, and modelDescription.xml."""
+    """Return the token that is compiled in, and modelDescription.xml."""
     tool = f"giveway, python -m fmus.build with ziglang {ZIG_VERSION}"
     if recipe is VEHICLE_RECIPE:
         template = recipe.read(f"modelDescription.fmi{version[0]}.xml")
@@ -179,7 +179,7 @@ _LAYOUTS: Final[dict[FmiVersion, Callable[[str, Mapping[Target, bytes]], dict[st
 
 
 def _token(*contents: bytes) -> str:
-    """An identifier that changes when, and only when, what the model is made of changes."""
+    """Return an identifier that changes exactly when the model's sources change."""
     digest = hashlib.sha256()
     for content in contents:
         digest.update(hashlib.sha256(content).digest())

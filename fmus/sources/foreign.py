@@ -1,7 +1,7 @@
-"""Compiling the C sources of an FMU that has no binary for this platform.
+"""The compilation of the C sources of an FMU that has no binary for this platform.
 
-The archive is checked as always. Compiling runs nothing of the FMU. The result is an FMU like any
-other, with one more binary, and runs in a process of its own.
+The archive is checked as always. The compilation runs nothing of the FMU. The result is an FMU with
+one more binary, which runs in a process of its own.
 """
 
 import os
@@ -36,7 +36,7 @@ class Sources:
 
     Attributes:
         identifier: Identifier of the model, the library's name.
-        files: C and C++.
+        files: C and C++ files.
         includes: Folders.
         definitions: Definitions of the preprocessor, ``NAME`` or ``NAME=VALUE``.
     """
@@ -51,15 +51,15 @@ def compile_fmu(path: Path, out: Path) -> list[str]:
     """Write a copy of an FMU that has a binary for this platform, compiled from its sources.
 
     Args:
-        path: The FMU.
-        out: The file to write; one that is there is replaced once everything has been compiled.
+        path: Path of the FMU.
+        out: File to write; an existing file is replaced when everything has been compiled.
 
     Returns:
-        the names of the binaries that are new or replaced.
+        The names of the binaries that are new or replaced.
 
     Raises:
         FmuError: the FMU is refused.
-        FmuBuildError: it brings no sources, there is no compiler, or the sources do not compile.
+        FmuBuildError: the FMU has no sources, there is no compiler, or the sources do not compile.
     """
     archive = open_archive(path)
     model = model_of(archive)
@@ -117,11 +117,11 @@ def _compiled(
 
 
 def _plain_names(model: Model) -> Iterator[str]:
-    """Definitions that make the functions' names those of a shared library.
+    """Yield definitions that give functions the names of a shared library.
 
-    Sources may be meant to be linked with those of other FMUs: their names then begin with the
-    model's identifier (FMI 2.0.4, section 2.1.1). What the macros of the header make of
-    that is expanded once more, so a definition for each name takes the beginning away.
+    Sources may be meant to be linked with those of other FMUs. Their names then begin with the
+    model's identifier (FMI 2.0.4, section 2.1.1), which a macro of the header adds. The result is
+    expanded once more, so that a definition for each name removes the beginning.
     """
     if model.fmi_version == "1.0":
         return
@@ -134,14 +134,14 @@ def _plain_names(model: Model) -> Iterator[str]:
             yield f"{identifier}_{name}={name}"
 
 
-# ---- which files ----
+# ---- the files ----
 
 
 def _sources(archive: Archive, model: Model) -> Iterator[Sources]:
     """Yield the sources of each library of the FMU.
 
     Raises:
-        FmuBuildError: the FMU does not bring them.
+        FmuBuildError: the FMU does not have them.
     """
     code = [n for n in archive.members if n.startswith(SOURCES) and n.endswith(C_SUFFIXES)]
     if not code:
@@ -159,7 +159,7 @@ def _sources(archive: Archive, model: Model) -> Iterator[Sources]:
 
 
 def _of_description(archive: Archive, model: Model) -> dict[str, Sources]:
-    """The lists of FMI 2's model description, by the model's identifier."""
+    """Return the lists of FMI 2's model description, by the model's identifier."""
     kept = frozenset({*TAGS.values(), "SourceFiles", "File"})
     root = parse(archive.description, f"{archive.path}: {DESCRIPTION}", ROOT, kept)
     found = {}
@@ -174,7 +174,7 @@ def _of_description(archive: Archive, model: Model) -> dict[str, Sources]:
 
 
 def _of_build_description(archive: Archive) -> dict[str, Sources]:
-    """The lists of FMI 3's build description, by the model's identifier."""
+    """Return the lists of FMI 3's build description, by the model's identifier."""
     tags = ("BuildConfiguration", "SourceFileSet", "SourceFile", "IncludeDirectory")
     kept = frozenset({*tags, "PreprocessorDefinition"})
     data = read_start(archive, BUILD, archive.members[BUILD].file_size)
@@ -216,10 +216,10 @@ def _members(archive: Archive, names: list[str]) -> tuple[str, ...]:
 
 
 def _inside(archive: Archive, name: str) -> str:
-    """A path below the archive's sources.
+    """Return a path below the archive's sources.
 
     Raises:
-        FmuBuildError: it leads elsewhere.
+        FmuBuildError: the path leads elsewhere.
     """
     path = posixpath.normpath(posixpath.join(SOURCES, name))
     if not f"{path}/".startswith(SOURCES) or (os.sep != "/" and os.sep in name):

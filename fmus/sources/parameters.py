@@ -1,4 +1,4 @@
-"""The start values of an exported controller, and their way into its binary."""
+"""The start values of an exported controller, and how they reach its binary."""
 
 import dataclasses
 import math
@@ -16,7 +16,7 @@ CONTROLLER_FILES: Final[dict[FmiVersion, str]] = {
     "3.0": f"{CONTROLLER}.fmi3.fmu",
 }
 HORIZON_MAX: Final = 200  # [steps] HORIZON_MAX of parameters.h
-FAR_AWAY: Final = 1e9  # [m] [m/s] nobody is in front, there is no limit: FAR_AWAY of instance.c
+FAR_AWAY: Final = 1e9  # Value [m] or [m/s] for "nobody in front" or "no limit", as in instance.c
 
 
 def _parameter(default: float, symbol: str, unit: str | None, description: str) -> Any:
@@ -26,9 +26,9 @@ def _parameter(default: float, symbol: str, unit: str | None, description: str) 
 
 @dataclass(frozen=True, slots=True)
 class ControllerParameters:
-    """Start values of an exported controller (Yang & Özgüner 2019, table 1).
+    """The start values of an exported controller (Yang & Özgüner 2019, table 1).
 
-    The order is that of ``Parameters`` in parameters.h. K_p is not the printed 300, which
+    The order is that of ``Parameters`` in parameters.h. K_p is not the printed 300, because that
     contradicts the paper's own steady-state error.
 
     Raises:
@@ -86,11 +86,11 @@ def _require(good: bool, name: str, value: object, expected: str) -> None:
 
 
 def token_of(build: str, parameters: ControllerParameters) -> str:
-    """The GUID or instantiation token of an export.
+    """Return the GUID or instantiation token of an export.
 
-    The binaries are the same for all exports, and a host hands over only this text of the model
-    description. Therefore it carries the start values that differ from the paper's, bit by bit. It
-    stays below 255 characters, because some hosts name a folder after it.
+    The binaries are the same for all exports, and of the model description a host passes only this
+    text to them. Therefore it contains, bit by bit, the start values that differ from the paper's.
+    It stays below 255 characters, because some hosts name a folder after it.
     """
     entries = ""
     paper = dataclasses.astuple(ControllerParameters())

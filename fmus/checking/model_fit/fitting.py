@@ -27,13 +27,13 @@ NORMAL_95 = 1.96  # half width of the interval of 95 %, in standard errors
 
 @dataclass(frozen=True)
 class Drive:
-    """A trace made ready for the fit.
+    """A trace that is ready for the fit.
 
     Attributes:
         force: Commanded force (n,) [N].
         speed: Speed (n + 1,) [m/s].
         step: Duration of a step [s].
-        used: Mask (n,) of the steps that count.
+        used: Flags (n,) of the steps that count.
     """
 
     force: NDArray[np.float64]
@@ -43,7 +43,7 @@ class Drive:
 
     @property
     def acceleration(self) -> NDArray[np.float64]:
-        """Mean acceleration (n,) over each step [m/s2]."""
+        """The mean acceleration (n,) [m/s2] over each step."""
         return np.diff(self.speed) / self.step
 
 
@@ -65,7 +65,7 @@ def prepare(trace: Trace, limits: tuple[float, float] = (np.inf, np.inf)) -> Dri
 
 @dataclass(frozen=True)
 class Fit:
-    """M v' + alpha v = F, and the lag and dead time of the force.
+    """The fitted model M v' + alpha v = F, and the lag and dead time of the force.
 
     Attributes:
         intervals: Half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
@@ -94,7 +94,7 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
 
     Args:
         drives: Measured drives.
-        actuator: True: search for lag and dead time, too.
+        actuator: True to search also for lag and dead time.
     """
     if sum(int(drive.used.sum()) for drive in drives) < 10:
         return None
@@ -128,7 +128,7 @@ def least_squares(
 def resistance_rows(
     drives: Sequence[Drive], lag: float, delay: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The equations M v' + alpha v + c_0 + c_2 v |v| = F, one for each step that counts.
+    """Return the equations M v' + alpha v + c_0 + c_2 v |v| = F, one for each step that counts.
 
     Returns:
         Coefficients (m, 4) of 1 / M, alpha / M, c_0 / M and c_2 / M, and v' (m,) [m/s2].

@@ -22,7 +22,7 @@ from fmus.checking.model_fit.fitting import (
 
 SATURATED = 0.85  # share of the force below which the actuator is at its limit
 _ENOUGH = 20  # steps needed for four coefficients
-BEYOND = 1.5  # factor: a limit does not hold if this much more arrives at another time
+BEYOND = 1.5  # Factor by which the force at another time must exceed a limit to disprove it
 SHORTEST = 0.3  # [s] shortest phase from which a force is read
 
 
@@ -104,8 +104,8 @@ def saturation(
         traces: Traces of the forces in question.
         sign: Sign of the forces that count.
         model: Model of the vehicle.
-        weaker: Traces of the same tests with less force. There is no limit where a larger force
-            lets more arrive, as in a higher gear.
+        weaker: Traces of the same tests with less force. There is no limit if more force arrives
+            with a larger command, as in a higher gear.
     """
     lesser = [arriving(trace, sign, model) for trace in weaker] or [[] for _ in traces]
     found = [
@@ -118,7 +118,7 @@ def saturation(
 
 
 def _grows(should: float, arrives: float, before: Sequence[tuple[float, float]]) -> bool:
-    """Return whether the arriving force has grown as much as the force asked for."""
+    """Return whether the arriving force has grown as much as the commanded force."""
     if not before or not 0.0 < before[-1][0] < should or before[-1][1] <= 0.0:
         return False
     return arrives / before[-1][1] >= SATURATED * should / before[-1][0]

@@ -1,4 +1,4 @@
-"""Driving and braking apart: each has an actuator, and a strength, of its own.
+"""Separate fits of driving and braking, which have different actuators and strengths.
 
 Engine and brakes are two devices. One fit of both gives a mean of their lags, and hides a pedal
 whose ``full_force`` is wrong: the vehicle then seems to weigh more on one side than on the other.
@@ -15,17 +15,18 @@ from fmus.checking.model_fit.saturation import ResistanceModel
 from fmus.profile.advice import gain_line
 from fmus.profile.vehicle_profile import VehicleProfile
 
-ENOUGH = 20  # steps for a fit
-COARSE, FINE, REFINED = 8, 5, 3  # lags that are tried first, then between the best one's neighbours
-UNEQUAL = 1.15  # a factor between the two masses that is worth a remark
+ENOUGH = 20  # Number of steps needed for a fit
+# Numbers of lags that are tried first and then around the best one, and of refinements
+COARSE, FINE, REFINED = 8, 5, 3
+UNEQUAL = 1.15  # Factor between the two masses from which a remark is made
 
 
 @dataclass(frozen=True)
 class Side:
-    """The result of the tests for one side, driving or braking.
+    """The result of the tests for driving or for braking.
 
     Attributes:
-        mass: Mass as which it seems to move [kg].
+        mass: Mass [kg] that fits the vehicle's motion.
         lag: Lag of its actuator, first order [s].
         delay: Dead time of its actuator [s].
     """
@@ -37,18 +38,18 @@ class Side:
 
 @dataclass(frozen=True)
 class Sides:
-    """Driving and braking; None where the tests do not tell."""
+    """The results for driving and braking; None where the tests do not determine them."""
 
     drive: Side | None
     brake: Side | None
 
 
 def fit_apart(drives: Sequence[Drive], delay: float) -> Sides:
-    """Mass, lag and dead time of each side, from the steps after its own last force.
+    """Return mass, lag and dead time of each side, from the steps after its own last force.
 
     Args:
         drives: Drives in which both forces occur, one after the other.
-        delay: Dead time of both together [s]; a side has it, or none.
+        delay: Dead time [s] of both together; each side has this dead time or none.
     """
     return Sides(_fit_side(drives, 1.0, delay), _fit_side(drives, -1.0, delay))
 
@@ -76,7 +77,7 @@ def _fit_side(drives: Sequence[Drive], sign: float, delay: float) -> Side | None
 
 
 def _of_side(drive: Drive, sign: float) -> Drive:
-    """The drive with the forces of one sign only, and the steps in which no other still acts."""
+    """Return the drive with forces of one sign only, and the steps without the other's effect."""
     pushed = np.sign(drive.force)
     last = np.maximum.accumulate(np.where(pushed != 0.0, np.arange(pushed.size), 0))
     others = pushed[last] == -sign
@@ -89,8 +90,8 @@ def side_remarks(sides: Sides, step: float, profile: VehicleProfile | None) -> l
 
     Args:
         sides: Fits of both sides.
-        step: Step of the controller [s]: lags that differ by less are the same.
-        profile: Profile of the vehicle, for the line that mends it.
+        step: Step of the controller [s]; lags that differ by less are taken as equal.
+        profile: Profile of the vehicle, for the line to change in it.
     """
     drive, brake = sides.drive, sides.brake
     if drive is None or brake is None:
@@ -113,7 +114,7 @@ def side_remarks(sides: Sides, step: float, profile: VehicleProfile | None) -> l
 
 
 def _remedy(ratio: float, profile: VehicleProfile | None) -> str:
-    """The line that makes the brake as strong as the drive, where it has a strength of its own."""
+    """Return the line that makes the brake as strong as the drive, if they can differ."""
     if profile is None:
         return ""
     inputs = profile.inputs

@@ -1,1 +1,1 @@
-"""Profiles of controller FMUs: drafted, prepared and fitted to the FMU."""
+"""The profiles of controller FMUs: drafting, preparing and fitting them to the FMU."""

@@ -1,4 +1,4 @@
-"""A controller profile drafted from names; only unambiguous names are used."""
+"""The draft of a controller profile from names; only unambiguous names are used."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ _NUMBER = re.compile(r"\[\d+\]$")
 
 @dataclass(frozen=True)
 class ControllerDraft:
-    """The findings about a controller's variables by their names, and the open questions.
+    """The roles of a controller's variables by their names, and the open questions.
 
     Attributes:
         path: Path of the FMU.
         inputs: Variables by role.
         answers: Output variables by role.
-        open: Variables without a role, and the question about each.
+        open: Variables without a role, and the question about each of them.
     """
 
     path: Path
@@ -62,7 +62,7 @@ class ControllerDraft:
         """Return the profile if nothing is open.
 
         Raises:
-            FmuProfileError: something is; the message says which lines to write.
+            FmuProfileError: something is open; the message says which lines to write.
         """
         if self.open:
             raise FmuProfileError(
@@ -94,7 +94,7 @@ class ControllerDraft:
 
 
 def draft_controller(model: Model) -> ControllerDraft:
-    """Draft the profile of a controller, as far as the names of its variables tell."""
+    """Draft the profile of a controller from the names of its variables."""
     inputs: dict[str, Variable] = {}
     doubts: dict[str, str] = {}
     for variable in model.variables.values():
@@ -122,7 +122,7 @@ def draft_controller(model: Model) -> ControllerDraft:
 
 
 def _base(name: str) -> str:
-    """The name of a series' variable without its number."""
+    """Return the name of a series' variable without its number."""
     return _NUMBER.sub("", name)
 
 

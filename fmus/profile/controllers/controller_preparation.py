@@ -1,4 +1,4 @@
-"""Preparing a controller FMU: it is read, a profile is chosen, and both are checked.
+"""The preparation of a controller FMU: reading it, choosing a profile, and checking both.
 
 As with vehicles, faults of a file or a profile are reported here, before native code is loaded.
 """
@@ -25,12 +25,12 @@ class PreparedController:
 
     Attributes:
         model: Model of the FMU.
-        profile: Profile by which it is asked.
+        profile: Profile by which it is called.
         wiring: Variables for its inputs and its answer.
         step_plan: Relation of the control steps to the FMU's steps.
         bounds: Bounds of the inputs.
         step_size: Step size between two questions [s].
-        binary: this platform's binary in the archive.
+        binary: Library for this platform, by its name in the archive.
     """
 
     model: Model
@@ -58,10 +58,10 @@ def prepare_controller(
     """Check and read a controller FMU, and fit a profile to it.
 
     Args:
-        path: The .fmu file.
-        step_size: Step size between two questions [s].
+        path: Path of the .fmu file.
+        step_size: Time between two calls [s].
         setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
-        profile: Roles of the FMU's variables; None: a draft from names, if it leaves no doubt.
+        profile: Roles of the FMU's variables, or None for a draft from names if it leaves no doubt.
         start_values: Further start values by variable name.
 
     Raises:
@@ -87,7 +87,7 @@ def prepare_controller(
 
 
 def choose_controller_profile(path: Path, profile: ControllerProfile | None) -> ControllerProfile:
-    """Return the profile for asking an FMU: the given one, or a draft.
+    """Return the profile for calling an FMU: the given one, or a draft.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

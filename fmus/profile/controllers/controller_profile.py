@@ -36,9 +36,11 @@ class ControllerInputs(Table):
     leader_speed: Axis | None = None  # [m/s] speed of that vehicle
     speed_limit: Axis | None = None  # [m/s]
     stop_gap: Axis | None = None  # [m] gap from the front bumper to the stop of lights or priority
-    obstacle_positions: Axis | None = None  # [m] stations of whoever will be in front: a series
+    # [m] stations of those who will be in front, as a series
+    obstacle_positions: Axis | None = None
     obstacle_gaps: Axis | None = None  # [m] the same from where ``position`` is now: a series
-    nothing: float = Field(1e9, gt=0, le=1e300)  # [SI] told for infinity: nobody, no limit
+    # value that is given for infinity: nobody in front, or no limit
+    nothing: float = Field(1e9, gt=0, le=1e300)
 
 
 class ControllerOutputs(Table):
@@ -86,7 +88,7 @@ SETTINGS = tuple(ControllerSetup.model_fields)
 
 
 def read_controller_profile(path: Path) -> ControllerProfile:
-    """The controller profile in a TOML file.
+    """Read the controller profile in a TOML file.
 
     Raises:
         FmuProfileError: the file is missing, not TOML, or a key or value cannot be used.
@@ -96,11 +98,11 @@ def read_controller_profile(path: Path) -> ControllerProfile:
 
 
 def make_controller_profile(values: dict[str, Any], origin: str) -> ControllerProfile:
-    """The controller profile in nested dictionaries.
+    """Return the controller profile in nested dictionaries.
 
     Args:
         values: Values with the keys of the TOML file.
-        origin: named in errors.
+        origin: Name of the source in errors.
 
     Raises:
         FmuProfileError: a key or value cannot be used.

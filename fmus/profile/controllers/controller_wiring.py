@@ -1,4 +1,4 @@
-"""Fitting a controller profile to an FMU: the variables of its inputs and its answer."""
+"""The fitting of a controller profile to an FMU: the variables of its inputs and its answer."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class ControllerWiring:
 
     Attributes:
         interface: Interface by which it is run.
-        inputs: Wires of the inputs; those of a series stand one after another.
+        inputs: Wires of the inputs; those of a series follow one another.
         answer: Wire of its output.
         start_values: Start values of its parameters.
     """
@@ -53,12 +53,12 @@ def wire_controller(
         model: Model of the FMU.
         profile: Roles of the FMU's variables.
         setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
-        start_values: Start values by variable name; they come after the profile's own and
+        start_values: Start values by variable name, which are set after the profile's own and
             ``setup``.
 
     Raises:
-        FmuInterfaceError: the FMU has not the kind that the profile asks for.
-        FmuVariableError: a variable is missing, or cannot be used as the profile wants.
+        FmuInterfaceError: the FMU does not have the interface that the profile names.
+        FmuVariableError: a variable is missing, or cannot be used as the profile says.
         FmuProfileError: a unit is missing or of the wrong dimension.
     """
     (answer,) = (
@@ -109,7 +109,7 @@ def _series(model: Model, role: str, axis: Axis) -> list[Axis]:
         names = takewhile(variables.__contains__, (f"{name}[{i}]" for i in count(1)))
     found = [axis.model_copy(update={"variable": one}) for one in names]
     if not found:
-        find_channel(model, f"[inputs.{role}]", name)  # says which one is probably meant
+        find_channel(model, f"[inputs.{role}]", name)  # the error says which name is probably meant
         raise FmuVariableError(
             f"{model.path}: [inputs.{role}] variable '{name}' has no elements; expected an array, "
             f"variables x[1], x[2], ... named x, or variables x1, x2, ... named x#"
