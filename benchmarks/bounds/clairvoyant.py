@@ -114,10 +114,9 @@ def time_step_of(run: RunResult) -> float:
 def rules_of(run: RunResult) -> Rules:
     """Whom the ego of a run must not touch, and who counts as being in front of it."""
     regulation, shape = run.config.regulation, run.shape
-    half = regulation.corridor_half_width
     return Rules(
         safe_distance=regulation.safe_distance,
-        half_corridor=shape.width / 2 + CORRIDOR_MARGIN if half is None else half,
+        half_corridor=shape.width / 2 + CORRIDOR_MARGIN,
         half_width=shape.width / 2,
         body_radius=run.body_radius,
     )

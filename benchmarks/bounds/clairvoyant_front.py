@@ -68,9 +68,9 @@ if TYPE_CHECKING:
 SCENES = ("one-sided, 30", "two-sided, 30", "two-sided, 60", "stream, 30", "encounter, medium")
 DRIVERS: dict[str, dict[str, Any]] = {
     BASELINE: {"controller": "pid-tuned"},
-    "careful": {"controller": "mpc", "planner": {"style": "careful"}},
+    "careful": {"controller": "mpc", "controller_options": {"style": "careful"}},
     "mpc": {"controller": "mpc"},
-    "assertive": {"controller": "mpc", "planner": {"style": "assertive"}},
+    "assertive": {"controller": "mpc", "controller_options": {"style": "assertive"}},
 }
 RECORDINGS = (NOBODY, BASELINE, "mpc")
 COLOURS = {NOBODY: GREEN, BASELINE: VERMILION, "mpc": BLUE}

@@ -66,7 +66,7 @@ def compare(horizon: int, decisions: int, seed: int) -> tuple[np.ndarray, float]
     """(n, 2) seconds of the FMU and of our controller, and how far their forces differ [N]."""
     p, random = ControllerParameters(horizon=horizon), np.random.default_rng(seed)
     h = p.time_step
-    settings = {"controller": "mpc-paper", "mpc": {"horizon": horizon}}
+    settings = {"controller": "mpc-paper", "controller_options": {"horizon": horizon}}
     own = make_controller(EgoRunConfig.model_validate(settings), h)
     ahead = h * np.arange(1, horizon + 1)
     position, speed, apart = 0.0, 4.0, 0.0

@@ -80,7 +80,7 @@ def ready(
         "perception": {"model": believed},
     }
     if horizon is not None:
-        settings["planner"] = {"horizon": horizon}
+        settings["controller_options"] = {"horizon": horizon}
     return preflight(*load([Layer("", settings)]))
 
 

@@ -4,7 +4,7 @@ Run: PYTHONPATH=BEFORE python benchmarks/tuning/paired_runs.py --write before.js
      PYTHONPATH=AFTER python benchmarks/tuning/paired_runs.py --write after.json [--seeds 101 221]
      python benchmarks/tuning/paired_runs.py --compare before.json after.json
      ... --people                           # before people of other models: docs/planner.md
-     ... --options '{"planner": {"horizon": 3}}'     # in all of the runs
+     ... --options '{"controller_options": {"horizon": 3}}'     # in all of the runs
 
 Only public names are used, so that two states of the repository can be compared. A difference is
 the mean over the seeds, with its 95 % bootstrap interval. What counts is many seeds: a run in which

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from giveway.cli.help import show_all_options
-from giveway.config.files.layers import Location, Option, options
+from giveway.config.files.layers import Location, Option, options, own_flags
 from giveway.config.files.toml import toml_value
 from giveway.errors import ConfigError
 from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES, Socket
@@ -25,9 +25,6 @@ _PANELS = {
     "crowd": "Pedestrians",
     "regulation": "Regulation",
     "rules": "Rules",
-    "mpc": "MPC",
-    "pid": "PID",
-    "planner": "Planner",
     "safety": "Safety",
     "perception": "Perception",
     "traffic": "Traffic",
@@ -65,7 +62,7 @@ def _set_flag(socket: Socket) -> Any:
         typer.Option(
             socket.set_flag,
             metavar="KEY=VALUE",
-            help=f"An option of a {socket.what} that is not giveway's own; as often as needed.",
+            help=f"An option of the {socket.what}; as often as needed.",
             rich_help_panel="Run",
         ),
     ]
@@ -74,7 +71,7 @@ def _set_flag(socket: Socket) -> Any:
 _EVERYDAY = frozenset(
     {
         ("controller",),
-        ("planner", "style"),
+        ("controller_options", "style"),
         ("seed",),
         ("time_limit",),
         ("twin",),
@@ -98,14 +95,19 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     of a TOML file.
     """
     locations = {"__".join(o.location): o for o in options() if o.location != ("scenario",)}
+    own_options = {"__".join(o.location): o for o in own_flags()}
 
     def call(**arguments: Any) -> None:
         settings: dict[str, Any] = {}
         del arguments["help_all"]
+        for name, option in own_options.items():
+            if (value := arguments.pop(name)) is not None:
+                words = arguments[CONTROLLER.options] or []
+                arguments[CONTROLLER.options] = [*words, f"{option.location[-1]}={value}"]
         for socket in SOCKETS:
-            own_options = set_options(arguments.pop(socket.options) or (), socket)
-            if own_options:
-                settings[socket.options] = own_options
+            set_values = set_options(arguments.pop(socket.options) or (), socket)
+            if set_values:
+                settings[socket.options] = set_values
         for socket in TABLES:
             if named := set_plug_ins(arguments.pop(socket.what) or (), socket):
                 settings[socket.options] = named
@@ -119,7 +121,7 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     keyword = inspect.Parameter.KEYWORD_ONLY
     flags = [
         inspect.Parameter(name, keyword, default=None, annotation=_annotation(option))
-        for name, option in locations.items()
+        for name, option in (locations | own_options).items()
     ]
     flags += [
         inspect.Parameter(socket.options, keyword, default=None, annotation=_set_flag(socket))

@@ -16,7 +16,18 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("safety", "rate_limited"): "leave it out: the layer's braking is never rate-limited",
     ("traffic", "yield_distance"): "leave it out: it is always 2 m",
     ("crowd", "zone_margin"): "leave it out: it is always 5 m",
-    ("planner", "attitude"): ("planner", "style"),
+    ("planner", "attitude"): ("controller_options", "style"),
+    ("mpc", "horizon"): ("controller_options", "horizon"),
+    ("mpc", "speed_min"): "leave it out: it is always 0 m/s",
+    **{
+        ("pid", key): ("controller_options", key)
+        for key in ("proportional_gain", "integral_gain", "derivative_gain", "buffer_distance")
+    },
+    **{
+        ("regulation", key): "for the paper's controllers write [controller_options] "
+        f"{key} (--set {key}=VALUE); leave it out for the others"
+        for key in ("gap_from", "corridor_half_width")
+    },
     **{
         ("planner", key): "leave it out: it is always on"
         for key in ("gap_choice", "soft", "planned_speed", "belief", "contingency")
@@ -40,6 +51,8 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     **{
         ("planner", key): ("controller_options", key)
         for key in (
+            "horizon",
+            "style",
             "effort_weight",
             "jerk_weight",
             "conflict_weight",
@@ -72,7 +85,7 @@ FLAGS: Final[Mapping[str, Location]] = {
 """Removed flags, without dashes, that were not derived from their keys in ``RENAMED``."""
 
 
-_OWN_FLAGS: Final[Mapping[Location, str]] = {("planner", "style"): "--style"}
+_OWN_FLAGS: Final[Mapping[Location, str]] = {("controller_options", "style"): "--style"}
 
 
 def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location | str]]:
@@ -88,12 +101,13 @@ def advice(new: Location | str, *, as_flag: bool) -> str:
     """Return what to write instead of a key that no longer exists, for a file or as a flag."""
     if isinstance(new, str):
         return new
+    if as_flag and new in _OWN_FLAGS:
+        return f"write {_OWN_FLAGS[new]}"
     if new[0].endswith("_options"):
         setting = "--set" if new[0] == "controller_options" else "--set-model"
         return f"write {setting} {new[-1]}=VALUE" if as_flag else f"write [{new[0]}] {new[-1]}"
     if as_flag:
-        derived = "--" + "-".join(new).replace("_", "-")
-        return f"write {_OWN_FLAGS.get(new, derived)}"
+        return f"write --{'-'.join(new).replace('_', '-')}"
     *tables, key = new
     return f"write [{'.'.join(tables)}] {key}" if tables else f"write {key}"
 

@@ -5,7 +5,7 @@ The TOML file, the flags of the command line and the Python API are derived from
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     BeforeValidator,
@@ -27,10 +27,9 @@ from giveway.config.tables.basics import (
 )
 from giveway.config.tables.controllers import (
     OWN_OPTIONS,
-    MpcConfig,
     NoOptions,
-    PidConfig,
-    PlannerConfig,
+    PaperMpcOptions,
+    PaperPidOptions,
     SafetyConfig,
     TunedPidOptions,
 )
@@ -49,6 +48,8 @@ if TYPE_CHECKING:
 PAPER_STEP = 0.05
 """Default control step [s] (Yang & Özgüner 2019, table 1)."""
 
+Own = TypeVar("Own", bound=Section)
+
 EGO_TABLES = (
     "controller",
     "controller_profile",
@@ -57,9 +58,6 @@ EGO_TABLES = (
     "vehicle",
     "regulation",
     "rules",
-    "mpc",
-    "pid",
-    "planner",
     "safety",
     "perception",
     "sensor_options",
@@ -131,9 +129,6 @@ class RunConfig(Section):
     crowd: CrowdConfig = CrowdConfig()
     regulation: RegulationConfig = RegulationConfig()
     rules: RulesConfig = RulesConfig()
-    mpc: MpcConfig = MpcConfig()
-    pid: PidConfig = PidConfig()
-    planner: PlannerConfig = PlannerConfig()
     controller_options: dict[str, JsonValue] = Field(
         default_factory=dict, description="the controller's own options"
     )
@@ -334,6 +329,16 @@ class EgoRunConfig(RunConfig):
         own = read_options(self.controller, kind, self.controller_options)
         return own if isinstance(own, Section) else NoOptions()
 
+    def own(self, kind: type[Own]) -> Own:
+        """Return the controller's own options, or the defaults of ``kind`` if it has others."""
+        own = self.own_options
+        return own if isinstance(own, kind) else kind()
+
+    @property
+    def model_steps(self) -> int:
+        """The number of steps over which the error of the vehicle's model counts."""
+        return self.own(PaperMpcOptions).horizon
+
     @property
     def optimises(self) -> bool:
         """True if the controller is a model predictive one, which has a model and a horizon."""
@@ -349,11 +354,9 @@ class EgoRunConfig(RunConfig):
     def buffer_distance(self) -> float:
         """The distance [m] beyond d_safe over which the reference speed rises to v_r, or 0."""
         if self.defaults.buffered:
-            return self.pid.buffer_distance
-        own = self.own_options
-        if isinstance(own, TunedPidOptions) and own.profile == "linear":
-            return own.buffer_distance
-        return 0.0
+            return self.own(PaperPidOptions).buffer_distance
+        own = self.own(TunedPidOptions)
+        return own.buffer_distance if own.profile == "linear" else 0.0
 
     def require_speeds_in_reach(self) -> None:
         """Make sure that the MPC may drive at the configured speeds.
@@ -361,16 +364,15 @@ class EgoRunConfig(RunConfig):
         Raises:
             ValueError: it may not.
         """
-        low, high = self.mpc.speed_min, self.vehicle.speed_max
+        high = self.vehicle.speed_max
         for key, speed in (
             ("[regulation] reference_speed", self.reference_speed),
             ("[ego] initial_speed", self.ego.initial_speed),
         ):
             if speed is None or isinstance(speed, str):
                 continue
-            if self.optimises and not low <= speed <= high:
-                msg = f"{key} = {speed:g}: expected within [mpc] speed_min and [vehicle] speed_max"
-                msg += f", {low:g} to {high:g} [m/s]"
+            if self.optimises and speed > high:
+                msg = f"{key} = {speed:g}: expected at most [vehicle] speed_max, {high:g} [m/s]"
                 raise ValueError(msg)
 
     def require_known_belief(self) -> None:

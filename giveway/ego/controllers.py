@@ -21,12 +21,12 @@ from controller import (
     PlanningController,
     ReferenceParameters,
     SpeedController,
-    StyleName,
     TunedPid,
     TunedPidParameters,
 )
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE, Section
+from giveway.config.tables.controllers import PaperPidOptions, PlannerOptions
 from giveway.ego.plug_in import plugged_in
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ControlError
@@ -78,31 +78,27 @@ def filled(kind: type[Parameters], *tables: Section, **own: Any) -> Parameters:
     return kind(**own)
 
 
-def plan_steps(config: EgoRunConfig, time_step: float) -> int:
-    """The planner's horizon in steps."""
-    return max(4, round(config.planner.horizon / time_step))
-
-
 def _paper_mpc(config: EgoRunConfig, time_step: float) -> SpeedController:
     """The paper's MPC, with the paper's PID where the QP has no solution."""
     safe_distance = config.regulation.safe_distance + model_margin(config, time_step)
+    own = config.own_options
     parameters = filled(
-        MpcParameters, config.mpc, config.vehicle, config.regulation, safe_distance=safe_distance
+        MpcParameters, own, config.vehicle, config.regulation, safe_distance=safe_distance
     )
     return SpeedController(Mpc(_model(config, time_step), parameters), _pid(config, time_step))
 
 
 def _pid(config: EgoRunConfig, time_step: float) -> Pid:
     """The paper's PID, with the force limit of the vehicle."""
-    pid = config.pid
+    own = config.own(PaperPidOptions)
     parameters = filled(
         PidParameters,
         config.regulation,
-        pid,
+        own,
         config.vehicle,
-        K_p=pid.proportional_gain,
-        K_i=pid.integral_gain,
-        K_d=pid.derivative_gain,
+        K_p=own.proportional_gain,
+        K_i=own.integral_gain,
+        K_d=own.derivative_gain,
     )
     return Pid(parameters, time_step)
 
@@ -115,17 +111,16 @@ def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
     return TunedPid(parameters, _model(config, time_step))
 
 
-def manoeuvres_of(style: StyleName, own: Section, margin: float = 0.0) -> ManoeuvreParameters:
+def manoeuvres_of(own: PlannerOptions, margin: float = 0.0) -> ManoeuvreParameters:
     """The planner's manoeuvres: options that are set, and the driving style for the others.
 
     Args:
-        style: Driving style.
         own: Options of the planner.
         margin: Distance [m] kept to people for the errors of the vehicle's model.
     """
     weighed = {
         name: usual if getattr(own, name) is None else getattr(own, name)
-        for name, usual in STYLES[style].items()
+        for name, usual in STYLES[own.style].items()
     }
     weighed["minimum_distance"] += margin
     return filled(ManoeuvreParameters, own, **weighed)
@@ -133,17 +128,16 @@ def manoeuvres_of(style: StyleName, own: Section, margin: float = 0.0) -> Manoeu
 
 def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
     """The planning MPC."""
-    regulation, own = config.regulation, config.own_options
+    regulation, own = config.regulation, config.own(PlannerOptions)
     margin = model_margin(config, time_step)
     parameters = filled(
         PlannerParameters,
         regulation,
         own,
-        config.mpc,
         config.vehicle,
-        horizon=plan_steps(config, time_step),
+        horizon=max(4, round(own.horizon / time_step)),
         safe_distance=regulation.safe_distance + margin,
-        manoeuvres=manoeuvres_of(config.planner.style, own, margin),
+        manoeuvres=manoeuvres_of(own, margin),
     )
     return PlanningController(Planner(_model(config, time_step), parameters))
 

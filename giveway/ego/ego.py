@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from controller import Decision, Observation
-from giveway.config.tables.regulation import CORRIDOR_MARGIN
+from giveway.config.tables.controllers import PaperPidOptions
 from giveway.ego.people_in_front import PeopleInFront
 from giveway.ego.percept import Perceived
 from giveway.ego.perception.corridor import Corridor
@@ -76,17 +76,17 @@ class Ego:
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal, self.vehicle = goal, waiting.vehicle
-        half_width = regulation.corridor_half_width
+        gap = config.own(PaperPidOptions)
         self.corridor = Corridor(
             path,
-            half_width=shape.width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
+            half_width=gap.corridor(shape.width),
             horizon=waiting.horizon,
             time_step=time_step,
             walking_speed_limit=waiting.walking_speed_limit,
             body_length=shape.length,
             straight=round(_STRAIGHT / time_step) if controller.foresees else None,
         )
-        self._origin = -shape.length / 2 if regulation.gap_from == "centre" else 0.0
+        self._origin = -shape.length / 2 if gap.gap_from == "centre" else 0.0
         self._kept = self._origin + regulation.safe_distance  # distance [m] kept by the bumper
         safety = waiting.safety
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)

@@ -27,6 +27,7 @@ from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.tables.basics import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
+from giveway.config.tables.controllers import PaperPidOptions
 from giveway.errors import VehicleError
 from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EGO_COLUMNS
@@ -176,7 +177,7 @@ def model_margin(config: EgoRunConfig, time_step: float) -> float:
     model = _model(config)
     if model is None:
         return 0.0
-    return model.position_error * max(1.0, config.mpc.horizon * time_step / model.horizon) ** 2
+    return model.position_error * max(1.0, config.model_steps * time_step / model.horizon) ** 2
 
 
 def identified_reaction_time(config: EgoRunConfig) -> float:
@@ -226,21 +227,21 @@ def _other_size(config: EgoRunConfig) -> str:
     ratio = config.vehicle.mass / usual.vehicle.mass
     if 1.0 / _OTHER_SIZE < ratio < _OTHER_SIZE:
         return ""
+    settings = [
+        ("--vehicle-force-limit ", config.vehicle.force_limit, usual.vehicle.force_limit),
+        (
+            "--vehicle-force-rate-limit ",
+            config.vehicle.force_rate_limit,
+            usual.vehicle.force_rate_limit,
+        ),
+    ]
+    own = config.own_options
+    if isinstance(own, PaperPidOptions):
+        default = PaperPidOptions().proportional_gain
+        settings.append(("--set proportional_gain=", own.proportional_gain, default))
     flags = [
-        f"{flag} {float(f'{ratio * default:.2g}'):.10g}"
-        for flag, value, default in (
-            ("--vehicle-force-limit", config.vehicle.force_limit, usual.vehicle.force_limit),
-            (
-                "--vehicle-force-rate-limit",
-                config.vehicle.force_rate_limit,
-                usual.vehicle.force_rate_limit,
-            ),
-            (
-                "--pid-proportional-gain",
-                config.pid.proportional_gain,
-                usual.pid.proportional_gain,
-            ),
-        )
+        f"{flag}{float(f'{ratio * default:.2g}'):.10g}"
+        for flag, value, default in settings
         if value == default
     ]
     if not flags:

@@ -14,7 +14,7 @@ from markupsafe import Markup
 from shapely import LineString
 
 from giveway.config.files.presets import parameters_of
-from giveway.config.tables.regulation import CORRIDOR_MARGIN
+from giveway.config.tables.controllers import PaperPidOptions
 from giveway.errors import ResultsError
 from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
@@ -263,16 +263,16 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
     met = run.pedestrians
     met = met[met["ego"] == name] if "ego" in met else met
     length, width = _body(run, name)
-    half_width = config.regulation.corridor_half_width
+    gap = config.own(PaperPidOptions)
     acted = list(zip(rows["controller"], rows["reason"], rows["solver_status"], strict=True))
     kinds = list(dict.fromkeys(acted))
     return {
         "id": name,
         "controller": config.controller_name,
         "body": [length, width],
-        "corridor": width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
+        "corridor": gap.corridor(width),
         "safe": config.regulation.safe_distance,
-        "fromCentre": config.regulation.gap_from == "centre",
+        "fromCentre": gap.gap_from == "centre",
         "summary": _summary(run.rows_of(name)),
         "events": events(rows, met, config),
         "met": _met(met, names),

@@ -25,7 +25,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         return ""  # only an optimising controller has a model
     mass, friction = config.vehicle.mass, config.vehicle.friction
     trace = _trace(ego.track, time_step)
-    errors = position_errors(trace, mass, friction, config.mpc.horizon)
+    errors = position_errors(trace, mass, friction, config.model_steps)
     error = float(np.percentile(errors, 95)) if errors.size else 0.0
     if not error > max(_TOLERATED, 1.5 * margin):
         return ""
@@ -34,7 +34,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
     missed = (
         f"ego '{ego.id}': the vehicle does not answer as the controller's M = {mass:g} kg, alpha = "
         f"{friction:g} N.s/m predict: off by up to {error:.2g} m in "
-        f"{config.mpc.horizon * time_step:.3g} s"
+        f"{config.model_steps * time_step:.3g} s"
     )
     if margin > 0.0:  # the vehicle has been identified already
         return (

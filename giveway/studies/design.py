@@ -201,7 +201,7 @@ def _factors(definition: StudyDefinition, origin: str) -> list[Factor]:
         else:
             raise ConfigError(
                 f"{place} = {levels!r}: expected a list of values, or a table of named levels like "
-                '{ "short" = { mpc = { horizon = 10 } }, ... }'
+                '{ "few" = { crowd = { pedestrians = 10 } }, ... }'
             )
     names = [factor.name for factor in found]
     for name in names:

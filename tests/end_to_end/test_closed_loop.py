@@ -267,7 +267,7 @@ def test_the_streets_crowd_feels_its_cars(run_once: Run, cars: bool) -> None:
 def test_the_gap_may_start_at_the_centre(run_once: Run) -> None:
     bumper = run_once(controller="pid-paper", seed=3, time_limit=8.0)
     centre = run_once(
-        controller="pid-paper", seed=3, time_limit=8.0, regulation={"gap_from": "centre"}
+        controller="pid-paper", seed=3, time_limit=8.0, controller_options={"gap_from": "centre"}
     )
     k = int(np.argmax(np.isfinite(bumper.ego_track.gap)))  # until then they drive alike
     assert np.isfinite(bumper.ego_track.gap[k])

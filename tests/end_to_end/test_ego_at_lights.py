@@ -107,10 +107,10 @@ def test_an_ego_stops_before_the_line_or_passes_it(
     config = EgoRunConfig.model_validate(
         {
             "controller": controller,
+            "controller_options": {"gap_from": gap_from} if "paper" in controller else {},
             "ego": {"initial_speed": speed * share},
             "regulation": {
                 "reference_speed": speed,
-                "gap_from": gap_from,
                 "safe_distance": safe_distance,
             },
         }

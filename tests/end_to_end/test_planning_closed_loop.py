@@ -63,7 +63,7 @@ def test_every_ingredient_can_be_changed_and_matters(run_once: Run, name: str) -
         controller="mpc",
         seed=GIVES_WAY,
         time_limit=SHORT,
-        **{"planner" if name == "horizon" else "controller_options": {name: SWITCHES[name]}},
+        controller_options={name: SWITCHES[name]},
     )
     assert changed.summary["frontal_contacts"] == 0
     assert len(speeds(changed)) == len(speeds(usual))

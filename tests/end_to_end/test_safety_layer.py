@@ -21,7 +21,7 @@ RECKLESS = {
     "scenario": "street",
     "crowd": {"pedestrians": 60},
     "regulation": {"safe_distance": 0.5, "reference_speed": 8.0},
-    "pid": {"buffer_distance": 1.0},
+    "controller_options": {"buffer_distance": 1.0},
     "time_limit": 40.0,
 }
 ON = {"enabled": True}

@@ -100,14 +100,13 @@ def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
             safe_distance=pid.safe_distance,
             margin=model_margin(config, time_step),
             buffer_distance=pid.buffer_distance,
-            speed_min=config.mpc.speed_min,
             speed_max=config.vehicle.speed_max,
             force_limit=pid.force_limit,
             force_rate_limit=config.vehicle.force_rate_limit,
             proportional_gain=pid.K_p,
             integral_gain=pid.K_i,
             derivative_gain=pid.K_d,
-            horizon=config.mpc.horizon,
+            horizon=config.model_steps,
             mpc=own.mpc is not None,
         )
     except FmuError as error:

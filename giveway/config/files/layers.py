@@ -17,6 +17,7 @@ from giveway.config.files.toml import read_toml_file
 from giveway.config.option import Section, declared, expectation
 from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
+from giveway.config.tables.controllers import OWN_OPTIONS
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import same_name
 from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES
@@ -93,6 +94,14 @@ def options(model: type[Section] = RunConfig, prefix: Location = ()) -> Iterator
             yield from options(annotation, (*prefix, name))
         else:
             yield Option((*prefix, name), field)
+
+
+def own_flags() -> Iterator[Option]:
+    """Every option of our own controllers that has a flag of its own."""
+    for kind in OWN_OPTIONS.values():
+        for name, field in kind.model_fields.items():
+            if declared(field).get("flag"):
+                yield Option((CONTROLLER.options, name), field)
 
 
 def flag_of(location: Location) -> str:

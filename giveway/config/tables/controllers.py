@@ -6,24 +6,11 @@ from typing import Literal
 
 from giveway.config.option import Section, option
 from giveway.config.reasons import BUFFER, GAP, MILLIMETRE, TYRES
+from giveway.config.tables.regulation import CORRIDOR_MARGIN
 
 
-class MpcConfig(Section):
-    """The model predictive controller (Yang & Özgüner 2019, section 3, table 1)."""
-
-    horizon: int = option(
-        15,
-        "steps",
-        "prediction horizon N",
-        ge=2,
-        le=200,
-        because="one step is no plan, and of 200 nothing is known",
-    )
-    speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60, because="no car is faster")
-
-
-class PidConfig(Section):
-    """The PID controller, fallback and rival (Yang & Özgüner 2019, section 3.4, table 1)."""
+class PaperPidOptions(Section):
+    """Options of the paper's PID (Yang & Özgüner 2019, section 3.4, table 1), and of its gap."""
 
     proportional_gain: float = option(
         2400.0,
@@ -57,6 +44,39 @@ class PidConfig(Section):
         le=500,
         least=0.1,
         because=BUFFER,
+    )
+    gap_from: Literal["bumper", "centre"] = option(
+        "bumper",
+        None,
+        "point of the ego at which the distance to people and vehicles in front starts",
+    )
+    corridor_half_width: float | None = option(
+        None,
+        "m",
+        "largest distance between the ego's path and the centre of a body that counts as in front; "
+        f"by default half the ego's width plus {CORRIDOR_MARGIN:g} m",
+        gt=0,
+        le=20,
+        least=0.1,
+        because="it holds a vehicle and its lane",
+    )
+
+    def corridor(self, width: float) -> float:
+        """Return the half width [m] of the corridor of an ego that is ``width`` [m] wide."""
+        half = self.corridor_half_width
+        return width / 2 + CORRIDOR_MARGIN if half is None else half
+
+
+class PaperMpcOptions(PaperPidOptions):
+    """Options of the paper's MPC (Yang & Özgüner 2019, section 3), whose fallback is its PID."""
+
+    horizon: int = option(
+        15,
+        "steps",
+        "prediction horizon N",
+        ge=2,
+        le=200,
+        because="one step is no plan, and of 200 nothing is known",
     )
 
 
@@ -146,8 +166,8 @@ class TunedPidOptions(Section):
     )
 
 
-class PlannerConfig(Section):
-    """The choices that users have with the planning MPC (controller = "mpc")."""
+class PlannerOptions(Section):
+    """Options of the planning MPC (controller = "mpc"): its weights; docs/planner.md."""
 
     horizon: float = option(
         2.5,
@@ -164,11 +184,6 @@ class PlannerConfig(Section):
         "weights and a distance",
         flag="--style",
     )
-
-
-class PlannerOptions(Section):
-    """Options of the planning MPC (controller = "mpc"): its weights; docs/planner.md."""
-
     effort_weight: float = option(
         0.02,
         "s",
@@ -280,6 +295,11 @@ class NoOptions(Section):
 
 
 OWN_OPTIONS: Mapping[str, type[Section]] = MappingProxyType(
-    {"mpc": PlannerOptions, "pid-tuned": TunedPidOptions}
+    {
+        "mpc": PlannerOptions,
+        "pid-tuned": TunedPidOptions,
+        "mpc-paper": PaperMpcOptions,
+        "pid-paper": PaperPidOptions,
+    }
 )
 """Options of each of giveway's controllers by its public name, in [controller_options]."""

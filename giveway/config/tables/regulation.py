@@ -1,7 +1,5 @@
 """The table of the configuration about the road: how fast, how close, and who goes first."""
 
-from typing import Literal
-
 from giveway.config.option import Section, SpeedOrLane, option
 from giveway.config.reasons import MILLIMETRE, TYRES
 from giveway.config.tables.basics import DEFAULT_SPEED
@@ -29,19 +27,6 @@ class RegulationConfig(Section):
         le=500,
         least=MILLIMETRE,
         because="a gap is a millimetre at least, and nobody is seen half a kilometre ahead",
-    )
-    corridor_half_width: float | None = option(
-        None,
-        "m",
-        "in front: the body centre is this close to the ego's path; none: half its width + "
-        f"{CORRIDOR_MARGIN:g}",
-        gt=0,
-        le=20,
-        least=0.1,
-        because="it holds a vehicle and its lane",
-    )
-    gap_from: Literal["bumper", "centre"] = option(
-        "bumper", None, "where the distance to who is in front starts"
     )
     kerb_distance: float = option(
         1.5,

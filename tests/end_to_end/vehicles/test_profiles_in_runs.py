@@ -198,7 +198,8 @@ def test_the_margin_grows_with_a_longer_horizon(profile):
     path = str(profile(**IDENTIFIED))
     margins = []
     for horizon in (10, 20, 40):
-        layer = Layer("test", {"vehicle": {"profile": path}, "mpc": {"horizon": horizon}})
+        own = {"controller": "mpc-paper", "controller_options": {"horizon": horizon}}
+        layer = Layer("test", {"vehicle": {"profile": path}, **own})
         margins.append(model_margin(load([layer])[0].each_ego()[0], H))
     assert margins == pytest.approx([0.7, 0.7, 4 * 0.7])
 

@@ -181,8 +181,7 @@ def test_the_command_writes_the_effective_configuration(
         "time_step": 0.1,
         "vehicle": {"mass": 1500.0, "friction": 50.0, "force_limit": 5000.0},
         "regulation": {"reference_speed": 3.0, "safe_distance": 6.0},
-        "mpc": {"horizon": 20},
-        "pid": {"proportional_gain": 300.0},
+        "controller_options": {"horizon": 20, "proportional_gain": 300.0},
     }
     out = tmp_path / "mpc.fmu"
     assert export(settings, out, fmi="3.0") == 0

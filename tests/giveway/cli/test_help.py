@@ -37,7 +37,7 @@ def test_all_options_are_there_whole(
     shown = set(re.findall(r"(?<![\w-])--[\w-]+", text))
     assert {option.flag for option in options() if option.location != ("scenario",)} <= shown
     assert "…" not in text
-    for heading in ("Options:", "Run:", "Ego:", "Vehicle:", "Pedestrians:", "Planner:"):
+    for heading in ("Options:", "Run:", "Ego:", "Vehicle:", "Pedestrians:", "Regulation:"):
         assert re.search(f"^{heading}$", text, re.M)
 
 

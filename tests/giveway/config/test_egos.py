@@ -42,7 +42,7 @@ def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
         ({"crowd": {"pedestrians": 3}}, r"egos\[0\]: unknown key 'crowd'"),
         ({"vehicle": {"mass": -1}}, r"egos\[0\]: vehicle.mass = -1"),
         ({"vehicle": {"mass": 1e-9}}, r"vehicle.mass = 1e-09: should be at least 10 \[kg\]: the"),
-        ({"ego": {"initial_speed": 30}}, r"expected within \[mpc\] speed_min"),
+        ({"ego": {"initial_speed": 30}}, r"expected at most \[vehicle\] speed_max"),
     ],
 )
 def test_a_wrong_ego_entry_is_named(entry: dict, expected: str) -> None:

@@ -24,6 +24,7 @@ def test_a_key_that_moved_is_found_in_the_table_of_an_ego():
 def test_a_flag_that_moved_is_told_its_new_name():
     assert renamed_flag("--mpc-force-limit=9000") == "write --vehicle-force-limit"
     assert renamed_flag("--vehicle-force-limit") is None
+    assert renamed_flag("--mpc-horizon") == "write --set horizon=VALUE"
     assert renamed_flag("--attitude") == renamed_flag("--planner-attitude") == "write --style"
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import giveway
-from giveway.config import RunConfig
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import (
     Layer,
     Option,
@@ -19,6 +19,7 @@ from giveway.config.files.layers import (
     read_toml,
 )
 from giveway.config.files.loading import as_layer, load
+from giveway.config.tables.controllers import PaperMpcOptions
 from giveway.errors import ConfigError, GivewayError, ScenarioError
 
 
@@ -31,17 +32,13 @@ def explain(values: dict, *, flags: bool = False) -> str:
 
 
 def test_defaults_are_the_papers_table() -> None:
-    config = RunConfig(controller="mpc-paper")
+    config, own = EgoRunConfig(controller="mpc-paper"), PaperMpcOptions()
     assert (config.vehicle.mass, config.vehicle.friction) == (1000, 100)
-    assert (config.vehicle.force_limit, config.vehicle.force_rate_limit, config.mpc.horizon) == (
-        8000,
-        1000,
-        15,
-    )
-    assert (config.mpc.speed_min, config.vehicle.speed_max) == (0, 20)
-    assert (config.pid.integral_gain, config.pid.derivative_gain) == (10, 100)
+    assert (config.vehicle.force_limit, config.vehicle.force_rate_limit) == (8000, 1000)
+    assert (own.horizon, config.vehicle.speed_max) == (15, 20)
+    assert (own.integral_gain, own.derivative_gain) == (10, 100)
     assert (config.reference_speed, config.regulation.safe_distance) == (4, 8)
-    assert config.pid.buffer_distance == 10
+    assert own.buffer_distance == config.buffer_distance == 10
 
 
 def test_toml_round_trip_is_exact() -> None:
@@ -77,14 +74,14 @@ def test_every_option_has_its_own_flag_and_a_meaning() -> None:
     assert len(flags) == len(set(flags))
     assert all(option.field.description for option in options())
     assert flag_of(("crowd", "pedestrians")) == "--pedestrians"
-    assert flag_of(("mpc", "horizon")) == "--mpc-horizon"
+    assert flag_of(("crowd", "sampler")) == "--sampler"
 
 
 def test_later_layers_win_key_by_key() -> None:
-    below = Layer("a", {"seed": 1, "mpc": {"horizon": 20}, "vehicle": {"force_limit": 5000}})
-    above = Layer("b", {"mpc": {"horizon": 30}})
+    below = Layer("a", {"seed": 1, "vehicle": {"mass": 2000, "force_limit": 5000}})
+    above = Layer("b", {"vehicle": {"mass": 3000}})
     config = build_config([below, above])
-    assert (config.seed, config.mpc.horizon, config.vehicle.force_limit) == (1, 30, 5000)
+    assert (config.seed, config.vehicle.mass, config.vehicle.force_limit) == (1, 3000, 5000)
 
 
 @pytest.mark.parametrize(
@@ -96,7 +93,7 @@ def test_later_layers_win_key_by_key() -> None:
         ),
         ({"seed": "a"}, ["study.toml: seed", "'a'", "integer"]),
         ({"controller": "mcp"}, ["'mcp'", "'mpc'", "'pid-tuned'", "'pid-paper'"]),
-        ({"mpc": {"horizon": float("nan")}}, ["[mpc] horizon", "nan", "finite"]),
+        ({"vehicle": {"mass": float("nan")}}, ["[vehicle] mass", "nan", "finite"]),
         ({"vehicle": {"mass": 0.0}}, ["[vehicle] mass", "greater than 0", "kg"]),
         ({"ego": {"initial_speed": 1e9}}, ["[ego] initial_speed", "m/s"]),
         ({"crowd": {"spawn_area": [1, 2, 0, 4]}}, ["spawn_area", "x_min < x_max", "[m]"]),
@@ -169,7 +166,7 @@ def test_values_that_make_no_sense_together_are_refused_too(values: dict, said: 
 
 def test_a_bad_flag_is_named_as_a_flag() -> None:
     assert "--pedestrians = '-1'" in explain({"crowd": {"pedestrians": "-1"}}, flags=True)
-    assert "--mpc-horizon" in explain({"mpc": {"horizon": "1.5"}}, flags=True)
+    assert "--groups" in explain({"crowd": {"groups": "1.5"}}, flags=True)
 
 
 @pytest.mark.parametrize(
@@ -212,7 +209,7 @@ def test_a_contradiction_between_keys_names_their_table() -> None:
 
 
 def test_speeds_outside_of_the_mpcs_limits_are_refused() -> None:
-    assert "[mpc] speed_min and [vehicle] speed_max" in explain(
+    assert "expected at most [vehicle] speed_max, 3 [m/s]" in explain(
         {"controller": "mpc-paper", "vehicle": {"speed_max": 3}}
     )
     assert "[ego] initial_speed = 30" in explain(

@@ -25,7 +25,7 @@ from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
 from giveway.config.tables.basics import DEFAULT_SPEED
 from giveway.config.tables.controllers import (
-    PlannerConfig,
+    PaperMpcOptions,
     PlannerOptions,
     SafetyConfig,
     TunedPidOptions,
@@ -36,7 +36,7 @@ from giveway.geometry.bodies import BODY
 from pedestrian_model import SIM
 
 STEP = 0.05  # [s]
-TUNED, PLANNING = TunedPidOptions(), PlannerOptions()
+TUNED, PLANNING, PAPER = TunedPidOptions(), PlannerOptions(), PaperMpcOptions()
 CONFIG = EgoRunConfig.model_validate({"regulation": {"reference_speed": DEFAULT_SPEED}})
 
 
@@ -44,8 +44,8 @@ CONFIG = EgoRunConfig.model_validate({"regulation": {"reference_speed": DEFAULT_
     ("kind", "tables", "own"),
     [
         (LongitudinalModel, ["vehicle"], {"time_step": STEP}),
-        (MpcParameters, ["mpc", "vehicle", "regulation"], {}),
-        (PidParameters, ["regulation", "pid", "vehicle"], {}),
+        (MpcParameters, [PAPER, "vehicle", "regulation"], {}),
+        (PidParameters, ["regulation", PAPER, "vehicle"], {}),
         (ReferenceParameters, ["regulation", TUNED], {}),
         (TunedPidParameters, [TUNED, "vehicle"], {}),
         (PlannerParameters, ["regulation", PLANNING, "vehicle"], {"horizon": 50}),
@@ -60,13 +60,13 @@ def test_the_controllers_defaults_are_the_configurations(kind, tables, own):
 
 
 def test_the_paper_s_gains_are_the_configurations():
-    pid, gains = PidParameters(), CONFIG.pid
+    pid, gains = PidParameters(), PAPER
     assert (pid.K_p, pid.K_i, pid.K_d) == (
         gains.proportional_gain,
         gains.integral_gain,
         gains.derivative_gain,
     )
-    assert PlannerParameters().horizon == round(CONFIG.planner.horizon / STEP)
+    assert PlannerParameters().horizon == round(PLANNING.horizon / STEP)
 
 
 def test_the_safety_layers_defaults_are_the_configurations():
@@ -84,8 +84,7 @@ def test_exported_controllers_have_the_configurations_defaults():
     ours = {
         **CONFIG.regulation.model_dump(),
         **CONFIG.vehicle.model_dump(),
-        **CONFIG.pid.model_dump(),
-        **CONFIG.mpc.model_dump(),
+        **PAPER.model_dump(),
     }
     shared = exported.keys() & ours.keys()
     assert len(shared) >= 10
@@ -108,11 +107,11 @@ def test_lanes_say_how_fast_but_not_to_the_paper_s_controllers():
 
 
 def test_a_style_sets_what_the_options_leave_out():
-    assert manoeuvres_of("normal", PLANNING) == ManoeuvreParameters()
-    chosen = PlannerConfig.model_fields["style"].annotation
+    assert manoeuvres_of(PLANNING) == ManoeuvreParameters()
+    chosen = PlannerOptions.model_fields["style"].annotation
     assert get_args(chosen) == get_args(StyleName) == tuple(STYLES)
     for name, usual in STYLES.items():
-        found = manoeuvres_of(name, PlannerOptions(nearness_weight=5.0), margin=0.1)
+        found = manoeuvres_of(PlannerOptions(style=name, nearness_weight=5.0), margin=0.1)
         assert found.conflict_weight == usual["conflict_weight"]
         assert found.nearness_weight == 5.0
         assert found.minimum_distance == usual["minimum_distance"] + 0.1
@@ -122,6 +121,6 @@ def test_an_option_reaches_the_parameter_of_its_name():
     config = EgoRunConfig.model_validate(
         {"vehicle": {"force_limit": 5000.0}, "regulation": {"reference_speed": 4.0}}
     )
-    tables = config.regulation, config.pid, config.vehicle
+    tables = config.regulation, PAPER, config.vehicle
     assert filled(PidParameters, *tables).force_limit == 5000.0
     assert filled(PidParameters, config.vehicle, force_limit=6000.0).force_limit == 6000.0

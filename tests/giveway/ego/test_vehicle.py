@@ -29,7 +29,8 @@ def remark(tmp_path):
         path = tmp_path / "car.toml"
         path.write_text(PROFILE.format(mass=mass), encoding="utf-8")
         vehicle = {"profile": str(path), "mass": mass, "friction": 100.0, **limits}
-        return model_remark(EgoRunConfig.model_validate({"vehicle": vehicle}), 0.05)
+        values = {"controller": "pid-paper", "vehicle": vehicle}
+        return model_remark(EgoRunConfig.model_validate(values), 0.05)
 
     return of
 
@@ -42,10 +43,10 @@ def test_a_car_keeps_the_defaults(remark, mass):
 def test_a_truck_gets_the_same_accelerations(remark):
     assert remark(18_000.0).endswith(
         "for the same accelerations, --vehicle-force-limit 140000 --vehicle-force-rate-limit 18000 "
-        "--pid-proportional-gain 43000"
+        "--set proportional_gain=43000"
     )
 
 
 def test_what_has_been_set_is_not_advised(remark):
     text = remark(18_000.0, force_limit=1e5, force_rate_limit=18_000.0)
-    assert text.endswith("for the same accelerations, --pid-proportional-gain 43000")
+    assert text.endswith("for the same accelerations, --set proportional_gain=43000")

@@ -2,6 +2,8 @@
 
 import pytest
 
+from giveway.config.files.loading import load
+from giveway.config.tables.controllers import PaperPidOptions
 from giveway.errors import ConfigError
 from giveway.studies.definition import (
     dump_definition,
@@ -64,25 +66,25 @@ def test_a_grid_has_every_combination_in_the_order_of_the_file():
 
 
 def test_an_option_without_quotes_means_the_same():
-    quoted = cells(MINIMAL + '"mpc.horizon" = [10, 15]\n"mpc.speed_min" = [0]\n')
-    assert cells(MINIMAL + "mpc.horizon = [10, 15]\nmpc.speed_min = [0]\n") == quoted
+    quoted = cells(MINIMAL + '"vehicle.mass" = [900, 1000]\n"vehicle.friction" = [100]\n')
+    assert cells(MINIMAL + "vehicle.mass = [900, 1000]\nvehicle.friction = [100]\n") == quoted
 
 
 def test_named_levels_may_set_several_options():
     text = """
         name = "mine"
         [factors.driver]
-        "short MPC" = { controller = "mpc", mpc = { horizon = 10 } }
-        "soft PID" = { controller = "pid", pid = { proportional_gain = 300 } }
+        "short MPC" = { controller = "mpc", controller_options = { horizon = 1.5 } }
+        "soft PID" = { controller = "pid", controller_options = { proportional_gain = 300 } }
         [comparison]
         factor = "driver"
     """
-    definition = parsed(text + "[run.pid]\nintegral_gain = 0\n")
+    definition = parsed(text + "[run.controller_options]\nintegral_gain = 0\n")
     made = design(definition, "mine.toml")
     layer = made.cells[1].layer("mine.toml", definition)
     assert layer.values == {
         "controller": "pid",
-        "pid": {"integral_gain": 0, "proportional_gain": 300},
+        "controller_options": {"integral_gain": 0, "proportional_gain": 300},
     }
 
 
@@ -149,7 +151,7 @@ def test_named_levels_before_options_keep_their_place():
         name = "mine"
         cells = [{ 'my "driver"' = "a, b", crowd = { pedestrians = 2 }, controller = "pid" }]
         [factors.'my "driver"']
-        "<ä>" = { pid = { integral_gain = 1e-9 } }
+        "<ä>" = { vehicle = { friction = 1e-9 } }
         "a, b" = {}
         [factors]
         crowd.pedestrians = [2, 1]
@@ -212,7 +214,11 @@ def test_what_cannot_be_a_study_is_refused_in_one_line(change, said):
     [
         ("[factors]\ncontroller = ['mpc', 'nobody']", "cell 2 (controller = nobody)"),
         ("[run]\nscenario = 'nowhere'\n[factors]\ncontroller = ['mpc']", "nowhere"),
-        ("[factors]\n'mpc.horizon' = [15, 1]", "horizon"),
+        ("[factors]\n'controller_options.horizon' = [2.5, 0.1]", "horizon"),
+        (
+            "[run.controller_options]\nstyle = 'careful'\n[factors]\ncontroller = ['mpc', 'pid']",
+            "style: 'pid-paper' has no such option",
+        ),
         ("[comparison]\nfactor = 'x'\n[factors]\ncontroller = ['mpc']", "factor 'x'"),
         (
             "[comparison]\nbaseline = 'x'\n[factors]\ncontroller = ['mpc', 'pid']",
@@ -255,9 +261,19 @@ def test_files_that_are_no_study(tmp_path):
 def test_without_a_controller_factor_the_last_one_is_compared():
     from giveway.studies.plan import plan
 
-    text = 'name = "mine"\n[factors]\n"crowd.pedestrians" = [1, 2]\n"mpc.horizon" = [15, 30]\n'
+    text = 'name = "mine"\n[factors]\n"crowd.pedestrians" = [1, 2]\n"vehicle.mass" = [900, 1100]\n'
     comparison = plan(parsed(text), "mine.toml").definition.comparison
-    assert (comparison.factor, comparison.baseline) == ("mpc.horizon", "30")
+    assert (comparison.factor, comparison.baseline) == ("vehicle.mass", "1100")
+
+
+def test_the_readings_of_the_paper_reach_both_of_its_controllers():
+    definition = read_definition(find_study("readings"))
+    found = set()
+    for cell in design(definition, "readings").cells:
+        (ego,) = load([cell.layer("readings", definition)])[0].each_ego()
+        if cell.levels["reading"].label == "K_p = 300, as printed":
+            found.add((ego.controller, ego.own(PaperPidOptions).proportional_gain))
+    assert found == {("mpc-paper", 300.0), ("pid-paper", 300.0)}
 
 
 def test_the_study_of_controllers_compares_all_in_every_scene():

@@ -111,13 +111,13 @@ def test_cells_with_the_same_settings_share_their_records(study_of, tmp_path):
         [run]
         time_limit = 0.5
         crowd.pedestrians = 1
-        [factors.gains]
+        [factors.vehicle]
         "default" = {}
-        "as by default" = { pid = { proportional_gain = 2400.0 } }
+        "as by default" = { vehicle = { mass = 1000.0 } }
     """
     from giveway.config import RunConfig
 
-    text = text.replace("2400.0", str(RunConfig().pid.proportional_gain))
+    text = text.replace("1000.0", str(RunConfig().vehicle.mass))
     states = []
     study = study_of(text, tmp_path / "twins", states.append)
     assert list(study.runs["run"]) == [f"c{c}-s{s}" for c in (1, 2) for s in (1, 2, 3)]
