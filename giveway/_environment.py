@@ -9,17 +9,18 @@ from typing import Any
 from giveway.errors import InstallationError
 
 ROOMS = ("controller", "pedestrian_model", "fmus", "sumo_scenarios")
-_NUMBAS = ("UserProvided", "InTree", "UserWide", "IPython", "Zip")  # numba's locators, in order
+# Names of numba's cache locators, in order
+_NUMBAS = ("UserProvided", "InTree", "UserWide", "IPython", "Zip")
 _NO_MEMORY = ("failed to map segment", "Cannot allocate memory")  # messages of the dynamic linker
 
 
 def check_rooms() -> None:
     """Make sure that the four packages giveway imports are its own.
 
-    ``controller`` is a common name: a robotics simulator ships one, too.
+    ``controller`` is a common name: a robotics simulator has a package of that name, too.
 
     Raises:
-        InstallationError: a room is missing, or another package of that name comes first.
+        InstallationError: a package is missing, or another package of that name comes first.
     """
     house = Path(__file__).resolve().parent.parent
     for room in ROOMS:
@@ -35,7 +36,8 @@ def check_rooms() -> None:
 def out_of_memory(error: BaseException | None) -> bool:
     """Return whether an error, or its cause, means that the system has no more memory.
 
-    A library that does not fit in memory is an ImportError or an OSError; only its words tell.
+    A library that does not fit in memory gives an ImportError or an OSError; only its text shows
+    the cause.
     """
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
@@ -54,10 +56,10 @@ def user_cache() -> Path:
 
 
 def keep_kernels() -> None:
-    """Make numba keep our kernels in the folder of ``_kernels``, even if it is imported first.
+    """Let numba keep giveway's kernels in the folder of ``_kernels``, even if it is imported first.
 
-    Numba's setting for it is documented (``NUMBA_CACHE_LOCATOR_CLASSES``); it is made in this
-    process and not in the environment, since child processes need not know giveway.
+    Numba documents the setting (``NUMBA_CACHE_LOCATOR_CLASSES``). It is made in this process and
+    not in the environment, since child processes need not be giveway's.
     """
     if "numba.core.caching" in sys.modules:
         _name_locator()
@@ -66,9 +68,10 @@ def keep_kernels() -> None:
 
 
 class _BeforeNumba:
-    """Makes the setting when numba is being imported, by any module.
+    """Makes the setting when any module imports numba.
 
-    An entry of ``sys.meta_path``, where Python asks for every module; it never finds one itself.
+    It is an entry of ``sys.meta_path``, which Python asks for every module; it never finds one
+    itself.
     """
 
     def find_spec(self, fullname: str, _path: object, _target: object = None) -> None:

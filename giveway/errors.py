@@ -1,6 +1,6 @@
-"""The errors of giveway, one class per thing that a user can do something about.
+"""The errors of giveway, one class per problem that a user can solve.
 
-Every message is one line: the file, key or id, the value, what was expected, what to do next.
+Every message is one line: the file, key or id, the value, what was expected, and what to do next.
 ``exit_code`` is the command line's: 2 for a request that cannot be run, 1 for a run that failed.
 """
 
@@ -8,18 +8,19 @@ from typing import Any
 
 
 class GivewayError(Exception):
-    """Root of all errors that giveway raises on purpose.
+    """The root of all errors that giveway raises on purpose.
 
     Attributes:
-        result: the :class:`giveway.RunResult` recorded until the failure; None before the start.
+        result: Result :class:`giveway.RunResult` recorded until the failure, or None before the
+            start.
     """
 
     exit_code = 1
-    result: Any = None  # not typed: errors are the ground floor and import nothing
+    result: Any = None  # not typed: errors import nothing
 
 
 class InstallationError(GivewayError):
-    """The installation is not the one giveway was built for; reinstall as the message says."""
+    """The installation lacks something or is wrong; the message says how to repair it."""
 
 
 class ConfigError(GivewayError):
@@ -29,13 +30,13 @@ class ConfigError(GivewayError):
 
 
 class ScenarioError(GivewayError):
-    """A scenario cannot be found, or does not fit what was asked of it."""
+    """A scenario cannot be found, or does not fit the request."""
 
     exit_code = 2
 
 
 class SumoError(GivewayError):
-    """SUMO refused something. The message carries SUMO's own reason."""
+    """SUMO refused a request. The message has SUMO's own reason."""
 
 
 class VehicleError(GivewayError):
@@ -43,15 +44,15 @@ class VehicleError(GivewayError):
 
 
 class ControlError(GivewayError):
-    """The controller cannot be set up as asked, or produced an unusable command."""
+    """The controller cannot be set up as configured, or its command cannot be used."""
 
 
 class RuleError(GivewayError):
-    """A rule of the road of another package cannot be made, or demanded something unusable."""
+    """A rule of another package cannot be made, or its demand cannot be used."""
 
 
 class MetricError(GivewayError):
-    """A metric of another package declares unusable columns, or returned something unusable."""
+    """A metric of another package has columns or values that cannot be used."""
 
 
 class SensorError(GivewayError):
@@ -59,20 +60,20 @@ class SensorError(GivewayError):
 
 
 class CrowdError(GivewayError):
-    """The pedestrians cannot be placed or moved as asked."""
+    """The pedestrians cannot be placed or moved as configured."""
 
 
 class CrashError(GivewayError):
-    """Native code (SUMO, an FMU, a solver) ended or hung the run's process; rows are kept."""
+    """Native code (SUMO, an FMU, a solver) ended or hung the run's process; the rows are kept."""
 
 
 class DatasetError(GivewayError):
-    """Recorded trajectories cannot be read, or there are too few for what was asked."""
+    """Recorded trajectories cannot be read, or there are too few for the request."""
 
     exit_code = 2
 
 
 class ResultsError(GivewayError):
-    """The results cannot be written, or would overwrite something."""
+    """The results cannot be written, or would replace existing files."""
 
     exit_code = 2

@@ -32,8 +32,9 @@ _MARKER = "compiled-for-"
 _KEPT = 30 * 86400.0  # [s] time since the last run after which old kernels are removed
 _MESSAGE = "Compiling the numerical kernels (once after installation, about a minute) ..."
 _MESSAGE_THREADS = "Compiling the kernels of several threads (once, some ten seconds) ..."
-_SELDOM: Final = (50_000, 20, 100)  # numbers of new objects until Python collects garbage
-_LONGEST: Final = 600.0  # [s] longest wait for the other process
+# Numbers of new objects after which Python collects garbage, for its three generations
+_SELDOM: Final = (50_000, 20, 100)
+_LONGEST: Final = 600.0  # Longest wait [s] for the other process
 _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*arguments)"
 
 _PEOPLE: Final = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
@@ -43,9 +44,10 @@ _STREET: Final[dict[str, Any]] = {
     "time_limit": 1.2,
     "scenario": "street",
     "controller": "pid-paper",
-    "sumo": {"step_length": 1.0},  # between SUMO's steps our kernels move its cars
+    "sumo": {"step_length": 1.0},  # between SUMO's steps, kernels move its cars
 }
-# In this order two processes hardly compile the same: the crowd, and the search, which predicts it,
+# In this order two processes rarely compile the same: one compiles the crowd, and the search that
+# predicts it; the other compiles the vehicle, its plans, metrics and the other controllers.
 # in one; the vehicle, its plans, what is measured and the other controllers in the other.
 _WALKS: Final[tuple[dict[str, Any], ...]] = (
     {"time_limit": 0.2, "crowd": _PEOPLE, "ego": {"none": True}},
@@ -69,11 +71,11 @@ _OTHERS: Final[tuple[dict[str, Any], ...]] = (
 def compile_kernels_once(console: Console | None = None, *, threads: int = 1) -> None:
     """Compile and cache every kernel of a run, with a message, unless that has been done.
 
-    A few tiny runs call them all; numba keeps the machine code in the user's cache folder.
+    A few tiny runs call all kernels; numba keeps the machine code in the user's cache folder.
 
     Args:
-        console: Console for the message; None prints nothing.
-        threads: Number of threads that step the crowd; several have kernels of their own.
+        console: Console for the message, or None to print nothing.
+        threads: Number of threads that step the crowd; several threads need further kernels.
     """
     marker = f"{_MARKER}{get_host_cpu_name()}"
     _once(marker, _MESSAGE, _compile_all, console)
@@ -100,14 +102,15 @@ def _once(
         marker.touch()
         forget_old_kernels(marker.parent)
     except OSError:
-        return  # without a writable cache kernels are compiled in every process: slow, but correct
+        # without a writable cache, kernels are compiled in every process, which is slow but correct
+        return
 
 
 def forget_old_kernels(folder: Path) -> None:
     """Remove the kernels of versions that have not been run for a month.
 
     Args:
-        folder: Folder of the present kernels; those of other versions are in the folders beside it.
+        folder: Folder of the present kernels, beside those of other versions.
     """
     for other in folder.parent.glob(FOLDERS):
         used = [file.stat().st_mtime for file in (other, *other.glob(f"{_MARKER}*"))]
@@ -117,7 +120,7 @@ def forget_old_kernels(folder: Path) -> None:
 
 @contextlib.contextmanager
 def _rarely_collected() -> Iterator[None]:
-    """Collect garbage rarely in this context: the many objects of a compiler stay."""
+    """Collect garbage rarely in this context, since most objects of a compiler stay."""
     before = gc.get_threshold()
     gc.set_threshold(*_SELDOM)
     try:
@@ -127,10 +130,10 @@ def _rarely_collected() -> Iterator[None]:
 
 
 def _compile_all() -> None:
-    """Compile in this process and in one beside it, then call all kernels.
+    """Compile in this process and in a second one beside it, then call all kernels.
 
-    The other process walks people and drives through them with the planning controller: the
-    longest of the runs. Both put compiled code into the cache; the last runs compile the rest.
+    The second process steps people and drives through them with the planning controller, which is
+    the longest of the runs. Both put compiled code into the cache; the last runs compile the rest.
     """
     with _helper() as helper:
         if helper is not None:
@@ -202,11 +205,11 @@ def _run(settings: dict[str, Any], *, measured: bool = True) -> None:
     if result.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt
     if measured:
-        result.summary  # noqa: B018 - the metrics have kernels too
+        result.summary  # the metrics have kernels, too  # noqa: B018
 
 
 def _step_on_threads() -> None:
-    """Two threads step a crowd that is large enough for them."""
+    """Let two threads step a crowd that is large enough for them."""
     n = THREADS_FROM
     places = np.column_stack([np.arange(n) % 40, np.arange(n) // 40]) * 1.5
     ways = np.column_stack([places, places + 9.0]).reshape(n, 2, 2)[:, 1:]
@@ -215,20 +218,20 @@ def _step_on_threads() -> None:
 
 
 def _solve_without_solution() -> None:
-    """A problem without a solution, which takes a certificate: 0.21 m to stop from 1 m/s."""
+    """Solve a problem without a solution, which needs a certificate: 0.21 m to stop from 1 m/s."""
     mpc = Mpc(LongitudinalModel(), MpcParameters())
     ahead = np.full(mpc.parameters.horizon, mpc.parameters.safe_distance + 0.21)
     mpc.solve(0.0, 1.0, 0.0, ahead)
 
 
 def _branch_off() -> None:
-    """A manoeuvre brakes on the way, as where it is open whether somebody yields."""
+    """Let a manoeuvre brake later, as if it were uncertain whether a person yields."""
     distance, speed, acceleration = np.zeros((3, 4))
     branch_off(distance, speed, acceleration, 1, -1.0, 4.0, 0.05)
 
 
 def _come_and_go() -> None:
-    """Pedestrians join a crowd and leave it."""
+    """Let pedestrians join a crowd and leave it."""
     one = Crowd.create([(0.0, 0.0)], [(1.0, 0.0)], 1.4, [[(9.0, 0.0)]])
     two = one.concatenate(one)
     two.select(~arrived(two, 0.5))

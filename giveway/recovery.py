@@ -31,8 +31,8 @@ def recover(journal: Path, verdict: Verdict) -> CrashError:
     """Write the rows of a run whose process died, and report the cause of its death.
 
     Args:
-        journal: Folder that the dead process wrote to.
-        verdict: Verdict on its end.
+        journal: Folder of the dead process's journal.
+        verdict: Verdict on the end of the process.
 
     Returns:
         The error to report; its ``result`` holds the rows, if there are any.
@@ -75,7 +75,7 @@ class LeftJournal:
     Attributes:
         path: Folder of the journal.
         scenario: Scenario of the run.
-        results: Folder for its results; None without one.
+        results: Folder for its results, or None without one.
         steps: Number of recorded steps.
         clock: Latest instant [s] on SUMO's clock.
     """
@@ -105,14 +105,14 @@ def recover_left(
 
     Args:
         journal: Folder of the journal.
-        out: Folder to write them to; None: that of the run.
-        force: Replace the results there.
+        out: Folder for the rows, or None for the run's own.
+        force: True to replace existing results.
 
     Returns:
-        The result, and where it is.
+        The result, and its folder.
 
     Raises:
-        ResultsError: there is no such journal, its run is still at work, or nothing can be
+        ResultsError: there is no such journal, its run is still going on, or nothing can be
             written; the journal stays.
     """
     try:

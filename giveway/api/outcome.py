@@ -41,7 +41,7 @@ def outcome(
     error: Exception | None,
     elapsed: float,
 ) -> RunResult:
-    """Return the result that the loop has left."""
+    """Return the result of a run whose loop has ended."""
     rows = recorder.rows()
     egos = results_of_egos(parts.config, rows, ending, loop.endings)
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]
@@ -66,7 +66,7 @@ def outcome(
         facts=manifest(
             parts.config,
             scenario,
-            config_text=None,  # writing it takes longer than many runs of a study
+            config_text=None,  # it is written later, since many runs of a study need none
             vehicles={ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos},
             pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,
@@ -133,13 +133,13 @@ def with_twin(
 
 
 def judged(result: RunResult, heartbeat: Heartbeat) -> RunResult:
-    """Add remarks on egos that did not keep to the law, with a twin's evidence, and metrics.
+    """Add remarks on egos that broke the law, using the counterfactual run, and metrics.
 
-    The metrics of other packages measure the drive here, when it is whole.
+    The metrics of other packages measure the drive here, when it is complete.
 
     Args:
         result: Result of the run.
-        heartbeat: Heartbeat that says so, should a metric end the process.
+        heartbeat: Heartbeat that shows this phase, in case a metric ends the process.
     """
     if result.config.metrics.plugged_in:
         heartbeat.beat(Phase.MEASURING)

@@ -1,4 +1,4 @@
-"""A run from its configuration to its folder; the rows are kept after every failure."""
+"""The run of one configuration, up to its folder; the rows are kept after every failure."""
 
 import shlex
 from contextlib import ExitStack
@@ -40,25 +40,25 @@ def run(
 ) -> RunResult:
     """Run one configuration: drive the egos through the scenario and its crowd.
 
-    The simulation runs in this process: native code that crashes (SUMO, an FMU) takes it along.
-    The command line isolates it.
+    The simulation runs in this process, which ends if native code (SUMO, an FMU) crashes. The
+    command line isolates it.
 
     Args:
-        config: The options that differ from the scenario's settings and the defaults, as a
+        config: Options that differ from the scenario's settings and the defaults, as a
             ``RunConfig`` or as a dictionary with the keys of the TOML file, by tables or dotted
-            (``{"crowd.pedestrians": 30}``); or the name of a scenario, or a .toml file.
-        results: A folder to write tables, summary, manifest and pictures to; None writes nothing.
-        force: Replace the results that are there.
-        parquet: also write the tables as Parquet.
-        pictures: also draw the state figure and the top view.
+            (``{"crowd.pedestrians": 30}``); or the name of a scenario, or of a .toml file.
+        results: Folder for tables, summary, manifest and pictures, or None to write nothing.
+        force: True to replace existing results.
+        parquet: True to write the tables also as Parquet.
+        pictures: True to draw also the state figure and the top view.
         watcher: Function that is called with a ``Progress`` at every control step.
 
     Returns:
-        The result. A run that was interrupted (Ctrl-C) returns too; see its ``ending``.
+        The result. A run that was interrupted (Ctrl-C) also returns one; see its ``ending``.
 
     Raises:
         GivewayError: one line that says what to do. If the run had begun, its rows are written
-            all the same and the partial result is the error's ``result`` attribute.
+            anyway, and the partial result is the error's attribute ``result``.
     """
     return run_checked(
         preflight(*load([as_layer(config)])),
@@ -82,7 +82,7 @@ def run_checked(
     journal: Path | None = None,
     wording: Wording = FLAGS,
 ) -> RunResult:
-    """Do the same as :func:`run`, after the preflight.
+    """Do the same as :func:`run` for a run that has passed the preflight.
 
     Args:
         checked: Run that has passed the preflight.
@@ -91,7 +91,7 @@ def run_checked(
         parquet: Flag, see :func:`run`.
         pictures: Flag, see :func:`run`.
         watcher: Function, see :func:`run`.
-        journal: Empty folder for the rows, to be read if this process dies.
+        journal: Empty folder for the rows, which can be read if this process dies.
         wording: Wording of the caller, for messages.
     """
     folder = None if results is None else Path(results)
@@ -106,7 +106,8 @@ def run_checked(
         wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
         rows.write_meta({"config": dump_toml(checked.config), **wanted})
         native_log = None if journal is None or rows.failure else journal / STDERR_FILE
-        interrupt = stack.enter_context(DeferredInterrupt())  # writing is not to be torn either
+        # writing must not be interrupted, either
+        interrupt = stack.enter_context(DeferredInterrupt())
         try:
             result = simulate(
                 checked,
@@ -137,7 +138,7 @@ def run_checked(
 
 
 def in_journal(journal: Path) -> str:
-    """Tell the user how to write rows that could not be written but are in a kept journal."""
+    """Return a sentence on how to write the rows that are only in a kept journal."""
     return f"every row is kept: 'giveway recover {shlex.quote(str(journal))} --force' writes them"
 
 
@@ -145,7 +146,7 @@ def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, take
     """Write the result into ``folder``, or free the folder if there is nothing to write.
 
     Raises:
-        ResultsError: it cannot be written.
+        ResultsError: the result cannot be written.
     """
     if len(result.time):
         write_results(result, folder, parquet=parquet)

@@ -42,14 +42,14 @@ def simulate(
         checked: Run that has passed the preflight.
         watcher: Function that is called at every control step.
         interrupt: Request to end, checked between two steps.
-        outputs: Folder for SUMO's own outputs; None drops them.
+        outputs: Folder for SUMO's own outputs, or None to drop them.
         journal: Journal that keeps the rows if the process dies.
-        native_log: File for the output of SUMO; None: a temporary one.
+        native_log: File for the output of SUMO, or None for a temporary one.
 
     Raises:
         GivewayError: the run could not begin.
     """
-    interrupt = interrupt or DeferredInterrupt()  # one that is not entered requests nothing
+    interrupt = interrupt or DeferredInterrupt()  # one that has not been entered requests nothing
 
     def goes_on(clock: float) -> bool:
         if watcher is not None:
@@ -64,7 +64,7 @@ def simulate(
         error: Exception | None = None
         try:
             ending = loop.run(watcher, interrupt)
-        except Exception as failure:  # after any failure the rows so far are the user's
+        except Exception as failure:  # after any failure, the user keeps the rows so far
             error, ending = _in_our_words(failure, checked.scenario), Ending.FAILED
         elapsed = perf_counter() - began
         result = outcome(parts, checked.scenario, recorder, loop, ending, error, elapsed)

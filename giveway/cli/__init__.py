@@ -1,6 +1,6 @@
 """The command line: ``giveway run``, ``giveway study``, ``giveway fmu check`` and the others.
 
-Only what the asked-for command needs is imported, so that ``giveway --help`` answers at once.
+Only the modules of the requested command are imported, so that ``giveway --help`` answers at once.
 """
 
 from giveway.cli.program import main

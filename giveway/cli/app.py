@@ -1,4 +1,4 @@
-"""The commands and their help; what they do stands in the module of each."""
+"""The commands and their help; the work of each command is in a module of its own."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -20,15 +20,15 @@ HELP = """How should a vehicle drive through a crowd, and what happens to both?
 A vehicle FMU, driven by MPC or PID, and a crowd of VCI pedestrians meet in a SUMO scenario.
 """
 
-_COMPLETING = "_GIVEWAY_COMPLETE"  # Environment variable that a shell sets to ask for completions
-# Variables with the line typed so far: bash, other shells
+_COMPLETING = "_GIVEWAY_COMPLETE"  # Environment variable with which a shell asks for completions
+# Variables with the line typed so far: for bash, for other shells
 _TYPED = ("COMP_WORDS", "_TYPER_COMPLETE_ARGS")
 
 
 def build_app(arguments: Sequence[str]) -> Commands:
-    """The typer application that ``arguments`` need.
+    """Return the typer application that ``arguments`` need.
 
-    The configuration's flags take a tenth of a second to load, so they are there only when a
+    The flags of the configuration take a tenth of a second to load. They are loaded only if a
     command that has them is named.
     """
     command = next((word for word in arguments if not word.startswith("-")), None)
@@ -52,7 +52,8 @@ def build_app(arguments: Sequence[str]) -> Commands:
 def invoke(words: list[str]) -> int:
     """Run the command that ``words`` name, and return its exit code.
 
-    Not by calling the application, which would turn a Ctrl-C into an exit code without a line.
+    The application itself is not called, because it would turn Ctrl-C into an exit code without a
+    message.
     """
     if _COMPLETING in os.environ:
         typed = next((os.environ[name] for name in _TYPED if name in os.environ), "")
@@ -154,7 +155,7 @@ def _run(
 
 
 def _require_scenario(name: str) -> None:
-    """Refuse a scenario that is not there before anything that takes longer is loaded."""
+    """Refuse a scenario that does not exist before anything slower is loaded."""
     from sumo_scenarios import ScenarioError, find
 
     try:

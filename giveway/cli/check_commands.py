@@ -1,4 +1,4 @@
-"""``giveway check``: the conformance of code of other packages."""
+"""The commands ``giveway check``: the conformance of code of other packages."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _Step = Annotated[
 
 
 def build_check() -> Commands:
-    """The group of commands."""
+    """Return the group of commands."""
     check = Commands("Check code of other packages.")
     check.add("controller", _controller)
     check.add("model", _model)
@@ -47,7 +47,7 @@ def _controller(
     set_: _Set = None,
     time_step: _Step = None,
 ) -> None:
-    """Does a controller keep to the rules? It is driven through made-up scenes, without SUMO."""
+    """Check that a controller obeys the rules: it drives through made-up scenes, without SUMO."""
     from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import CONTROLLER
 
@@ -57,7 +57,7 @@ def _controller(
 
 
 def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
-    """Does a pedestrian model? It moves people through made-up scenes, without SUMO."""
+    """Check that a pedestrian model obeys the rules: it moves people in made-up scenes."""
     from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import MODEL
 
@@ -65,7 +65,7 @@ def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
 
 
 def _rule(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
-    """Does a rule of the road? An ego drives along a made-up road, without SUMO."""
+    """Check that a rule of the road obeys the rules: an ego drives along a made-up road."""
     from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import RULE
 
@@ -73,7 +73,7 @@ def _rule(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
 
 
 def _sensor(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
-    """Does a sensor? It looks at people in made-up scenes, without SUMO."""
+    """Check that a sensor obeys the rules: it is shown people in made-up scenes."""
     from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import SENSOR
 

@@ -1,17 +1,17 @@
-"""Completions for the shell: bundled names, and files where a file may stand."""
+"""The completions for the shell: bundled names, and files where a file is allowed."""
 
 from pathlib import Path
 
 
 def complete_scenario(incomplete: str) -> list[str]:
-    """Bundled scenarios, and SUMO's configurations."""
+    """Return bundled scenarios, and configurations of SUMO."""
     from sumo_scenarios import available
 
     return _beginning(available(), incomplete) + _files(incomplete, ".sumocfg")
 
 
 def complete_study(incomplete: str) -> list[str]:
-    """Bundled studies, and definitions of studies."""
+    """Return bundled studies, and definitions of studies."""
     from giveway.studies.study_files import bundled_studies
 
     return _beginning(bundled_studies(), incomplete) + _files(incomplete, ".toml")
@@ -22,7 +22,7 @@ def _beginning(names: list[str] | tuple[str, ...], incomplete: str) -> list[str]
 
 
 def _files(incomplete: str, suffix: str) -> list[str]:
-    """Folders and files with that suffix, whose path begins so."""
+    """Return folders and files with that suffix whose path begins with the text."""
     folder, _, start = incomplete.rpartition("/")
     try:
         entries = sorted(Path(f"{folder}/" if folder or incomplete[:1] == "/" else ".").iterdir())

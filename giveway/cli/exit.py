@@ -1,9 +1,9 @@
-"""Exit codes of the command line, and its errors, which are one line."""
+"""The exit codes of the command line, and its errors, which are one line each."""
 
 import contextlib
 import sys
 
-INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+INTERRUPTED = 130  # 128 + SIGINT, as in shells
 
 
 _LONGEST = 300  # Largest number of characters of a word that are shown
@@ -12,11 +12,11 @@ _LONGEST = 300  # Largest number of characters of a word that are shown
 def fail(message: str, code: int) -> int:
     """Print one line on stderr, and return the exit code.
 
-    The message may quote a user's file, or SUMO that quotes it: what is not visible would steer
-    the terminal, and a word of a thousand letters hide the rest of the line.
+    The message may quote a user's file, or SUMO that quotes it. Invisible characters could control
+    the terminal, and a word of a thousand letters could hide the rest of the line.
     """
     line = visible(" ".join(map(_shortened, message.split())))
-    with contextlib.suppress(OSError):  # its terminal has been closed
+    with contextlib.suppress(OSError):  # the terminal may have been closed
         sys.stderr.write(f"error: {line}\n")
     return code
 

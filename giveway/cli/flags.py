@@ -1,4 +1,4 @@
-"""Every option of the configuration as a flag, derived from its declaration."""
+"""The flag of every option of the configuration, derived from its declaration."""
 
 from __future__ import annotations
 
@@ -89,10 +89,10 @@ _EVERYDAY = frozenset(
 def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     """Return ``command`` with one flag per configuration option.
 
-    Flags that are given arrive as ``settings``.
+    The flags that are given arrive as the argument ``settings``.
 
-    Values arrive as text and are validated by the configuration, with the same messages as those
-    of a TOML file.
+    Values arrive as text. The configuration validates them, with the same messages as those of a
+    TOML file.
     """
     locations = {"__".join(o.location): o for o in options() if o.location != ("scenario",)}
     own_options = {"__".join(o.location): o for o in own_flags()}
@@ -141,10 +141,10 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def set_plug_ins(words: Sequence[str], socket: Socket) -> dict[str, Any]:
-    """The plug-ins that a flag names, from words like ``school_zone`` or ``school_zone.limit=8``.
+    """Return the plug-ins that a flag names, from words like ``school_zone`` or ``a.limit=8``.
 
     Raises:
-        ConfigError: a word names no plug-in, or an option stands twice.
+        ConfigError: a word names no plug-in, or an option is given twice.
     """
     found: dict[str, Any] = {}
     for word in words:
@@ -165,7 +165,7 @@ def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, 
     """Return the options of a plug-in, from words like ``headway=1.5``.
 
     Raises:
-        ConfigError: a word is no key and value, or a key stands twice.
+        ConfigError: a word is no key and value, or a key is given twice.
     """
     values: dict[str, Any] = {}
     for word in words:

@@ -1,4 +1,4 @@
-"""``giveway fmu ...`` and ``giveway export ...``: the commands and their help."""
+"""The commands ``giveway fmu ...`` and ``giveway export ...``, and their help."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -25,7 +25,7 @@ def _formats(incomplete: str) -> list[str]:
 
 
 def build_fmu() -> typer.Typer:
-    """The commands about vehicle FMUs."""
+    """Return the commands about vehicle FMUs."""
     app = Commands("Look at, try and fit a vehicle FMU.")
     app.add("inspect", _inspect)
     app.add("check", _check)
@@ -35,10 +35,10 @@ def build_fmu() -> typer.Typer:
 
 
 def build_export(with_flags: Callable[[Callable[..., None]], Callable[..., None]]) -> typer.Typer:
-    """The commands that make FMUs.
+    """Return the commands that make FMUs.
 
     Args:
-        with_flags: adds the flags of the configuration.
+        with_flags: Function that adds the flags of the configuration.
     """
     app = Commands("Write the controller as an FMU, or a run in other formats.")
     app.add("controller", with_flags(_controller))

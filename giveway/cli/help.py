@@ -1,6 +1,6 @@
-"""Help pages: one plain style for all of them, everyday options first.
+"""The help pages: one plain style for all of them, everyday options first.
 
-Names are never cut: a long one has a line of its own (as click writes definition lists).
+Names are never cut: a long name has a line of its own (as click writes definition lists).
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
 JsonFlag = Annotated[
     bool, typer.Option("--json", help="Print what was found as JSON, for scripts, and no more.")
 ]
-"""Of every command whose findings a script may want."""
+"""Type of the flag of every command whose findings a script may need."""
 
 _KIND = re.compile(r"<(\w+)(?: range)?>")
 _KINDS = {"int": "INTEGER", "float": "NUMBER", "str": "TEXT"}
-_LONGEST = 300  # Letters of a command's sentence in the list of commands, so that none is cut
+_LONGEST = 300  # Number of characters of a command's sentence in the list, so that none is cut
 
 
 class Commands(typer.Typer):
-    """A group of commands in our style.
+    """A group of commands in giveway's style.
 
     Args:
         purpose: Purpose of the group.
@@ -48,7 +48,7 @@ class Commands(typer.Typer):
 
 
 def show_all_options(ctx: typer.Context, wanted: bool) -> None:
-    """The callback of ``--help-all``."""
+    """Print the help with all options; the callback of ``--help-all``."""
     if wanted:
         assert isinstance(ctx.command, _Command)
         ctx.command.everything = True
@@ -57,12 +57,12 @@ def show_all_options(ctx: typer.Context, wanted: bool) -> None:
 
 
 class _Command(TyperCommand):
-    """A command whose help leaves the options in panels to ``--help-all``."""
+    """A command whose help shows the options in panels only with ``--help-all``."""
 
     everything = False
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write the arguments, the everyday options, and if wanted the others by their panels."""
+        """Write the arguments and everyday options, and with ``--help-all`` all others by panel."""
         groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
         for parameter in self.get_params(ctx):
             record = parameter.get_help_record(ctx)

@@ -23,7 +23,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         code = fail(str(error), error.exit_code)
     except KeyboardInterrupt as error:
         code = fail(who_ended(error), exit_code_of(error))
-    except BrokenPipeError:  # the reader of our output has ended
+    except BrokenPipeError:  # the reader of the output has ended
         # the remaining output is dropped
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1
@@ -45,12 +45,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 1,
             )
         else:
-            raise  # a defect of giveway: show the traceback
+            raise  # a defect of giveway: its traceback is shown
     sys.exit(code)
 
 
 def _renamed(words: Sequence[str]) -> str | None:
-    """The message about the first flag that no longer exists; None if there is no such flag."""
+    """Return the message about the first flag that no longer exists, or None."""
     from giveway.config.renamed import renamed_flag
 
     for word in words:
@@ -61,7 +61,7 @@ def _renamed(words: Sequence[str]) -> str | None:
 
 
 def _named(error: OSError) -> str:
-    """An error of the system, with the file that it is about, or else our output."""
+    """Return an error of the system with the file that it concerns, or the output."""
     where = "output" if error.filename is None else error.filename
     return f"{where}: {error.strerror or error}"
 
@@ -70,7 +70,7 @@ def _run(words: list[str]) -> int:
     """Run the command and return its exit code."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal may lack our characters
+            stream.reconfigure(errors="replace")  # a terminal may lack some characters
     from giveway.cli.app import invoke
 
     return invoke(words)

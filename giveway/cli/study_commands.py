@@ -1,4 +1,4 @@
-"""``giveway study``, ``rerun``, ``report``, ``replay``: the commands and their help."""
+"""The commands ``giveway study``, ``rerun``, ``report`` and ``replay``, and their help."""
 
 from pathlib import Path
 from typing import Annotated
@@ -100,7 +100,7 @@ def _study(
             "bundled ones"
         )
     if study is not None:
-        find_study(study)  # before anything that takes longer is loaded
+        find_study(study)  # before anything slower is loaded
     from giveway.cli.commands.study_command import StudyRequest, study_command
     from giveway.studies.study import StudyOptions
 

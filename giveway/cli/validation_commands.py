@@ -1,4 +1,4 @@
-"""``giveway validate``, ``calibrate``: the commands and their help."""
+"""The commands ``giveway validate`` and ``calibrate``, and their help."""
 
 from pathlib import Path
 from typing import Annotated

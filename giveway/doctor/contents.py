@@ -1,4 +1,4 @@
-"""The contents of scenario files, counted while their bytes are read, which is cheap."""
+"""The contents of scenario files, which are counted while the files are read."""
 
 import re
 from collections import Counter
@@ -22,10 +22,10 @@ class Contents:
     """The contents of one or several files.
 
     Attributes:
-        elements: The number of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
-            network of walkingarea, crossing, sidewalk; those in comments are counted, too.
-        network: The attributes of the ``<net>`` element.
-        remote: Addresses that are referred to.
+        elements: Number of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
+            network of walkingarea, crossing, sidewalk. Elements in comments are counted, too.
+        network: Attributes of the ``<net>`` element.
+        remote: Addresses to which the files refer.
     """
 
     elements: Counter[str] = field(default_factory=Counter)
@@ -47,7 +47,7 @@ def read_contents(file: Path, into: Contents) -> None:
     """Count the contents of ``file``.
 
     Raises:
-        OSError, EOFError: it cannot be read.
+        OSError, EOFError: the file cannot be read.
     """
     for text in pieces(file):
         _count(text, into)

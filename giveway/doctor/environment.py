@@ -1,4 +1,4 @@
-"""The installation: versions, SUMO, FMU, solver, compiler, folders, terminal."""
+"""The check of the installation: versions, SUMO, FMU, solver, compiler, folders, terminal."""
 
 import os
 import shutil
@@ -22,7 +22,7 @@ from giveway.errors import InstallationError
 
 _ENOUGH_SPACE = 1e9  # [bytes] space for the results of a study
 _OLDEST_PYTHON = (3, 11)
-_PATIENCE = 60.0  # [s] time limit of a child process
+_PATIENCE = 60.0  # Time limit [s] of a child process
 _CHARACTERS = "Özgüner – m/s² ± µs"  # characters that our summaries print
 _IMPORT_SUMO = "from giveway.sumo.library import version; print(version())"
 
@@ -164,7 +164,7 @@ def _kernels() -> list[Finding]:
     try:
         if cast("Any", numba.njit)(_one_more)(1) != 2:
             return [error("numba", "computes 1 + 1 wrongly", "reinstall numba and llvmlite")]
-    except Exception as problem:  # numba's own, llvmlite's, or the operating system's
+    except Exception as problem:  # an error of numba, llvmlite or the operating system
         reason = f"does not compile ({problem})"
         return [error("numba", reason, "reinstall numba and llvmlite")]
     folder = kernel_cache()

@@ -12,8 +12,8 @@ class Finding:
 
     Attributes:
         level: ``error`` stops a run, ``warning`` may spoil one, ``note`` is good to know.
-        subject: Examined thing, two or three words.
-        text: Result, one line.
+        subject: Examined thing, in two or three words.
+        text: Result, in one line.
         remedy: Advice; empty if there is nothing to do.
     """
 

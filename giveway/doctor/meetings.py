@@ -1,4 +1,4 @@
-"""Egos, routes and zones, ranked by the number of people they meet, with command lines."""
+"""Egos, routes and zones, ranked by the number of people that they meet, with command lines."""
 
 import shlex
 from pathlib import Path
@@ -46,7 +46,7 @@ def meetings(config_file: Path, seen: dict[str, Any]) -> list[Finding]:
 
 
 def _seed(config_file: Path) -> str:
-    """Return the flag with which a run sees the trial's traffic, if the settings draw a seed."""
+    """Return the flag for a run with the trial's traffic, if the settings draw a seed."""
     settings = find(config_file).settings_file
     drawn = settings is not None and read_toml(settings).values.get("sumo", {}).get("seed") == "run"
     return " --sumo-seed=scenario" if drawn else ""

@@ -1,4 +1,4 @@
-"""Checks of a scenario: its files, their contents, and what a run would do."""
+"""The check of a scenario: its files, their contents, and what a run would do."""
 
 import math
 from collections import Counter
@@ -14,18 +14,21 @@ from giveway.scenario_files import STRIPING, ScenarioFiles, read_scenario
 from giveway.scenario_files.outputs import is_file
 from sumo_scenarios import ScenarioError, find
 
-_BLINK: Final = 0.5  # [s] interval in which a person may step before a car that looks once in each
-_CONTROL_STEP: Final = 0.05  # [s] largest one; a run takes the longest that divides SUMO's
+# Step of SUMO [s] above which a person may step before a car, which looks once in each step
+_BLINK: Final = 0.5
+# Largest control step [s]; a run takes the longest up to it that divides SUMO's
+_CONTROL_STEP: Final = 0.05
 _NETWORK_VERSION: Final = (1, 20)  # version that SUMO 1.28's netconvert writes
-_OLDEST_NETWORK: Final = (1, 0)  # before it, walkingareas and lefthand have another meaning
+# Version before which walkingareas and lefthand have another meaning
+_OLDEST_NETWORK: Final = (1, 0)
 
 
 def examine_scenario(scenario: str | Path, patience: float = PATIENCE) -> list[Finding]:
     """Check a scenario as a run would use it; SUMO tries it in a process of its own.
 
     Args:
-        scenario: A bundled name, a folder or a .sumocfg.
-        patience: Time limit [s] for loading it.
+        scenario: Bundled name, folder, or .sumocfg.
+        patience: Time limit [s] for loading the scenario.
     """
     try:
         files = read_scenario(find(scenario).config_file)

@@ -1,4 +1,4 @@
-"""The probe of a scenario for its parent process, even if SUMO crashes or hangs."""
+"""The trial of a scenario in a child process, for a report even if SUMO crashes or hangs."""
 
 import json
 import os
@@ -31,12 +31,12 @@ def try_in_sumo(
     """Let SUMO load the scenario and run it for a moment, in a process of its own.
 
     Args:
-        config_file: The .sumocfg.
+        config_file: Path of the .sumocfg.
         patience: Time limit [s].
-        people: True if the scenario has people of its own: find their encounters.
-        net_file: Network of the scenario; None: search no place for people of the user's own.
+        people: True if the scenario has people of its own, to find encounters with them.
+        net_file: Network of the scenario, or None to search no place for added people.
     """
-    # -P: a controller.py in the user's folder must not come before giveway's own.
+    # -P: giveway's modules must come before a controller.py in the user's folder.
     command = [sys.executable, "-P", "-m", "giveway.sumo.probe", str(config_file)]
     command += ["--people"] if people else []
     ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
@@ -136,7 +136,7 @@ def _remarks(seen: dict[str, Any]) -> list[Finding]:
 
 
 def _egos(seen: dict[str, Any]) -> list[Finding]:
-    """The vehicles that can be taken over, and a route for an ego that is inserted."""
+    """Return the vehicles that can be taken over, and a route for an inserted ego."""
     vehicles: dict[str, list[str]] = seen["vehicles"]
     if not vehicles:
         text = f"no road vehicle departs before {seen['time']:g} s"

@@ -1,10 +1,10 @@
-"""Floating car data that SUMO's replay device drives again, and sumo-gui shows.
+"""The export of floating car data, which SUMO's replay device drives and sumo-gui shows.
 
 The device (``--device.fcd-replay.file``) takes the records of each object in consecutive SUMO
 steps, whatever their times are. Therefore all are written at equal times without a break. SUMO 1.28
-dies if a person's edge is one inside a junction. Therefore a person's ``edge`` is the nearest
-normal one at its first instant, with the position along it. All vehicle types are written, too,
-because SUMO knows neither our pedestrians' nor the egos'.
+crashes if a person's edge is inside a junction. Therefore a person's ``edge`` is the nearest normal
+one at its first instant, with the position along it. All vehicle types are written, too, because
+SUMO does not know those of pedestrians and egos.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from giveway.exports.net import Net, Place
 from giveway.exports.sampling import PEDESTRIAN, Sampled, Track
 from giveway.replays.run_folder import RunFolder
 
-_BODIES = {PEDESTRIAN: (0.54, 0.54)}  # length and width [m]
-_CAR = (4.3, 1.8)  # length and width [m] of a vehicle whose size is not on record
+_BODIES = {PEDESTRIAN: (0.54, 0.54)}  # Length and width [m] of people
+_CAR = (4.3, 1.8)  # Length and width [m] of a vehicle of unknown size
 _COLOURS = {PEDESTRIAN: "213,94,0", "ego": "0,114,178"}
 _OTHERS = "118,118,118"
 
@@ -29,7 +29,7 @@ def write_fcd(run: RunFolder, sampled: Sampled, file: Path) -> str:
     """Write FCD, and beside it the types and a configuration that replays it.
 
     Returns:
-        What was written, in words.
+        The written files, in words.
 
     Raises:
         GivewayError: the run's network cannot be read.
@@ -107,8 +107,8 @@ def _write_config(file: Path, net: Net, types: Path, fcd: Path, sampled: Sampled
         "step-length": f"{sampled.step:g}",
         "ignore-route-errors": "true",
         "insertion-checks": "none",  # an object that enters a step late would stay late
-        "pedestrian.model": "striping",  # the only one that can be moved
-        "no-warnings": "true",  # SUMO judges a motion that is not its own
+        "pedestrian.model": "striping",  # the only model whose persons can be moved
+        "no-warnings": "true",  # SUMO would warn about a motion that is not its own
         "collision.action": "none",
         "time-to-teleport": "-1",
     }

@@ -1,8 +1,8 @@
-"""The run as a film: MP4 or GIF, from above, to scale.
+"""The export of a run as a film: MP4 or GIF, from above, to scale.
 
-Frames are painted by Pillow at twice their size and halved, which is smooth and takes some
-milliseconds. MP4 is H.264, encoded by the FFmpeg that the wheel imageio-ffmpeg carries (extra
-``video``); it runs as a process of its own.
+Pillow paints the frames at twice their size, and they are halved for smoothness. MP4 is H.264,
+encoded by the FFmpeg in the wheel imageio-ffmpeg (extra ``video``), which runs as a separate
+process.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 from giveway.run_data.road_marks import shown
 
-MP4_SIZE, GIF_SIZE = (1280, 720), (640, 360)  # pixels
+MP4_SIZE, GIF_SIZE = (1280, 720), (640, 360)  # Sizes [pixels]
 _FINER = 2  # factor between the painted and the final size of a frame
 _MARGIN = 4.0  # [m] margin around all places
 _WHOLE = 110.0  # [m] largest scene shown as a whole; else the view follows the first ego
@@ -43,8 +43,8 @@ class Painter:
     """Paints the frames of a run.
 
     Args:
-        run: The results folder.
-        sampled: Its trajectories.
+        run: Results folder.
+        sampled: Trajectories of the run.
         size: Size of a frame, width and height [pixels].
     """
 
@@ -61,7 +61,7 @@ class Painter:
                 self._present[index].append(number)
 
     def frames(self) -> Iterator[Image.Image]:
-        """All frames of the run, one after the other."""
+        """Yield all frames of the run, one after the other."""
         still = None if self._follows else self._ground(self._whole)
         for index in range(self._sampled.count):
             view = self._view(index)
@@ -86,7 +86,7 @@ class Painter:
         middle += 0.12 * _FOLLOWED * np.array([np.cos(heading), np.sin(heading)])
         return Box.centred(middle, (_FOLLOWED, _FOLLOWED * self._size[1] / self._size[0]))
 
-    # --- what stands still --------------------------------------------------------------------
+    # --- the ground ---------------------------------------------------------------------------
 
     def _ground(self, view: Box) -> Image.Image:
         canvas = Image.new("RGB", (_FINER * self._size[0], _FINER * self._size[1]), "white")
@@ -104,7 +104,7 @@ class Painter:
     def _outlines(self) -> list[Array]:
         return [np.array(outline) for outline in self._run.scene.road if len(outline) > 2]
 
-    # --- what moves ---------------------------------------------------------------------------
+    # --- the moving objects -------------------------------------------------------------------
 
     def _paint(self, canvas: Image.Image, index: int, view: Box) -> None:
         draw = ImageDraw.Draw(canvas)
@@ -204,7 +204,7 @@ def write_gif(run: RunFolder, sampled: Sampled, file: Path) -> str:
     """Write an animated GIF that repeats.
 
     Returns:
-        What was written, in words.
+        The written file, in words.
     """
     painter = Painter(run, sampled, GIF_SIZE)
     first, *others = _paletted(painter)
@@ -225,11 +225,11 @@ def write_mp4(run: RunFolder, sampled: Sampled, file: Path) -> str:
     """Write an MP4 (H.264).
 
     Returns:
-        What was written, in words.
+        The written file, in words.
 
     Raises:
         InstallationError: imageio-ffmpeg is not installed.
-        ResultsError: FFmpeg could not encode it.
+        ResultsError: FFmpeg could not encode the film.
     """
     try:
         import imageio_ffmpeg
@@ -238,7 +238,7 @@ def write_mp4(run: RunFolder, sampled: Sampled, file: Path) -> str:
             "MP4 needs imageio-ffmpeg; install it with: pip install 'giveway[video]', or write a "
             "GIF (--format gif)"
         ) from error
-    file.touch()  # FFmpeg's own words about a place that cannot be written are many
+    file.touch()  # shows here that the place can be written, since FFmpeg's message would be long
     painter = Painter(run, sampled, MP4_SIZE)
     sink = imageio_ffmpeg.write_frames(
         str(file),
@@ -262,7 +262,7 @@ def write_mp4(run: RunFolder, sampled: Sampled, file: Path) -> str:
 
 
 def _paletted(painter: Painter) -> Iterator[Image.Image]:
-    """Yield the frames in 256 colours for all, those of the first and of all that moves."""
+    """Yield the frames with 256 common colours, from the first frame and moving objects."""
     palette: Image.Image | None = None
     for frame in painter.frames():
         if palette is None:

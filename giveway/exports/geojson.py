@@ -1,6 +1,7 @@
-"""Trajectories on the map of the world: GeoJSON (RFC 7946) in longitude and latitude, WGS 84.
+"""The export of trajectories on a map: GeoJSON (RFC 7946) in longitude and latitude, WGS 84.
 
-A line for each presence of a person or vehicle, with its times; a point for each conflict.
+It has a line for each presence of a person or vehicle, with its times, and a point for each
+conflict.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ class Projection:
     """The projection between a network's coordinates and longitude and latitude.
 
     Args:
-        net: The network.
+        net: Network with the projection.
 
     Raises:
         InstallationError: pyproj is not installed.
@@ -66,10 +67,10 @@ class Projection:
 
 
 def write_geojson(run: RunFolder, sampled: Sampled, file: Path) -> str:
-    """Write the trajectories.
+    """Write the trajectories of a run as GeoJSON.
 
     Returns:
-        What was written, in words.
+        The written file, in words.
 
     Raises:
         GivewayError: the network cannot be read or has no projection, or pyproj is missing.

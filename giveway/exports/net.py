@@ -27,16 +27,16 @@ class Place:
     edge: str
     lane: str
     position: float  # [m] distance from the lane's beginning
-    distance: float  # [m] beside its middle
+    distance: float  # [m] distance from its middle
 
 
 class Net:
-    """A network's normal lanes and projection.
+    """The normal lanes of a network, and its projection.
 
     Attributes:
         file: File of the network.
         offset: Offset (2,) [m] that netconvert has added to projected coordinates.
-        projection: PROJ's parameters; "!" where there is none.
+        projection: Parameters of PROJ, or "!" without a projection.
     """
 
     def __init__(self, file: Path) -> None:
@@ -50,10 +50,10 @@ class Net:
 
     @classmethod
     def of(cls, run: RunFolder) -> Net:
-        """The network of a run's scenario.
+        """Return the network of a run's scenario.
 
         Raises:
-            GivewayError: the scenario is not there any more, or its network cannot be read.
+            GivewayError: the scenario no longer exists, or its network cannot be read.
         """
         try:
             scenario = find(run.config.scenario)
@@ -83,10 +83,10 @@ class Net:
         return shapely.STRtree([line for *_, line in self._lanes])
 
     def nearest(self, x: Array, y: Array) -> list[Place]:
-        """The nearest lane of a normal edge to each point [m].
+        """Return the nearest lane of a normal edge for each point [m].
 
         Raises:
-            ResultsError: the network has none.
+            ResultsError: the network has no such lane.
         """
         if not self._lanes:
             raise ResultsError(f"{self.file}: no edge in it but those of junctions")

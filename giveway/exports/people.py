@@ -1,4 +1,4 @@
-"""People's trajectories in the formats of PedPy and JuPedSim.
+"""The export of people's trajectories in the formats of PedPy and JuPedSim.
 
 PedPy's text format is that of the Jülich data archive: a header with frame rate and unit, then id,
 frame, x, y, z. JuPedSim's SQLite is its version 2 (JuPedSim 1.4): ``trajectory_data``, ``geometry``
@@ -26,7 +26,7 @@ def write_pedpy(run: RunFolder, sampled: Sampled, file: Path) -> str:
     """Write PedPy's text format.
 
     Returns:
-        What was written, in words.
+        The written file, in words.
 
     Raises:
         ResultsError: nobody walked.
@@ -50,7 +50,7 @@ def write_jupedsim(run: RunFolder, sampled: Sampled, file: Path) -> str:
     """Write JuPedSim's SQLite; the walkable area is the rectangle around all places.
 
     Returns:
-        What was written, in words.
+        The written file, in words.
 
     Raises:
         ResultsError: nobody walked.

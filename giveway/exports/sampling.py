@@ -1,6 +1,6 @@
-"""A run's trajectories at equal times, as other formats expect them.
+"""The trajectories of a run at equal times, as other formats expect them.
 
-People and vehicles far from every ego are recorded once per second only, and SUMO's own vehicles at
+People and vehicles far from every ego are recorded only once per second, and SUMO's own vehicles at
 SUMO's steps. In between they are interpolated linearly. An object that was away returns under
 another name.
 """
@@ -20,7 +20,7 @@ from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 
 PEDESTRIAN = "pedestrian"
-_AWAY = 1.5  # factor on the longest time between two rows from which an object was away
+_AWAY = 1.5  # Factor on the longest time between two rows, from which on an object was away
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Track:
     """One object during a presence without a break.
 
     Attributes:
-        id: SUMO's id; from its second presence on followed by ``#2``, ``#3`` ...
-        object: SUMO's id.
+        id: Id in SUMO, followed by ``#2``, ``#3`` ... from its second presence on.
+        object: Id in SUMO.
         type: Type as in ``trajectories.csv``.
         first: Index of its first instant.
         x, y: Coordinates (n,) [m].
@@ -52,7 +52,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Sampled:
-    """All objects of a run at t = ``begin`` + k ``step``.
+    """The objects of a run at the times ``begin`` + k ``step``.
 
     Attributes:
         begin: First instant [s] on SUMO's clock.
@@ -79,8 +79,8 @@ def sampled(run: RunFolder, step: float | None = None) -> Sampled:
     """Return the trajectories of a run at equal times.
 
     Args:
-        run: The results folder.
-        step: Step between two instants [s], whole milliseconds as SUMO's; None: the control step.
+        run: Results folder.
+        step: Time [s] between two instants in whole milliseconds, or None for the control step.
 
     Raises:
         ConfigError: the step makes no sense.

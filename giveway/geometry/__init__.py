@@ -1,1 +1,1 @@
-"""Paths, poses, rectangles and angles: plane geometry as kernels and the types round them."""
+"""Plane geometry: paths, poses, rectangles and angles, as kernels and types."""

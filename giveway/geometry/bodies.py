@@ -12,4 +12,4 @@ class VehicleShape:
 
 
 BODY = VehicleShape()
-"""The ego's body where neither the options nor SUMO name one (Yang & Özgüner 2019: 5 m by 2 m)."""
+"""Body of an ego if neither the options nor SUMO give one (Yang & Özgüner 2019: 5 m by 2 m)."""

@@ -7,11 +7,11 @@ import numpy as np
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at, stations_of
 
-_SAMPLE = 0.25  # [m] distance between the compared points of the paths
+_SAMPLE = 0.25  # Distance [m] between the compared points of the paths
 
 
 class Conflict(NamedTuple):
-    """The part of each way that no two bodies can be on at once; stations of their fronts [m]."""
+    """The part of each path that no two bodies can be on at once; stations of their fronts [m]."""
 
     enter: float
     leave: float
@@ -25,7 +25,7 @@ def conflict(own: Array, other: Array, apart: float) -> Conflict | None:
     Args:
         own: One path (k, 2) [m].
         other: Other path (m, 2) [m].
-        apart: Distance [m] of the paths' middles from which bodies on them do not touch.
+        apart: Distance [m] between the paths' middles from which on bodies on them do not touch.
     """
     along, points = _sampled(own)
     other_along, other_points = _sampled(other)
@@ -43,7 +43,7 @@ def conflict(own: Array, other: Array, apart: float) -> Conflict | None:
 
 
 def _sampled(points: Array) -> tuple[Array, Array]:
-    """Stations (n,) [m] along a polyline, and the points (n, 2) [m] there."""
+    """Return stations (n,) [m] along a polyline, and the points (n, 2) [m] there."""
     at = stations_of(points)
     stations = np.linspace(0.0, at[-1], max(2, int(np.ceil(at[-1] / _SAMPLE)) + 1))
     return stations, points_at(points, at, stations)

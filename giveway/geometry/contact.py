@@ -1,8 +1,8 @@
 """Distance and contact times of the ego's rectangle and a pedestrian's circle, compiled.
 
-Both questions are asked in the rectangle's frame: origin at its centre, X along the heading, Y to
-the left. A circle of radius R touches the rectangle exactly when its centre lies in the rectangle
-grown by R (the Minkowski sum: a rectangle with rounded corners), so the circle becomes a point.
+Both are computed in the rectangle's frame: origin at its centre, X along the heading, Y to the
+left. A circle of radius R touches the rectangle exactly when its centre lies in the rectangle grown
+by R (the Minkowski sum: a rectangle with rounded corners), so that the circle becomes a point.
 """
 
 from math import hypot, inf, sqrt
@@ -10,18 +10,18 @@ from math import hypot, inf, sqrt
 from giveway.geometry.kernel import inner
 
 AT_REST = 1e-12
-"""[m/s] A relative speed below this counts as none: a contact would be ages away."""
+"""Relative speed [m/s] below which two bodies do not move relative to each other."""
 
 
 @inner
 def to_frame(x: float, y: float, cos: float, sin: float) -> tuple[float, float]:
-    """Turn a vector of the network into the frame of a vehicle heading along (cos, sin)."""
+    """Return a vector of the network in the frame of a vehicle with the heading (cos, sin)."""
     return x * cos + y * sin, y * cos - x * sin
 
 
 @inner
 def signed_distance(x: float, y: float, half_length: float, half_width: float) -> float:
-    """Distance [m] of a point to the rectangle's edge, negative inside."""
+    """Return the distance [m] of a point from the rectangle's edge, negative inside."""
     outside_x = abs(x) - half_length
     outside_y = abs(y) - half_width
     if outside_x > 0.0 and outside_y > 0.0:
@@ -64,13 +64,13 @@ def contact_interval(
 ) -> tuple[float, float]:
     """Return the first and last instant at which a moving circle touches the rectangle.
 
-    The circle's centre is (x, y) + (w_x, w_y) t in the rectangle's frame, t over all reals, so
-    either instant may be negative; (inf, -inf) if the two never touch.
+    The circle's centre is (x, y) + (w_x, w_y) t in the rectangle's frame. t may be any real number,
+    so that both instants may be negative; they are (inf, -inf) if the two never touch.
 
     A line may enter the rectangle's bounding box, grown by ``radius``, through one of its four
-    corner squares. Then it meets the rounded corner there or nothing at all, because a corner
-    square's inner edges lie within the rounded rectangle. Therefore one slab test and at most two
-    disc tests suffice.
+    corner squares. Then it meets the rounded corner there or nothing, because a corner square's
+    inner edges lie within the rounded rectangle. Therefore one slab test and at most two disc tests
+    suffice.
     """
     if hypot(w_x, w_y) < AT_REST:
         touching = signed_distance(x, y, half_length, half_width) <= radius
@@ -93,6 +93,6 @@ def contact_interval(
         corner_x = half_length if at_x > 0.0 else -half_length
         corner_y = half_width if at_y > 0.0 else -half_width
         _, leaving = _disc(x - corner_x, y - corner_y, w_x, w_y, radius)
-        # -inf here is a contact lost to rounding: the line has been inside already.
+        # -inf here is due to rounding: the line has been inside already.
         last = max(leaving, first)
     return first, last

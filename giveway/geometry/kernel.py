@@ -1,6 +1,6 @@
 """numba's ``njit`` for giveway's own kernels, cached on disk, with strict IEEE arithmetic.
 
-The type of the arrays that kernels take is defined here, too.
+The type of the kernels' arrays is defined here, too.
 """
 
 from collections.abc import Callable
@@ -16,12 +16,12 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 _STRICT: dict[str, Any] = {
     "error_model": "numpy",
-    "no_cfunc_wrapper": True,  # no wrapper for C; it would be compiled with each kernel
+    "no_cfunc_wrapper": True,  # no C function, which would be compiled with each kernel
 }
 
 
 def kernel(function: Function) -> Function:
-    """Compile ``function`` at its first call; without fastmath bytes do not depend on the CPU."""
+    """Compile ``function`` at its first call; without fastmath, bytes do not depend on the CPU."""
     return cast("Function", njit(cache=True, **_STRICT)(function))
 
 
@@ -33,11 +33,11 @@ def unlocked(function: Function) -> Function:
 def inner(function: Function) -> Function:
     """Compile ``function`` with the kernels that call it, but not for Python.
 
-    Python runs it as it stands, uncompiled; a function that Python calls is a kernel.
+    Python runs it uncompiled; a function that Python calls should be a kernel.
     """
     return register_jitable(**_STRICT)(function)
 
 
 def inlined(function: Function) -> Function:
-    """Compile ``function`` into its callers, which saves counting references to its arrays."""
+    """Compile ``function`` into its callers."""
     return register_jitable(forceinline=True, **_STRICT)(function)

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from giveway.geometry.kernel import Array
 
 TOUCH = 0.01
-"""[m] Rectangles that reach into each other by less than this only touch."""
+"""Depth [m] up to which rectangles that reach into each other only touch."""
 
 
 def rectangles_overlap(one: Array, other: Array, deeper_than: float = TOUCH) -> NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""The passage of a path by a point."""
+"""The passage of a path close to a point."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import segment_at
 
 SIGHT = 100.0
-"""[m] along the path; persons and things farther ahead count as out of sight."""
+"""Sight distance [m] along the path; persons and things farther ahead are out of sight."""
 
 BEHIND = 10.0
-"""[m] behind the front bumper from which on pedestrians and vehicles are looked for."""
+"""Distance [m] behind the front bumper from which on pedestrians and vehicles are considered."""
 
 
 @inner
@@ -29,8 +29,8 @@ def look(
     Args:
         vertices: Points (k + 1, 2) [m] of the path.
         stations: Stations (k + 1,) [m] of its vertices.
-        first: The first segment that counts.
-        last: The last segment that counts.
+        first: First segment that counts.
+        last: Last segment that counts.
         x: Coordinate x of the point [m].
         y: Coordinate y of the point [m].
         front: Station [m] of the ego's front.
@@ -38,15 +38,16 @@ def look(
         reach: Distance [m] that the point could move.
 
     Returns:
-        The station [m] of the closest passage within the corridor, inf without one; and whether
+        The station [m] of the closest passage within the corridor, or inf without one, and whether
         the point, moved by ``reach``, could be within the corridor.
     """
     end = len(vertices) - 2
     closest = np.inf
     reachable = False
-    beyond_before = False  # is (x, y) beyond the end of the segment before?
+    beyond_before = False  # True if (x, y) is beyond the end of the segment before
     for i in range(first, last + 1):
-        # Each segment counts on its own: a path that crosses itself or turns back passes the same
+        # Each segment counts separately: a path that crosses itself or turns back passes the same
+        # place twice, and only the passage ahead matters.
         # place twice, and only the passage ahead matters.
         x_0, y_0 = vertices[i, 0], vertices[i, 1]
         length = stations[i + 1] - stations[i]

@@ -1,9 +1,9 @@
-"""The ego's path: a polyline along which the one-dimensional motion of its FMU is laid out.
+"""The ego's path: a polyline along which its FMU's one-dimensional motion is laid out.
 
-A *station* is the arc length [m] along the polyline; the ego's station is that of the centre of
-its front bumper, which is also SUMO's reference point of a vehicle. Beyond its ends the path goes
-on straight. A *heading* is in radians, counter-clockwise from +x; SUMO's navigational *angle* is in
-degrees, 0 is north, clockwise.
+A *station* is the arc length [m] along the polyline. The ego's station is that of the centre of its
+front bumper, which is also SUMO's reference point of a vehicle. Beyond its ends the path goes on
+straight. A *heading* is in radians, counter-clockwise from +x; SUMO's navigational *angle* is in
+degrees, clockwise from north.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Pose(NamedTuple):
     heading: float  # [rad] counter-clockwise from +x
 
 
-_SEARCH = 20.0  # [m] largest difference of SUMO's positions along a lane and the polyline's
+_SEARCH = 20.0  # Largest difference [m] between SUMO's position along a lane and the polyline's
 
 
 @dataclass(frozen=True)
@@ -46,10 +46,10 @@ class EgoPath:
 
     @classmethod
     def through(cls, points: ArrayLike) -> EgoPath:
-        """The path through ``points`` (k, 2) [m]; repeated points are dropped.
+        """Return the path through ``points`` (k, 2) [m], without repeated points.
 
         Raises:
-            ScenarioError: fewer than two distinct finite points.
+            ScenarioError: there are fewer than two distinct finite points.
         """
         vertices = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         if len(vertices):
@@ -64,7 +64,7 @@ class EgoPath:
 
     @property
     def length(self) -> float:
-        """Arc length [m]."""
+        """The arc length [m]."""
         return float(self.stations[-1])
 
     def points(self, stations: Array) -> Array:
@@ -72,7 +72,7 @@ class EgoPath:
         return points_at(self.vertices, self.stations, stations)
 
     def pose(self, station: float, length: float = 0.0) -> Pose:
-        """The pose of a body whose front and rear both have their middle on the path.
+        """Return the pose of a body whose front and rear both have their middle on the path.
 
         Args:
             station: Station of the front's middle [m].
@@ -89,7 +89,7 @@ class EgoPath:
         return station, lateral
 
     def project(self, points: ArrayLike) -> tuple[Array, Array]:
-        """Stations (n,) [m] and lateral offsets (n,) [m, left positive] of ``points`` (n, 2)."""
+        """Return stations (n,) and lateral offsets (n,) [m, left positive] of ``points``."""
         points = np.ascontiguousarray(points, dtype=np.float64).reshape(-1, 2)
         frenet = np.empty((2, len(points)))
         project_all(self.vertices, self.stations, points, frenet)
@@ -97,7 +97,7 @@ class EgoPath:
 
 
 def stations_of(vertices: Array) -> Array:
-    """Arc lengths (k,) [m] from the beginning of a polyline to its ``vertices`` (k, 2) [m]."""
+    """Return arc lengths (k,) [m] from a polyline's beginning to its ``vertices`` (k, 2) [m]."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(vertices, axis=0).T))])
 
 
@@ -115,7 +115,7 @@ def points_at(vertices: Array, stations: Array, at: Array) -> Array:
 def fine_near(near: Array, reach: float, begin: float, end: float, step: float) -> Array:
     """Return stations [m] from ``begin`` by ``step`` within ``reach`` of any of ``near``.
 
-    The last one is before ``end``. A long path may pass a place again; the part between is left
+    The last one is before ``end``. If a long path passes a place twice, the part in between is left
     out.
 
     Args:
@@ -164,14 +164,14 @@ def body_pose(
     if i == j:
         return x, y, headings[i]
     x_r, y_r = point_on(vertices, stations, j, station - length)
-    if (x - x_r) ** 2 + (y - y_r) ** 2 < 1e-12:  # a path that returns to where it was
+    if (x - x_r) ** 2 + (y - y_r) ** 2 < 1e-12:  # the path returns to where it was
         return x, y, headings[i]
     return x, y, np.arctan2(y - y_r, x - x_r)
 
 
 @kernel
 def project(vertices: Array, stations: Array, x: float, y: float) -> tuple[float, float]:
-    """Station and signed lateral offset [m] of the path's point nearest to (x, y)."""
+    """Return station and signed lateral offset [m] of the path's point nearest to (x, y)."""
     best_distance = np.inf
     best_station = 0.0
     best_lateral = 0.0
@@ -181,7 +181,7 @@ def project(vertices: Array, stations: Array, x: float, y: float) -> tuple[float
         length = stations[i + 1] - stations[i]
         e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
         along = (x - x_0) * e_x + (y - y_0) * e_y
-        if along < 0.0 and i > 0:  # the first and the last segment go on for ever
+        if along < 0.0 and i > 0:  # the first and the last segment continue without end
             along = 0.0
         if along > length and i < last:
             along = length
@@ -204,27 +204,27 @@ def project_all(vertices: Array, stations: Array, points: Array, frenet: Array) 
 
 
 def heading_to_angle(heading: float) -> float:
-    """The navigational angle [deg] of a heading [rad]."""
+    """Return the navigational angle [deg] of a heading [rad]."""
     return (90.0 - math.degrees(heading)) % 360.0
 
 
 def angle_to_heading(angle: float) -> float:
-    """The heading [rad] of a navigational angle [deg]."""
+    """Return the heading [rad] of a navigational angle [deg]."""
     return math.radians(90.0 - angle)
 
 
 def angles_to_headings(angles: Array) -> Array:
-    """The headings (n,) [rad] of navigational angles (n,) [deg]."""
+    """Return the headings (n,) [rad] of navigational angles (n,) [deg]."""
     headings: Array = np.radians(90.0 - angles)
     return headings
 
 
 def headings_to_angles(headings: Array) -> Array:
-    """The navigational angles (n,) [deg] of headings (n,) [rad], as tables keep them: rounded."""
+    """Return the navigational angles (n,) [deg] of headings (n,) [rad], rounded as in tables."""
     return np.mod(np.round(90.0 - np.degrees(headings), 6), 360.0)
 
 
 @inner
 def angle_of_velocity(v_x: float, v_y: float) -> float:
-    """The navigational angle [deg] into which a velocity points."""
+    """Return the navigational angle [deg] of a velocity's direction."""
     return float((90.0 - np.degrees(np.arctan2(v_y, v_x))) % 360.0)

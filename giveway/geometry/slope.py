@@ -40,7 +40,7 @@ class Slope:
 
         Args:
             front: Station of its front [m].
-            length: Length of the body [m]; what stands beyond an end of the path does not count.
+            length: Length of the body [m]; its part beyond an end of the path does not count.
         """
         first, last = self.stations[0], self.stations[-1]
         rear = min(max(front - length, first), last)

@@ -1,4 +1,4 @@
-"""A run as a Gymnasium environment (extra ``gym``): docs/gym.md."""
+"""A run as a Gymnasium environment (extra ``gym``); see docs/gym.md."""
 
 from giveway.gym.drive import DriveEnv, Seat
 

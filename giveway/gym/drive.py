@@ -1,6 +1,6 @@
-"""A drive through a crowd as a Gymnasium environment (extra ``gym``): docs/gym.md.
+"""A drive through a crowd as a Gymnasium environment (extra ``gym``); see docs/gym.md.
 
-The co-simulation is that of every run: SUMO, FMU, people, bounds of lights and priority. It runs in
+The co-simulation is that of every run: SUMO, FMU, people, limits by lights and priority. It runs in
 a thread of its own, in which the environment is the controller, as a plug-in. ``reset`` begins it;
 the constructor starts nothing.
 """
@@ -38,14 +38,14 @@ except ImportError as missing:
     ) from missing
 
 ID = "giveway/Drive-v0"
-FAR = 100.0  # [m] largest distance ahead in observations
-FAST = 40.0  # [m/s] largest speed in observations
-LATERAL = 30.0  # [m] largest lateral distance of people in observations
-_REAR = -10.0  # [m] farthest place behind the front bumper of people in observations
-_HARD = 10.0  # [m/s^2] largest acceleration in observations
+FAR = 100.0  # Largest distance ahead [m] in observations
+FAST = 40.0  # Largest speed [m/s] in observations
+LATERAL = 30.0  # Largest lateral distance [m] of people in observations
+_REAR = -10.0  # Farthest place [m] behind the front bumper of people in observations
+_HARD = 10.0  # Largest acceleration [m/s^2] in observations
 _DISCOMFORT = 0.02  # [s^3/m^2] per (m/s^2)^2 in a second: 4 m/s^2 cost as much as standing a third
-_CONTACT = 100.0  # [s] cost of hitting a person
-_MOVES = 0.1  # [m/s] speed below which the ego hits nobody
+_CONTACT = 100.0  # Cost [s] of hitting a person
+_MOVES = 0.1  # Speed [m/s] below which the ego hits nobody
 _CONTROLLER = "giveway.gym:Seat"
 
 Dict = dict[str, NDArray[np.float32]]
@@ -56,13 +56,14 @@ class _Exchange:
 
     def __init__(self, action: str) -> None:
         self.action = action
-        self.asked, self.answered = threading.Lock(), threading.Lock()  # held until it is so
+        # each is held until the event
+        self.asked, self.answered = threading.Lock(), threading.Lock()
         self.asked.acquire()
         self.answered.acquire()
         self.interrupt = DeferredInterrupt()
         self.setup: Setup | None = None
         self.seen: Observation | None = None
-        self.around: Array = np.empty((0, 4))  # the people near the ego, as ``_around`` gives them
+        self.around: Array = np.empty((0, 4))  # people near the ego, from ``_around``
         self.share = 0.0
         self.over = False
         self.result: RunResult | None = None
@@ -73,7 +74,7 @@ _here = threading.local()
 
 
 class Seat:
-    """The controller of an environment's run, which asks the environment for its action."""
+    """The controller of an environment's run, which takes the environment's action."""
 
     def __init__(self, setup: Setup) -> None:
         self._exchange: _Exchange | None = getattr(_here, "exchange", None)
@@ -160,7 +161,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         """Begin a run; ``options`` must be empty.
 
         Raises:
-            GivewayError: it cannot begin.
+            GivewayError: the run cannot begin.
         """
         super().reset(seed=seed)
         if options:
@@ -175,7 +176,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
             _here.exchange = exchange
             try:
                 exchange.result = simulate(checked, None, exchange.interrupt)
-            except BaseException as error:  # told in the thread that waits
+            except BaseException as error:  # it is reported in the waiting thread
                 exchange.error = error
             finally:
                 exchange.over = True
@@ -209,7 +210,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         pace = seen.speed / setup.reference_speed - 1.0
         reward = setup.time_step * (pace - _DISCOMFORT * seen.acceleration**2)
         completed = truncated = hit = False
-        if exchange.over:  # no further instant: the last one again, without a cost
+        if exchange.over:  # there is no further instant: the last one again, without a cost
             reward = 0.0
             self._finish(exchange)
             completed = self.result is not None and self.result.ending is Ending.COMPLETED
@@ -255,7 +256,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         self._half = (own.vehicle.width or 2.0) / 2.0
         return config, scenario
 
-    # --- what is told -------------------------------------------------------------------------
+    # --- observations -------------------------------------------------------------------------
 
     def _told(self, exchange: _Exchange) -> dict[str, Any]:
         seen = exchange.seen
@@ -287,7 +288,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return told
 
     def _around(self, seen: Observation) -> Array:
-        """Return the people near the ego (m, 4): place [m] and velocity [m/s], ahead and left."""
+        """Return place [m] and velocity [m/s] (m, 4) of the people near the ego, ahead and left."""
         if seen.people is None or seen.path is None or not len(seen.people.position):
             return np.empty((0, 4))
         x, y, heading = seen.path.poses(np.zeros(1))[0]
@@ -299,7 +300,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return around
 
     def _hits(self, speed: float, around: Array) -> bool:
-        """Return whether the front touches somebody while the ego drives."""
+        """Return whether the front touches a person while the ego drives."""
         beside = np.maximum(np.abs(around[:, 1]) - self._half, 0.0)
         touched = np.hypot(around[:, 0], beside) <= self._radius
         touched &= (around[:, 0] >= 0.0) | (beside == 0.0) & (around[:, 0] > -self._radius)

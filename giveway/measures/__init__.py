@@ -1,4 +1,4 @@
-"""Density, speed and flow of the people, by PedPy, and the levels of service they amount to."""
+"""Density, speed and flow of the people by PedPy, and the levels of service."""
 
 from giveway.measures.columns import MEASURE_COLUMNS
 from giveway.measures.density_map import DensityMap, density_map

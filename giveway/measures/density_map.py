@@ -1,4 +1,4 @@
-"""The places where people were: PedPy's classic density on a grid, averaged over a run."""
+"""The map of people's density: PedPy's classic density on a grid, averaged over a run."""
 
 from dataclasses import dataclass
 
@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 from giveway.measures.trajectories import surroundings, walks
 from giveway.run_data.tracks import CrowdTrack
 
-CELL = 0.5  # [m] side of a grid's cell
-SAMPLES = 200  # largest number of instants in the mean
+CELL = 0.5  # Side [m] of a grid's cell
+SAMPLES = 200  # Largest number of instants in the mean
 
 
 @dataclass(frozen=True)
 class DensityMap:
-    """Mean density on a grid.
+    """The mean density on a grid.
 
     Attributes:
         density: Density (rows, columns) [1/m^2], the northern row first.
-        left, bottom, right, top: [m] the grid's edges.
+        left, bottom, right, top: Edges [m] of the grid.
     """
 
     density: NDArray[np.float64]
@@ -32,7 +32,7 @@ def density_map(crowd: CrowdTrack, instants: int) -> DensityMap:
     """Return the mean density over a run.
 
     Args:
-        crowd: the crowd's track.
+        crowd: Track of the crowd.
         instants: Number of instants of the run; those without people count, too.
 
     Raises:

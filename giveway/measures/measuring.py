@@ -18,16 +18,16 @@ from giveway.run_data.tracks import CrowdTrack
 if TYPE_CHECKING:
     import pandas as pd
 
-CUT_OFF = 1.0  # [m] no Voronoi cell reaches farther from its person
-SAMPLING = 0.25  # [s] between the instants at which an area is looked at
-SPEED_WINDOW = 0.2  # [s] over which PedPy differentiates positions to speeds
+CUT_OFF = 1.0  # Largest distance [m] of a Voronoi cell's edge from its person
+SAMPLING = 0.25  # Time [s] between the instants at which an area is measured
+SPEED_WINDOW = 0.2  # Time [s] over which PedPy computes speeds from positions
 
 
 def require_pedpy() -> None:
     """Make sure that PedPy is installed before anything is computed, without importing it.
 
     Raises:
-        ResultsError: it is missing.
+        ResultsError: PedPy is missing.
     """
     if importlib.util.find_spec("pedpy") is None:
         raise ResultsError(
@@ -67,7 +67,7 @@ def _intervals(measure: MeasureConfig, time: NDArray[np.float64]) -> list[tuple[
     """Return the control instants at which each interval begins and before which it ends."""
     step = (time[-1] - time[0]) / (len(time) - 1)
     length = max(1, round(measure.interval / step))
-    last = len(time) - 1  # an instant later there is nothing
+    last = len(time) - 1  # there is nothing an instant later
     return [(begin, min(begin + length, last)) for begin in range(0, last, length)]
 
 
@@ -100,7 +100,8 @@ def _line_rows(
     length = float(np.hypot(x_1 - x_0, y_1 - y_0))
     rows = []
     for begin, end in _intervals(measure, time):
-        # A crossing's frame is the first beyond the line: in the last interval the last one counts.
+        # A crossing belongs to the first frame beyond the line. In the last interval, the last
+        # frame counts.
         last = end if end == len(time) - 1 else end - 1
         here = (frames >= begin) & (frames <= last)
         flow = int(here.sum()) / float(time[end] - time[begin])

@@ -39,8 +39,8 @@ def level_of_service(
 ) -> str:
     """Return the level of a density, or of a flow.
 
-    A flow alone does not tell a free walkway from a jammed one: F by flow is demand beyond
-    capacity. Where the density is known, that decides.
+    A flow alone does not distinguish a free walkway from a jammed one: level F by flow is demand
+    beyond capacity. If the density is known, it decides.
 
     Args:
         levels: Limits, Fruin's or the manual's.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def walks(crowd: CrowdTrack) -> "pd.DataFrame":
     """Return one row per record: id, frame (control instant), x, y [m].
 
-    A person who was out of our hands for a while gets another id, so that nobody jumps over a line.
+    A person whom SUMO moved for a while gets another id then, so that nobody jumps over a line.
     """
     import pandas as pd
 
@@ -26,7 +26,7 @@ def walks(crowd: CrowdTrack) -> "pd.DataFrame":
     number = np.concatenate([[0], np.cumsum(new)]) if len(order) else np.empty(0, dtype=np.int64)
     data = {"id": number, "frame": frame, "x": crowd.x[order], "y": crowd.y[order]}
     table = pd.DataFrame(data)
-    lasting = table.groupby("id")["frame"].transform("size") > 1  # a single record tells no speed
+    lasting = table.groupby("id")["frame"].transform("size") > 1  # a single record has no speed
     return table[lasting].reset_index(drop=True)
 
 

@@ -1,4 +1,4 @@
-"""Lines and areas that nobody reaches; most of them have a wrong coordinate."""
+"""The lines and areas that nobody reaches, mostly because of a wrong coordinate."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ import shapely
 from giveway.config.tables.measures import MeasureConfig
 from giveway.run_data.tracks import CrowdTrack
 
-NEAR = 1.0  # [m] distance within which a person reaches a line or an area
+NEAR = 1.0  # Distance [m] within which a person reaches a line or an area
 
 
 def unreached(measures: Sequence[MeasureConfig], crowd: CrowdTrack) -> tuple[str, ...]:

@@ -1,1 +1,1 @@
-"""Code of other packages: finding it, loading it, and reading its options."""
+"""The code of other packages: finding it, loading it, and reading its options."""

@@ -1,15 +1,15 @@
-"""Faults of code of other packages, in one line each."""
+"""The faults in the code of other packages, in one line each."""
 
 from __future__ import annotations
 
 import traceback
 from pathlib import Path
 
-_SHOWN = 80  # characters of a value that a message shows
+_SHOWN = 80  # Number of characters of a value in a message
 
 
 def described(error: BaseException) -> str:
-    """Kind, first line and place of an error, like "ValueError: bad (a.py:3)".
+    """Return kind, first line and place of an error, like "ValueError: bad (a.py:3)".
 
     Args:
         error: Error that the code has raised.
@@ -24,7 +24,7 @@ def described(error: BaseException) -> str:
 
 
 def shown(value: object) -> str:
-    """A value on one line, whatever its ``repr`` does.
+    """Return a value as text on one line, whatever its ``repr`` does.
 
     Args:
         value: Value that the code has returned.

@@ -1,8 +1,8 @@
-"""Finding the class that a name means, in installed distributions and nowhere else.
+"""The search for the class that a name means, only in installed distributions.
 
 A name is that of an entry point, or ``module:attribute``. The imported file has to belong to an
 installed distribution: by its RECORD, or, if installed for development (``pip install -e``), below
-its project's folder. A file that merely lies in the working folder is never imported.
+the project's folder. A file that merely lies in the working folder is never imported.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ _REFERENCE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*(\.[A-Za-z_]
 
 @dataclass(frozen=True)
 class Found:
-    """A plug-in and its distribution, as manifests tell it.
+    """A plug-in and its distribution, as in manifests.
 
     Attributes:
-        socket: Socket that it is for.
+        socket: Socket for which it is used.
         name: Name as the user wrote it.
         reference: ``module:attribute``.
-        distribution: The installed distribution that has it.
+        distribution: Name of the installed distribution that has it.
         version: Version of the distribution.
         sha256: SHA-256 of all files of its package.
     """
@@ -85,7 +85,7 @@ def find(name: str, socket: Socket = CONTROLLER) -> Found:
     """Return the plug-in that a name means, without importing it.
 
     Raises:
-        ControlError: nothing installed has it.
+        ControlError: no installed distribution has it.
     """
     reference = name if is_reference(name) else _declared(name, socket)
     module = reference.partition(":")[0]
@@ -97,7 +97,7 @@ def load(found: Found) -> Any:
     """Import a plug-in that was found.
 
     Raises:
-        ControlError: it cannot be imported.
+        ControlError: the plug-in cannot be imported.
     """
     module, _, attribute = found.reference.partition(":")
     try:
@@ -116,16 +116,16 @@ def load(found: Found) -> Any:
 
 
 def load_class(name: str, socket: Socket, settings: Mapping[str, Any]) -> tuple[Any, Any]:
-    """Return the class that a name means, and its options (None if it has none).
+    """Return the class that a name means, and its options, or None if it has no options.
 
     Args:
         name: Name of the plug-in.
-        socket: Socket that it is for.
-        settings: Settings of its options, as the user has set them.
+        socket: Socket for which it is used.
+        settings: Options as the user has set them.
 
     Raises:
-        ConfigError: its options cannot be used.
-        ControlError: it is not installed, cannot be imported, or is no class.
+        ConfigError: the options cannot be used.
+        ControlError: the plug-in is not installed, cannot be imported, or is no class.
     """
     kind = load(find(name, socket))
     if not callable(kind):
@@ -137,7 +137,7 @@ def load_class(name: str, socket: Socket, settings: Mapping[str, Any]) -> tuple[
 
 
 def _declared(name: str, socket: Socket) -> str:
-    """The ``module:attribute`` of an entry point."""
+    """Return the ``module:attribute`` of an entry point."""
     group = socket.group
     values = {point.value for point in metadata.entry_points(group=group, name=name)}
     if len(values) == 1:
@@ -155,7 +155,7 @@ def _declared(name: str, socket: Socket) -> str:
 
 
 def _owner(setting: str, package: str) -> tuple[metadata.Distribution, list[Path]]:
-    """The distribution of a top-level package or module, and the package's files."""
+    """Return the distribution of a top-level package or module, and the package's files."""
     with _without_working_folder():
         try:
             spec = importlib.util.find_spec(package)
@@ -212,7 +212,7 @@ def _files(origins: list[Path]) -> list[Path]:
 
 
 def _digest(files: list[Path]) -> str:
-    """Return the SHA-256 of names and contents, read again only after a change."""
+    """Return the SHA-256 of names and contents; files are read again only after a change."""
     stamps = tuple((str(f), f.stat().st_mtime_ns, f.stat().st_size) for f in files)
     return _digest_of(stamps)
 
@@ -230,7 +230,7 @@ def _digest_of(stamps: tuple[tuple[str, int, int], ...]) -> str:
 
 @contextlib.contextmanager
 def _without_working_folder() -> Iterator[None]:
-    """Import as with Python's ``-P`` in this context: not from the working folder."""
+    """Import in this context as with Python's ``-P``: not from the working folder."""
     kept = sys.path[:]
     if not sys.flags.safe_path and sys.path and sys.path[0] in {"", str(Path.cwd())}:
         del sys.path[0]

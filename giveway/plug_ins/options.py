@@ -1,4 +1,4 @@
-"""The options of a plug-in: its ``Options``, filled with texts and TOML values."""
+"""The options of a plug-in: its class ``Options``, filled with texts and TOML values."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def read_options(
 
     Args:
         name: Name of the plug-in, for messages.
-        kind: Class ``Options`` of the plug-in, a dataclass or pydantic model; None without one.
+        kind: Class ``Options`` of the plug-in, a dataclass or pydantic model, or None without one.
         values: Values as the user has set them; those of a command line are texts.
-        socket: Socket that the plug-in is for.
+        socket: Socket for which the plug-in is used.
 
     Returns:
-        An instance of ``kind``; None without one.
+        An instance of ``kind``, or None without it.
 
     Raises:
         ConfigError: a key is unknown, or a value cannot be used.
@@ -55,13 +55,13 @@ def read_options(
         raise ControlError(
             f"{socket.setting} = '{name}': its Options cannot be read ({said})"
         ) from error
-    except (Exception, SystemExit) as error:  # its own validators
+    except (Exception, SystemExit) as error:  # an error of the plug-in's own validators
         said = f"{type(error).__name__}: {str(error).partition(chr(10))[0]}"
         raise ConfigError(f"{table}: '{name}' refuses them ({said})") from error
 
 
 def plain(options: Any) -> dict[str, Any]:
-    """Return the options, defaults included, as a manifest tells them."""
+    """Return the options, with defaults, as in a manifest."""
     if isinstance(options, BaseModel):
         return options.model_dump(mode="json")
     if options is None:

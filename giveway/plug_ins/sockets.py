@@ -88,6 +88,6 @@ SENSOR = Socket(
     "observe",
 )
 SOCKETS = (CONTROLLER, MODEL, SENSOR)
-"""The sockets that one key names."""
+"""Sockets for which one key names the plug-in."""
 TABLES = (RULE, METRIC)
-"""The sockets of which a table names any number: its keys are the names."""
+"""Sockets for which the keys of a table name any number of plug-ins."""

@@ -1,7 +1,7 @@
-"""Fixtures for the tests of packages that plug into giveway: pytest finds them by itself.
+"""Fixtures for the tests of packages that plug into giveway; pytest finds them by itself.
 
 ``require_sound_controller(Class, **options)`` and ``require_sound_model(Class, **options)`` fail
-with the rules that a controller or a pedestrian model breaks (docs/plugins.md).
+and list the rules that a controller or a pedestrian model breaks (docs/plugins.md).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class _Finding(Protocol):
 
 @pytest.fixture
 def require_sound_controller() -> Callable[..., None]:
-    """Return a check that fails unless a controller (with its ``Options``) keeps all rules."""
+    """Return a check that fails unless a controller (with its ``Options``) obeys all rules."""
     from controller import Setup, check_controller
 
     setup = Setup(0.05, 1000.0, 100.0, 4.0, 2.0, 5000.0, 2.0)
@@ -35,7 +35,7 @@ def require_sound_controller() -> Callable[..., None]:
 
 @pytest.fixture
 def require_sound_model() -> Callable[..., None]:
-    """Return a check that fails unless a pedestrian model keeps all rules."""
+    """Return a check that fails unless a pedestrian model obeys all rules."""
     from pedestrian_model import ModelSetup, check_model
 
     setup = ModelSetup(0.05, 0.27, 5.0, 2.5, 1)
@@ -47,7 +47,7 @@ def require_sound_model() -> Callable[..., None]:
 
 
 def _maker(kind: Any, options: dict[str, Any]) -> Callable[[Any], object]:
-    """Return a function that makes the plug-in in the way giveway does."""
+    """Return a function that makes the plug-in as giveway does."""
     from giveway.plug_ins.options import read_options
 
     own = read_options(kind.__name__, getattr(kind, "Options", None), options)

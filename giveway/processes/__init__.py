@@ -1,1 +1,1 @@
-"""A run as a child process: its heartbeat, its supervisor, and its end in words."""
+"""A run as a child process: its heartbeat, its supervisor, and the cause of its end."""

@@ -1,7 +1,7 @@
 """The cause of a process's end in words, from its exit code and the files that it left.
 
-The supervisor of a run and that of a study's workers both watch a child's heartbeat. They share
-these words about the end of a child, and the way in which a hanging child reports its place.
+The supervisor of a run and that of a study's workers both watch a child's heartbeat. They use the
+same words for the end of a child, and the same way to let a hanging child report its place.
 """
 
 import os
@@ -10,7 +10,7 @@ import subprocess
 from contextlib import suppress
 from pathlib import Path
 
-_LAST_WORDS = 2.0  # [s] time for a hanging process to write its traceback
+_LAST_WORDS = 2.0  # Time [s] for a hanging process to write its traceback
 WINDOWS_CAUSES = {
     0xC0000005: "access violation",
     0xC000001D: "illegal instruction",
@@ -35,7 +35,7 @@ def cause_of_end(returncode: int) -> str:
 
 
 def let_speak(process: subprocess.Popen[bytes]) -> None:
-    """Make a hanging process write its traceback, by a signal that it may survive."""
+    """Let a hanging process write its traceback, by a signal that it may survive."""
     if os.name == "nt":
         return
     with suppress(OSError):
@@ -45,12 +45,12 @@ def let_speak(process: subprocess.Popen[bytes]) -> None:
 
 
 def stood_still(seconds: float) -> str:
-    """Return the reason for killing a process without a sign of life for ``seconds``."""
+    """Return the reason for killing a process without a sign of life for ``seconds`` [s]."""
     return f"no progress for {seconds:g} s"
 
 
 def text_in(file: Path) -> str:
-    """Return the text of a dead process in ``file``; empty without the file."""
+    """Return the text that a dead process left in ``file``, or "" without the file."""
     try:
         return file.read_text(encoding="utf-8", errors="replace").strip()
     except OSError:

@@ -1,4 +1,4 @@
-"""The child's half of a supervised run: it tells its state, and dies with its supervisor."""
+"""The child's side of a supervised run: it reports its state, and ends with its supervisor."""
 
 import contextlib
 import faulthandler
@@ -13,10 +13,10 @@ from typing import IO, Self
 from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.processes.interrupts import ENDING, RaisedSignals, exit_code_of
 
-JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # names the journal's folder to the child
+JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # Name of the variable with the journal's folder
 TRACEBACK_FILE = "traceback.txt"  # traceback of Python at the death of native code
 STDERR_FILE = "stderr.txt"  # output of native code, kept for its last words
-_ORPHAN_POLL = 1.0  # [s]
+_ORPHAN_POLL = 1.0  # Time [s] between two checks for the supervisor
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
@@ -38,9 +38,9 @@ def is_supervised() -> bool:
 
 
 class Supervised:
-    """The context, in the main thread, of everything that a supervised process does.
+    """The context, in the main thread, for all work of a supervised process.
 
-    An end that is not reported by leaving this context is a crash, even one with exit code 0.
+    An end without leaving this context is a crash, even with exit code 0.
 
     Args:
         folder: Folder of the journal, from :func:`take_journal_folder`; with None the context does
@@ -58,10 +58,10 @@ class Supervised:
             return self
         self._heartbeat.beat(Phase.LOADING)
         die_with(self._heartbeat.read().supervisor)
-        with contextlib.suppress(OSError):  # without a traceback the report is only shorter
+        with contextlib.suppress(OSError):  # without a traceback, the report is only shorter
             self._traceback = (self._folder / TRACEBACK_FILE).open("w", encoding="utf-8")
             faulthandler.enable(self._traceback)
-        self._signals.__enter__()  # until this process ends: it may be told to once more
+        self._signals.__enter__()  # kept until this process ends, since it may be told to end again
         return self
 
     def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
@@ -69,17 +69,17 @@ class Supervised:
             self._heartbeat.finish(_exit_code(error))
 
     def listen(self) -> None:
-        """Let a signal through that the supervisor has blocked while Python started.
+        """Let through a signal that the supervisor has blocked while Python started.
 
         Raises:
-            KeyboardInterrupt: there has been one.
+            KeyboardInterrupt: such a signal has come.
         """
         if self._folder is not None and sys.platform != "win32":
             signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
 
 
 def _exit_code(error: BaseException | None) -> int:
-    """Return the exit code that Python will give for ``error``."""
+    """Return the exit code with which Python will end after ``error``."""
     if error is None:
         return 0
     if isinstance(error, SystemExit):
@@ -90,14 +90,14 @@ def _exit_code(error: BaseException | None) -> int:
 
 
 def die_with(supervisor: int) -> None:
-    """End this process at once when its supervisor has been killed; its rows are in the journal.
+    """End this process when its supervisor has been killed; its rows are in the journal.
 
-    Linux does it itself, even while native code hangs, when the *thread* that started this process
-    ends. On other Unixes a thread of this process does it, which has to wait while native code
-    keeps Python's lock; Windows has no such relation between processes.
+    Linux does it by itself when the *thread* that started this process ends, even while native code
+    hangs. On other Unixes a thread of this process does it, which has to wait while native code
+    keeps Python's lock. Windows has no such relation between processes.
 
     Args:
-        supervisor: Its process id; 0 means that there is none.
+        supervisor: Process id of the supervisor, or 0 without one.
     """
     global _supervised
     _supervised = bool(supervisor)
@@ -107,7 +107,7 @@ def die_with(supervisor: int) -> None:
         import ctypes
 
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != supervisor:  # it died before we asked
+    if os.getppid() != supervisor:  # the supervisor died before the request
         os.kill(os.getpid(), signal.SIGKILL)
     if sys.platform != "linux":
         threading.Thread(target=_watch_parent, args=(supervisor,), daemon=True).start()

@@ -1,19 +1,19 @@
-"""The schedule of Python's garbage collection: a full collection takes a tenth of a second."""
+"""The schedule of Python's garbage collection, of which a full run takes a tenth of a second."""
 
 import contextlib
 import gc
 from collections.abc import Iterator
 from typing import Final
 
-_NEVER: Final = 1 << 30  # number of collections of the middle generation before a full one
+_NEVER: Final = 1 << 30  # Number of collections of the middle generation before a full one
 
 
 @contextlib.contextmanager
 def full_collections_put_off() -> Iterator[None]:
-    """Put off full collections in this context; new objects are collected as before.
+    """Postpone full collections in this context; new objects are collected as usual.
 
-    Existing objects are not frozen for this: unfrozen objects do not count as new ones, so that
-    a full collection would hardly ever follow.
+    Existing objects are not frozen for this. Objects that are unfrozen later do not count as new
+    ones, so that a full collection would hardly ever follow.
     """
     before = gc.get_threshold()
     gc.set_threshold(*before[:2], _NEVER)

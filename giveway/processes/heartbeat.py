@@ -1,8 +1,8 @@
-"""The state of a run, visible to another process even after this one has died.
+"""The heartbeat: the state of a run, which another process can read even after this one has died.
 
-The heartbeat is 64 bytes of shared memory in a file: the child stores, its supervisor reads. A
+The heartbeat is 64 bytes of shared memory in a file: the child stores, and its supervisor reads. A
 store costs no more than an assignment, so every phase of every control step is stored. This module
-imports nothing heavy, since the supervisor has to start at once.
+imports little, since the supervisor has to start at once.
 """
 
 import enum
@@ -13,15 +13,15 @@ from typing import NamedTuple, Self
 
 HEARTBEAT_FILE = "heartbeat"
 _LAYOUT = struct.Struct("=8q")
-PHASE, _STEP, _TIME, _CODE, _SUPERVISOR, _KEEP = range(6)  # the slots in use, int64 each
-INSTANT = slice(_STEP, _TIME + 1)  # stored at once: a kill finds both words or neither
-MILLISECONDS = 1000.0  # per second: SUMO's own resolution
+PHASE, _STEP, _TIME, _CODE, _SUPERVISOR, _KEEP = range(6)  # indices of the used slots, int64 each
+INSTANT = slice(_STEP, _TIME + 1)  # slots that are stored together: a kill leaves both or neither
+MILLISECONDS = 1000.0  # milliseconds per second, which is SUMO's resolution
 
 
 class Phase(enum.IntEnum):
     """The phases of a run."""
 
-    STARTING = 0  # Python itself starts; the value before the first beat
+    STARTING = 0  # Python itself starts; this is the value before the first store
     LOADING = 1
     CONTROLLING = 2
     VEHICLE = 3
@@ -47,13 +47,13 @@ _PLACES = {
 
 
 class Pulse(NamedTuple):
-    """One reading of a heartbeat."""
+    """The content of a heartbeat at one reading."""
 
     phase: Phase
     step: int  # control step
     time: float  # [s] on SUMO's clock
-    code: int  # exit code, once the phase is DONE
-    supervisor: int  # process id, 0 without one
+    code: int  # exit code, if the phase is DONE
+    supervisor: int  # process id, or 0 without one
 
     @property
     def place(self) -> str:
@@ -62,15 +62,15 @@ class Pulse(NamedTuple):
 
 
 class Heartbeat:
-    """The shared memory of a child, which stores, and its supervisor, which reads.
+    """The shared memory of a child, which stores, and of its supervisor, which reads.
 
     Args:
-        folder: Folder of the journal; the file is made if there is none. With None the memory is
-            this process's own.
+        folder: Folder of the journal; the file is made if it does not exist. With None the memory
+            is only this process's.
 
     Attributes:
-        slots: The memory, one int64 each. The loop stores into ``slots[PHASE]`` and
-            ``slots[INSTANT]`` itself, which saves it five calls a step.
+        slots: Slots of the memory, one int64 each. The loop stores into ``slots[PHASE]`` and
+            ``slots[INSTANT]`` itself.
         instant: Buffer of step and time, before they are stored.
 
     Raises:
@@ -86,7 +86,8 @@ class Heartbeat:
             self.slots = memoryview(bytearray(_LAYOUT.size)).cast("q")
             return
         path = folder / HEARTBEAT_FILE
-        # Zeros are written: a store into a hole of a file on a full disk would kill us (SIGBUS).
+        # Zeros are written, since a store into a hole of a file on a full disk would end the
+        # process.
         with path.open("r+b" if path.exists() else "w+b", buffering=0) as file:
             if len(file.read()) < _LAYOUT.size:
                 file.seek(0)
@@ -95,7 +96,7 @@ class Heartbeat:
 
     @classmethod
     def supervised_by(cls, process_id: int, folder: Path) -> Self:
-        """Return a new heartbeat that names its reader."""
+        """Return a new heartbeat that names its supervisor."""
         heartbeat = cls(folder)
         heartbeat.slots[_SUPERVISOR] = process_id
         return heartbeat
@@ -116,7 +117,7 @@ class Heartbeat:
         self.slots[PHASE] = Phase.DONE
 
     def keep(self) -> None:
-        """Ask to keep the journal: its rows have not been written elsewhere."""
+        """Ask the supervisor to keep the journal, whose rows have not been written elsewhere."""
         self.slots[_KEEP] = 1
 
     @property
@@ -125,19 +126,21 @@ class Heartbeat:
         return bool(self.slots[_KEEP])
 
     def read(self) -> Pulse:
-        """The latest state."""
+        """Return the latest state."""
         phase, step, time, code, supervisor = self.slots[: _SUPERVISOR + 1].tolist()
-        known = Phase(phase) if phase in _PLACES else Phase.LOADING  # overwritten by a wild pointer
+        # a wild pointer may have overwritten it
+        known = Phase(phase) if phase in _PLACES else Phase.LOADING
         return Pulse(known, step, time / MILLISECONDS, code, supervisor)
 
 
 class Stillness:
-    """The time without a change of a heartbeat, for a supervisor that reads it now and then.
+    """The time without a change of a heartbeat, which a supervisor reads from time to time.
 
-    The time between looks is added up; the clock would go on while both processes are suspended.
+    The times between readings are added up, since the clock goes on while both processes are
+    suspended.
 
     Args:
-        heartbeat: Heartbeat to look at.
+        heartbeat: Heartbeat to read.
     """
 
     def __init__(self, heartbeat: Heartbeat) -> None:

@@ -12,7 +12,7 @@ def command(code: str, arguments: list[int | str]) -> list[str]:
     """Return the command of an interpreter like this one, with its flags and ``sys.path``.
 
     Args:
-        code: Code to run, in which ``arguments`` is a name.
+        code: Code to run, in which the name ``arguments`` is defined.
         arguments: Arguments for the code.
     """
     flags = {
@@ -21,11 +21,11 @@ def command(code: str, arguments: list[int | str]) -> list[str]:
         "-B": sys.flags.dont_write_bytecode,
     }
     given = json.dumps([[_absolute(entry) for entry in sys.path], arguments])
-    # -P: nothing is imported from the working directory before our paths are set
+    # -P: nothing is imported from the working directory before the paths are set
     chosen = [flag for flag, on in flags.items() if on]
     return [sys.executable, "-P", *chosen, "-c", _PATHS + code, given]
 
 
 def _absolute(entry: str) -> str:
-    """Return an entry of sys.path as an absolute path; those of import hooks stay unchanged."""
+    """Return an entry of sys.path as an absolute path; entries of import hooks stay unchanged."""
     return str(Path(entry).absolute()) if Path(entry).exists() else entry

@@ -1,9 +1,9 @@
 """Ctrl-C, and the other signals by which a user ends a process.
 
-In the loop they are requests, honoured between two steps: a KeyboardInterrupt between a person's
-moveToXY and SUMO's step would crash the next simulation, and one inside the recorder would leave
-half a row. Everywhere else they are raised as exceptions, so that all open resources are closed:
-temporary folders are removed, and the user reads a line.
+In the loop they are requests, which are obeyed between two steps. A KeyboardInterrupt between a
+person's moveToXY and SUMO's step would crash the next simulation, and one inside the recorder would
+leave half a row. Everywhere else they are raised as exceptions, so that all open resources are
+closed: temporary folders are removed, and the user reads a message.
 """
 
 import signal
@@ -13,11 +13,11 @@ from collections.abc import Iterable
 from types import FrameType
 from typing import Any, Self
 
-PATIENCE = 10.0  # [s] time after which a second interrupt acts at once
+PATIENCE = 10.0  # Time [s] after which a second interrupt acts at once
 ENDING = frozenset(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
-"""By these a user ends a process: Ctrl-C, ``kill``, a terminal that is closed."""
+"""Signals by which a user ends a process: Ctrl-C, ``kill``, a terminal that is closed."""
 
 
 class TerminatedError(KeyboardInterrupt):
@@ -33,19 +33,19 @@ class TerminatedError(KeyboardInterrupt):
 
 
 def who_ended(error: KeyboardInterrupt) -> str:
-    """Return the way in which the user has ended us: "interrupted", or "ended by SIGTERM"."""
+    """Return how the user has ended the process: "interrupted", or "ended by SIGTERM"."""
     if isinstance(error, TerminatedError):
         return f"ended by {signal.Signals(error.number).name}"
     return "interrupted"
 
 
 def exit_code_of(error: KeyboardInterrupt) -> int:
-    """Return 128 + the signal, as shells have it."""
+    """Return the exit code, 128 + the signal, as shells do."""
     return 128 + (error.number if isinstance(error, TerminatedError) else signal.SIGINT)
 
 
 class SignalHandler:
-    """The context in which :meth:`handle` receives signals instead of their former handlers.
+    """The context in which :meth:`handle` receives signals instead of the former handlers.
 
     Signals that this process was told to ignore, as nohup does, are still ignored. Outside the
     main thread, where handlers cannot be set, nothing changes.
@@ -76,12 +76,12 @@ class SignalHandler:
 
 
 class RaisedSignals(SignalHandler):
-    """The context in which a signal to end is raised in the main thread.
+    """The context in which a signal to end is raised as an exception in the main thread.
 
     Args:
-        once: True: only the first signal is raised. One that comes ``PATIENCE`` after it acts at
-            once, and those between them do nothing. A supervised process gets the signal from the
-            terminal and from its supervisor, and the second must not disturb the tidying up.
+        once: True to raise only the first signal. A signal that comes ``PATIENCE`` after it acts at
+            once, and those in between do nothing. A supervised process gets the signal from the
+            terminal and from its supervisor, and the second must not disturb the clean-up.
     """
 
     def __init__(self, *, once: bool = False) -> None:
@@ -93,8 +93,8 @@ class RaisedSignals(SignalHandler):
         """Raise the exception for a signal.
 
         Raises:
-            KeyboardInterrupt: it was Ctrl-C.
-            TerminatedError: it was another one.
+            KeyboardInterrupt: the signal was Ctrl-C.
+            TerminatedError: the signal was another one.
         """
         now = time.monotonic()
         if self._once and self._first is not None:
@@ -111,8 +111,8 @@ class RaisedSignals(SignalHandler):
 class DeferredInterrupt(SignalHandler):
     """The context in which a signal to end only sets :attr:`requested`.
 
-    An impatient second Ctrl-C therefore does not cost the rows that are being written. One that
-    comes ``PATIENCE`` after the first acts at once: a native call may hang.
+    Therefore an impatient second Ctrl-C does not lose the rows that are being written. One that
+    comes ``PATIENCE`` after the first acts at once, since a native call may hang.
     """
 
     def __init__(self) -> None:

@@ -13,13 +13,13 @@ class FolderInUseError(Exception):
 
 @contextlib.contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Lock a folder. The lock is the system's, leaves no file, and ends with this process.
+    """Lock a folder. The lock belongs to the system, leaves no file, and ends with this process.
 
-    Windows, and network disks without such locks, lock nothing.
+    On Windows, and on network disks without such locks, nothing is locked.
 
     Raises:
         FolderInUseError: another process has locked it.
-        OSError: it cannot be opened.
+        OSError: the folder cannot be opened.
     """
     if sys.platform == "win32":
         yield
@@ -43,7 +43,7 @@ def in_use(folder: Path) -> bool:
     """Return whether another process has locked a folder.
 
     Raises:
-        OSError: it cannot be opened.
+        OSError: the folder cannot be opened.
     """
     try:
         with locked(folder):

@@ -1,9 +1,9 @@
-"""A run in a process of its own, so that a crash of native code does not end the report with it.
+"""The supervision of a run in a process of its own, so that its crash can be reported.
 
-SUMO, the FMU and the solvers are native code: they can end their process by a signal, by an
+SUMO, the FMU and the solvers are native code: they can end their process by a signal or by an
 ``exit()`` in the middle of a step, or never return. The supervisor starts the run as a child that
-shares its terminal, waits, and tells what became of it; the rows are in the journal. It imports
-nothing heavy, since it only waits.
+shares its terminal, waits, and reports how it ended. The rows are in the journal. This module
+imports little, since it only waits.
 """
 
 import contextlib
@@ -29,13 +29,15 @@ from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
 from giveway.processes.interrupts import ENDING, SignalHandler
 from giveway.processes.locks import in_use, locked
 
-HANG_LIMIT = 120.0  # [s] wall-clock limit without a sign of life from the loop
+HANG_LIMIT = 120.0  # Wall-clock limit [s] without a sign of life from the loop
 _PREFIX = "giveway-journal-"
-_KEPT = 7 * 86400.0  # [s] time that a killed supervisor's journal is kept for "giveway recover"
-_PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it
-_TEARDOWN_LIMIT = 10.0  # [s] limit from "done" to the process's end; native destructors hang, too
-_POLL = 1.0  # [s] between two looks at the heartbeat
-_SIGNALLED = 128  # a shell's exit code of a process that died of signal n is 128 + n
+# Time [s] for which the journal of a killed supervisor is kept for "giveway recover"
+_KEPT = 7 * 86400.0
+_PATIENCE = 10.0  # Time [s] for a child to write its rows before a second signal kills it
+# Time limit [s] from "done" to the process's end, since native destructors may hang
+_TEARDOWN_LIMIT = 10.0
+_POLL = 1.0  # Time [s] between two readings of the heartbeat
+_SIGNALLED = 128  # the exit code in a shell of a process that died of signal n is 128 + n
 _SHOW_CURSOR = "\r\x1b[2K\x1b[?25h"  # shows the cursor that a progress bar has hidden
 
 
@@ -44,11 +46,11 @@ class Verdict:
     """The end of a supervised process.
 
     Attributes:
-        code: The exit code to pass on: the child's own, or a shell's 128 + n for a signal;
+        code: Exit code to pass on: the child's own, or 128 + n for a signal, as in a shell. It is
             never 0 after a crash.
-        crashed: it ended without having told so; what it had recorded is in the journal.
-        interrupted: it ended by a signal that the user sent us, or after one.
-        cause: "SIGSEGV", "no progress for 120 s", ...; empty unless crashed.
+        crashed: True if it ended without reporting its end; its recorded rows are in the journal.
+        interrupted: True if it ended by a signal that the user sent, or after one.
+        cause: "SIGSEGV", "no progress for 120 s", ...; empty unless it crashed.
         pulse: Last state of its heartbeat.
         traceback: Traceback of Python by faulthandler; empty without one.
         last_words: Output of native code on the standard error of the child, if kept.
@@ -64,7 +66,7 @@ class Verdict:
 
     @property
     def message(self) -> str:
-        """Cause and place on one line: "SIGSEGV inside SUMO's step from 12.30 s (step 246)"."""
+        """The cause and place on one line: "SIGSEGV inside SUMO's step from 12.30 s (step 246)"."""
         return f"{self.cause} {self.pulse.place}" if self.crashed else ""
 
 
@@ -72,12 +74,12 @@ class Verdict:
 def journal_folder() -> Iterator[Path]:
     """Provide a folder for a journal, which is removed unless its heartbeat asks to keep it.
 
-    It is a local temporary folder and not the results folder, which may be a network disk (the
-    journal is written at every control step), is not known before the configuration has been
-    read, and is no place for left-overs.
+    It is a local temporary folder and not the results folder. That may be on a network disk (the
+    journal is written at every control step), and it is not known before the configuration has been
+    read.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: the folder cannot be made.
     """
     place = journal_place()
     _sweep(place)
@@ -95,8 +97,8 @@ def journal_folder() -> Iterator[Path]:
 def journal_place() -> Path:
     """Return the folder of all journals.
 
-    ``TMPDIR`` comes first, then ``/var/tmp``, then ``/tmp``, which often is memory that the run
-    itself needs.
+    ``TMPDIR`` comes first, then ``/var/tmp``, then ``/tmp``, which often is in memory that the run
+    needs.
     """
     large = Path("/var/tmp")
     named = os.environ.get("TMPDIR") or not os.access(large, os.W_OK)
@@ -114,7 +116,7 @@ def journals() -> list[Path]:
 
 
 def verdict_on_left(journal: Path) -> Verdict:
-    """Return the end of a process whose supervisor was killed, too.
+    """Return the verdict on a process whose supervisor was killed, too.
 
     Raises:
         OSError: the folder cannot be read.
@@ -134,24 +136,25 @@ def _sweep(place: Path) -> None:
 
 
 def own_command() -> list[str]:
-    """Return the command of this process, interpreter options included."""
+    """Return the command of this process, with interpreter options."""
     return [sys.executable, *sys.orig_argv[1:]]
 
 
 def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG_LIMIT) -> Verdict:
-    """Run ``command`` as a child on our own terminal and wait for its end.
+    """Run ``command`` as a child on the same terminal and wait for its end.
 
-    The child enters :class:`giveway.processes.child.Supervised`. Signals that ask us to end are
-    passed on; a second one 10 s later kills the child. Should we be killed, so is the child.
+    The child enters :class:`giveway.processes.child.Supervised`. Signals that ask this process to
+    end are passed on; a second one 10 s later kills the child. If this process is killed, so is the
+    child.
 
     Args:
         command: Program and arguments; the child finds the journal in ``GIVEWAY_JOURNAL``.
-        journal: An existing folder for the journal.
-        hang_limit: Wall clock [s] without a sign of life from the loop after which the child is
-            killed; infinity waits for ever.
+        journal: Existing folder for the journal.
+        hang_limit: Wall-clock time [s] without a sign of life from the loop after which the child
+            is killed; infinity waits for ever.
 
     Raises:
-        OSError: the child cannot be started, or the heartbeat not be made.
+        OSError: the child cannot be started, or the heartbeat cannot be made.
     """
     heartbeat = Heartbeat.supervised_by(os.getpid(), journal)
     environment = os.environ | {JOURNAL_VARIABLE: str(journal), **_temporary(journal)}
@@ -163,7 +166,7 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
             with _Watchdog(child, heartbeat, hang_limit) as watchdog:
                 relay.connect(child)
                 child.wait()
-        except BaseException:  # a child whom nobody watches must not stay
+        except BaseException:  # a child without a supervisor must not stay
             child.kill()
             child.wait()
             raise
@@ -192,7 +195,8 @@ def _temporary(journal: Path) -> dict[str, str]:
 def _held_back() -> Iterator[None]:
     """Start children with blocked signals in this context, until :meth:`Supervised.listen`.
 
-    While Python itself starts, a Ctrl-C would end in a traceback, and the others without a message.
+    While Python itself starts, a Ctrl-C would end in a traceback, and other signals without a
+    message.
     """
     if sys.platform == "win32":
         yield
@@ -208,7 +212,7 @@ class _Relay(SignalHandler):
     """Passes the signals by which a user ends a run to the child, which decides when to end.
 
     Attributes:
-        first: The first such signal.
+        first: First such signal.
         killed: True if a second one had to kill the child.
     """
 
@@ -235,7 +239,8 @@ class _Relay(SignalHandler):
             self._child.kill()
 
     def _send(self, number: int) -> None:
-        if self._child is not None and os.name != "nt":  # a Windows console tells everybody itself
+        # a Windows console tells all processes itself
+        if self._child is not None and os.name != "nt":
             self._child.send_signal(number)
 
 
@@ -243,7 +248,7 @@ class _Watchdog:
     """Reads the heartbeat once a second, and kills a child whose loop stands still.
 
     Attributes:
-        waited: Time [s] without a sign of life before the kill; 0 if the child was not killed.
+        waited: Time [s] without a sign of life before the kill, or 0 if the child was not killed.
     """
 
     def __init__(
@@ -260,7 +265,7 @@ class _Watchdog:
     def __enter__(self) -> Self:
         try:
             self._thread.start()
-        except RuntimeError as error:  # Python's way to say that the system gives no thread
+        except RuntimeError as error:  # Python's error if the system gives no thread
             raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN)) from error
         return self
 
@@ -291,7 +296,7 @@ def _judge(
     if pulse.phase is Phase.DONE:
         return Verdict(pulse.code or max(returncode, 0), False, interrupted, "", pulse, "", "")
     if pulse.phase is Phase.STARTING and 0 < returncode < min(WINDOWS_CAUSES):
-        # Python ended before it came to giveway's code, and has printed why.
+        # Python ended before it came to giveway's code, and has printed the reason.
         return Verdict(returncode, False, interrupted, "", pulse, "", "")
     return Verdict(
         code=_passed_on(returncode, relay),

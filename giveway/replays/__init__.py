@@ -1,4 +1,4 @@
-"""Replays: one page that plays a run, or two in step, in any browser and without a network."""
+"""Replays: a page that plays a run, or two side by side, in any browser and without a network."""
 
 from giveway.replays.replay_page import content_of, write_beside, write_replay
 

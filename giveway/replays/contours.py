@@ -16,28 +16,29 @@ from giveway.geometry.kernel import Array
 from giveway.replays.packed_tracks import MILLIMETRES, packed
 from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
-_RESOLUTION = 0.15  # [m]
-_SLOW = (0.0, 0.1, 0.3, 0.5)  # [m/s] below 0.2 a vehicle is an obstacle like a wall
-_STEP = 0.25  # [m/s]
+_RESOLUTION = 0.15  # Grid width [m]
+# Speeds [m/s] at low speed; below 0.2 a vehicle is an obstacle like a wall
+_SLOW = (0.0, 0.1, 0.3, 0.5)
+_STEP = 0.25  # Step [m/s] between the other speeds
 _MOST_SPEEDS = 40
 
 
 def influence_contours(
     shape: tuple[float, float], fastest: float, parameters: VciParameters
 ) -> dict[str, Any]:
-    """Lines of 10, 100 and 1000 N about a vehicle, in its own frame.
+    """Return the lines of 10, 100 and 1000 N around a vehicle, in its own frame.
 
     The force is that on a standing pedestrian, as ``giveway plot influence`` draws it.
 
     Args:
         shape: Length and width [m].
-        fastest: The highest speed [m/s] that is needed.
+        fastest: Highest speed [m/s] that is needed.
         parameters: Parameters of the pedestrian model.
 
     Returns:
-        ``speeds`` [m/s], ``levels`` [N]; the points ``x``, ``y`` [mm] from the body's centre,
-        heading along +x; ``lines``: for each speed and level the points at which its pieces
-        begin and the last one ends.
+        ``speeds`` [m/s] and ``levels`` [N]; the points ``x``, ``y`` [mm] from the body's centre,
+        heading along +x; ``lines``: for each speed and level, the points at which its pieces begin,
+        and the last one's end.
     """
     step = max(_STEP, fastest / _MOST_SPEEDS)
     speeds = np.append(_SLOW, np.arange(0.75, fastest + step, step))
@@ -77,9 +78,9 @@ def _contours(
     places = np.column_stack((across.ravel(), up.ravel()))
     vehicle = Vehicles.create(0.0, 0.0, 0.0, speed, length / 2, length / 2, width)
     force, *_ = vehicle_influence(places, np.zeros_like(places), vehicle, parameters)
-    # Forces fall off exponentially: between the points of the grid their logarithm is straight.
+    # Forces fall exponentially, so their logarithm is nearly linear between the grid's points.
     magnitude = np.log(np.maximum(np.hypot(*force.T), 1e-6)).reshape(across.shape)
-    # matplotlib's own way to contours
+    # the contour algorithm that matplotlib uses
     generator = contour_generator(x, y, magnitude, name="mpl2014", line_type="SeparateCode")
     pieces = [cast("list[Array]", generator.lines(level)[0]) for level in np.log(DRAWN)]
     return [[piece for piece in of_level if len(piece) > 2] for of_level in pieces]

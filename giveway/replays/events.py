@@ -1,4 +1,4 @@
-"""The events of a run in words: why each controller acted, and what the time line shows."""
+"""The events of a run in words: the reasons of controllers, and the content of the time line."""
 
 import re
 from collections.abc import Iterator
@@ -36,11 +36,11 @@ _SAFETY = {
 
 
 def why(reason: str, status: str) -> dict[str, Any]:
-    """Say why a controller acted, and whether the QP was infeasible.
+    """Return why a controller acted, and whether the QP was infeasible.
 
     Args:
         reason: Reason as written in ``ego.csv``.
-        status: The solver's.
+        status: Status of the solver.
     """
     infeasible = reason.startswith("infeasible") or status.startswith("infeasible")
     text = _SAFETY.get(reason) or _INFEASIBLE.get(status) or _REASONS.get(reason)
@@ -51,7 +51,7 @@ def why(reason: str, status: str) -> dict[str, Any]:
 
 
 def _manoeuvre(name: str) -> str | None:
-    """Say why the planning MPC chose a manoeuvre.
+    """Return why the planning MPC chose a manoeuvre.
 
     The result is None if the word is not one of its manoeuvres.
     """
@@ -64,15 +64,16 @@ def _manoeuvre(name: str) -> str | None:
 
 
 def events(rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig) -> list[dict[str, Any]]:
-    """The events on the time line, in the order of time.
+    """Return the events on the time line, in the order of time.
 
     Args:
-        rows: One ego's of ``ego.csv``.
-        met: this ego's rows of ``pedestrians.csv``.
+        rows: Rows of this ego in ``ego.csv``.
+        met: Rows of this ego in ``pedestrians.csv``.
         config: Configuration of this ego.
 
     Returns:
-        For each event its ``kind``, ``from`` and ``to`` [s], a ``text``, and ``who`` was met.
+        For each event its ``kind``, ``from`` and ``to`` [s], a ``text``, and ``who``: the people
+        met.
     """
     time = rows["time"].to_numpy(dtype=np.float64)
     found = []
@@ -88,7 +89,7 @@ def events(rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig) -> list[
 
 
 def _encounters(met: pd.DataFrame) -> Iterator[dict[str, Any]]:
-    """The closest approach of all, and every pedestrian whom the ego touched."""
+    """Yield the closest approach of all, and every pedestrian whom the ego touched."""
     if not {"id", "minimum_clearance", "time_of_minimum_clearance"} <= set(met):
         return
     known = met.dropna(subset=["minimum_clearance", "time_of_minimum_clearance"])
@@ -110,7 +111,7 @@ def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dic
 
 
 def _phases(active: NDArray[np.bool_], time: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
-    """Return start and end [s] of each active phase.
+    """Yield start and end [s] of each active phase.
 
     A command holds until the next instant.
     """

@@ -1,4 +1,4 @@
-"""Crossings and lights for the page: stripes of paint, and what each stop line shows when."""
+"""Crossings and lights for the page: painted stripes, and the states of each stop line."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _DARK = "-"  # Letter of a light that is off or unknown
 
 
 def pack_marks(run: RunFolder, frame: Frame) -> dict[str, Any]:
-    """The paint of the crossings and the stop lines of the lights.
+    """Return the paint of the crossings and the stop lines of the lights.
 
     Returns:
-        ``ground`` and ``stripes``: four corners each, as ``x`` and ``y`` [mm]; ``heads``: ``x``
-        and ``y`` [mm], two ends for each, ``times`` [s] from which on each shows its ``letters``,
-        one of G, y, r and - (unknown, or out).
+        ``ground`` and ``stripes``: four corners each, as ``x`` and ``y`` [mm]. ``heads``: ``x`` and
+        ``y`` [mm] of the two ends of each, and ``times`` [s] from which on it shows its
+        ``letters``, each one of G, y, r and - (unknown or off).
     """
     zebras, heads = run.scene.marks.zebras, run.scene.marks.heads
     ground = [corners for zebra in zebras for corners in bands(zebra, whole=True)]
@@ -43,7 +43,7 @@ def _corners(shapes: list[Any], frame: Frame) -> dict[str, str]:
 
 
 def _changes(run: RunFolder, head: SignalHead) -> tuple[list[float], str]:
-    """Return the times [s] at which a stop line's signal changes, and the letters it changes to."""
+    """Return the times [s] at which a stop line's signal changes, and the letters then."""
     times: list[float] = []
     letters = ""
     rows = run.signals

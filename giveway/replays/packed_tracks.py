@@ -1,6 +1,6 @@
 """Positions packed for the page: one track per uninterrupted presence, millimetres in base64.
 
-Lists of numbers as JSON would be four times as large, and slow to parse.
+As JSON lists, the numbers would be four times as large.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from numpy.typing import DTypeLike, NDArray
 from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 
-MILLIMETRES = 1000.0  # per metre
+MILLIMETRES = 1000.0  # millimetres per metre
 MOST_SAMPLES = 700_000  # Largest number of samples of all tracks: 17 MB of the page
-MOST_PREDICTED = 250_000  # 3 MB
+MOST_PREDICTED = 250_000  # Largest number of predicted positions: 3 MB
 _LONGEST_GAP = 10.0  # Longest gap [s] over which positions are interpolated
-_WINDOWS = (2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 100, 200, 500, 1000)  # steps
+# Possible windows [steps] for one sample
+_WINDOWS = (2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 100, 200, 500, 1000)
 
 
 def packed(values: Any, dtype: DTypeLike) -> str:
@@ -33,9 +34,9 @@ def packed(values: Any, dtype: DTypeLike) -> str:
 class Frame:
     """The frame of the page's coordinates: integers in it stay small.
 
-    Attributes:
+    x, y: Origin of the page's coordinates in the network [m].
         x, y: Its origin in the network [m].
-        time: (T,) [s] all instants; samples name theirs by its index.
+        time: All instants (T,) [s]; a sample has the index of its instant.
     """
 
     x: float
@@ -44,40 +45,40 @@ class Frame:
 
     @classmethod
     def of(cls, run: RunFolder) -> Frame:
-        """The frame of a run, with its origin at whole metres near the middle of all positions."""
+        """Return the frame of a run, with its origin near the middle of all positions."""
         places = run.trajectories if len(run.trajectories) else run.ego
         middle = [round((places[axis].min() + places[axis].max()) / 2.0) for axis in ("x", "y")]
         return cls(float(middle[0]), float(middle[1]), run.time)
 
     def across(self, x: Any) -> str:
-        """X coordinates [m], packed as millimetres."""
+        """Return x coordinates [m], packed as millimetres."""
         return packed(np.round((np.asarray(x, dtype=np.float64) - self.x) * MILLIMETRES), np.int32)
 
     def up(self, y: Any) -> str:
-        """Y coordinates [m], packed as millimetres."""
+        """Return y coordinates [m], packed as millimetres."""
         return packed(np.round((np.asarray(y, dtype=np.float64) - self.y) * MILLIMETRES), np.int32)
 
     def index(self, time: Any) -> NDArray[np.int64]:
-        """The index of each instant."""
+        """Return the index of each instant."""
         return np.searchsorted(self.time, np.asarray(time, dtype=np.float64) - 1e-9)
 
 
 def pack_tracks(
     rows: pd.DataFrame, frame: Frame, *, hold: float, gap: float, thin: float
 ) -> dict[str, Any]:
-    """The rows of pedestrians, or of vehicles, as tracks.
+    """Return the rows of pedestrians, or of vehicles, as tracks.
 
     Args:
         rows: Rows of ``trajectories.csv``.
         frame: Coordinate frame of the page.
-        hold: [s] for which an object stays in sight after its last row.
-        gap: [s] without a row after which an object has been away.
-        thin: [s] of which one sample is kept; 0 keeps all.
+        hold: Time [s] for which an object stays in sight after its last row.
+        gap: Time [s] without a row after which an object was away.
+        thin: Time [s] of which one sample is kept; 0 keeps all.
 
     Returns:
-        ``names``, each once; per track ``who`` (index of the name), ``start`` (index of its first
-        sample) and ``until`` [s]; per sample ``frame``, ``x``, ``y`` [mm], ``vx``, ``vy``
-        [cm/s], ``angle`` [1/65536 turns].
+        ``names``, each once; for each track ``who`` (index of the name), ``start`` (index of its
+        first sample) and ``until`` [s]; for each sample ``frame``, ``x``, ``y`` [mm], ``vx``,
+        ``vy`` [cm/s], ``angle`` [1/65536 turns].
     """
     codes, names = pd.factorize(rows["id"], sort=False)
     order = np.lexsort((rows["time"].to_numpy(), codes))
@@ -115,10 +116,10 @@ def _until(
     gap: float,
     end: float,
 ) -> Array:
-    """Return the time [s] for which each track is in sight.
+    """Return the time [s] until which each track is in sight.
 
     Distant pedestrians are recorded only from time to time, so that the end of their presence is
-    not known; one recorded shortly before the run's end is taken to be there until then.
+    not known. A pedestrian who was recorded shortly before the run's end is shown until then.
     """
     ends = time[last]
     seldom = (apart[last] > 1.5 * hold) | first[last]
@@ -158,7 +159,7 @@ def longest_gap(run: RunFolder) -> float:
 
 
 def pack_predictions(table: pd.DataFrame, frame: Frame) -> dict[str, Any]:
-    """One ego's predictions: an entry per instant, each with its dots."""
+    """Return the predictions of one ego: an entry per instant, with its predicted positions."""
     instants, counts = np.unique(frame.index(table["time"]), return_counts=True)
     every = max(1, -(-len(table) // MOST_PREDICTED))
     if every > 1:

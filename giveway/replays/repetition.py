@@ -1,4 +1,4 @@
-"""A run made once more, with its predictions on record."""
+"""The repetition of a run to record its predictions."""
 
 import contextlib
 import subprocess
@@ -10,16 +10,16 @@ from pathlib import Path
 
 from giveway.replays.run_folder import PREDICTIONS
 
-PERIOD = 0.25  # [s] of look-ahead between two predicted positions
+PERIOD = 0.25  # Time [s] between two predicted positions
 
 
 @dataclass(frozen=True)
 class Predicted:
-    """The outcome of repeating a run.
+    """The predictions of a repeated run.
 
     Attributes:
-        file: The predictions, until the context is left; None if there are none.
-        remark: Reason why there are none.
+        file: File with the predictions, which exists until the context is left, or None.
+        remark: Reason why there are none; empty if there are some.
     """
 
     file: Path | None
@@ -28,13 +28,13 @@ class Predicted:
 
 @contextlib.contextmanager
 def predicted_again(folder: Path) -> Iterator[Predicted]:
-    """Make the run in ``folder`` again, in processes of its own, so that a crash does no harm.
+    """Repeat the run in ``folder``, in other processes, so that a crash does no harm.
 
-    Its predictions count only if its ``ego.csv`` begins with the bytes of the folder's. A run that
-    was interrupted ends earlier than its repetition does.
+    The predictions count only if the ``ego.csv`` of the repetition begins with the folder's. The
+    run may have been interrupted and thus be shorter than the repetition.
 
     Args:
-        folder: The results of ``giveway run``.
+        folder: Results of ``giveway run``.
     """
     with tempfile.TemporaryDirectory(prefix="giveway-replay-", ignore_cleanup_errors=True) as place:
         again = Path(place) / "run"

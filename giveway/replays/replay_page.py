@@ -1,4 +1,4 @@
-"""One self-contained page, made from a results folder, that plays the run."""
+"""The self-contained page that plays a run, made from a results folder."""
 
 import json
 import math
@@ -55,9 +55,9 @@ def write_replay(
     """Make the page that plays the run in ``folder``.
 
     Args:
-        folder: The results of ``giveway run``, completed or not.
-        target: The HTML file to write; replaced if it exists.
-        predictions: A ``predictions.csv`` of the same run; None: the folder's own, if it has one.
+        folder: Results of ``giveway run``, completed or not.
+        target: HTML file to write; it is replaced if it exists.
+        predictions: File ``predictions.csv`` of the same run, or None for the folder's own, if any.
         remark: Reason for missing predictions, for the page.
 
     Returns:
@@ -70,11 +70,11 @@ def write_replay(
 
 
 def write_beside(contents: Sequence[dict[str, Any]], target: Path) -> Path:
-    """Make the page that plays two runs side by side, in step since their beginnings.
+    """Make the page that plays two runs side by side, at equal times since their beginnings.
 
     Args:
-        contents: Content of each page, as :func:`content_of` gives it.
-        target: The HTML file to write; replaced if it exists.
+        contents: Content of each page, from :func:`content_of`.
+        target: HTML file to write; it is replaced if it exists.
 
     Returns:
         ``target``.
@@ -117,7 +117,7 @@ def _written(target: Path, page: str) -> Path:
 
 
 def _text(name: str) -> Markup:
-    """A file of the page, as it is."""
+    """Return a file of the page, unchanged."""
     file = files("giveway.replays") / "page" / name
     return Markup(file.read_text(encoding="utf-8"))
 
@@ -128,9 +128,9 @@ def _template(name: str) -> Template:
 
 
 def _page(content: dict[str, Any]) -> str:
-    """The template with style, scripts and data in place."""
+    """Return the template filled with style, scripts and data."""
     template = _template("replay.html.j2")
-    # No id in it, whatever it is called, can end the script element that holds the data.
+    # This keeps any id from ending the script element that holds the data.
     data = json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     data = data.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     return template.render(
@@ -142,7 +142,7 @@ def _page(content: dict[str, Any]) -> str:
 
 
 def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> dict[str, Any]:
-    """The data of the page."""
+    """Return the data of the page."""
     frame = Frame.of(run)
     rows = run.trajectories
     walking = (rows["type"] == "pedestrian").to_numpy()
@@ -182,7 +182,7 @@ def _title(run: RunFolder) -> str:
 
 
 def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: float) -> list[str]:
-    """Return remarks that a spectator needs about the page and the run."""
+    """Return the remarks on the page and the run for its viewers."""
     notes = []
     error = run.manifest.get("error")
     if error:
@@ -207,9 +207,9 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
 
 
 def _walk_unrecorded(run: RunFolder) -> bool:
-    """True if SUMO moves persons without a record.
+    """Return whether SUMO moves persons who are not recorded.
 
-    These are persons handed back to SUMO, or all persons if there is no ego.
+    These are persons handed back to SUMO, or all persons in a run without an ego.
     """
     counts = run.manifest.get("pedestrians")
     handed_back = isinstance(counts, dict) and bool(counts.get("handed_back"))
@@ -229,7 +229,7 @@ def _road(run: RunFolder, frame: Frame) -> dict[str, Any]:
 def _egos(
     run: RunFolder, frame: Frame, predictions: pd.DataFrame | None, names: dict[str, int]
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """The contours of influence for each shape of vehicle, and the egos."""
+    """Return the contours of influence for each vehicle shape, and the egos."""
     kinds: dict[tuple[Any, ...], float] = {}
     for name, config in run.egos.items():
         kind = (_body(run, name), config.crowd.preset, config.crowd.model)
@@ -289,7 +289,7 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
 
 
 def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
-    """Return the front bumper's trajectory, to a centimetre, extended straight on at its end.
+    """Return the front bumper's trajectory in centimetres, extended straight on at its end.
 
     The rest of its path is not recorded.
     """
@@ -301,7 +301,7 @@ def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
 
 
 def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
-    """The lines of the panel: label, value, unit, meaning."""
+    """Return the lines of the panel: label, value, unit, meaning."""
     columns = {column.name: column for column in SUMMARY_FIELDS}
     return [
         {
@@ -316,7 +316,7 @@ def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _label(name: str) -> str:
-    """Return a column's name in words, with abbreviations as they are spoken."""
+    """Return a column's name in words, with abbreviations written out."""
     words = (word.upper() if word in _SPELT else word for word in name.split("_"))
     return " ".join(words)
 

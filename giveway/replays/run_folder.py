@@ -1,4 +1,4 @@
-"""A results folder read for its replay, whether the run was completed or not."""
+"""A results folder as a replay reads it, whether the run was completed or not."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ _SHOWN = 40  # Characters shown of a text that is not a number
 
 @dataclass(frozen=True)
 class RunFolder:
-    """The content of a results folder, as far as a replay needs it.
+    """The content of a results folder that a replay needs.
 
     Attributes:
         config: Configuration of the run.
-        egos: The configuration of each ego that has rows, by its id, in the order of departure.
-        ego, trajectories, pedestrians: The tables.
-        summary: Content of ``summary.json``: the first ego's row, all rows under ``egos`` if
-            several.
+        egos: Configuration of each ego that has rows, by its id, in the order of departure.
+        ego, trajectories, pedestrians: Tables of the same names.
+        summary: Content of ``summary.json``: the first ego's row, and all rows under ``egos`` if
+            there are several.
         manifest: Content of ``manifest.json``.
-        scene: The road and the bodies.
-        signals: Recorded states of the lights with their times; empty if no light is recorded.
-        time: (T,) [s] every instant that has a row.
+        scene: Road and bodies.
+        signals: Recorded states of the lights with their times; empty if none is recorded.
+        time: Instants (T,) [s] that have a row.
     """
 
     path: Path
@@ -60,7 +60,7 @@ class RunFolder:
 
     @property
     def step(self) -> float:
-        """The control step [s], as far as the rows tell."""
+        """The control step [s] according to the rows."""
         known = self.manifest.get("time_step")
         if isinstance(known, int | float):
             return float(known)
@@ -68,13 +68,13 @@ class RunFolder:
 
     @property
     def sumo_step(self) -> float:
-        """SUMO's step [s], or the control step if it is not known."""
+        """The step of SUMO [s], or the control step if it is not known."""
         sumo = self.manifest.get("sumo")
         known = sumo.get("step_length") if isinstance(sumo, dict) else None
         return float(known) if isinstance(known, int | float) else self.step
 
     def rows_of(self, ego: str) -> dict[str, Any]:
-        """The summary's row of one ego."""
+        """Return the summary's row of one ego."""
         rows = self.summary.get("egos", [self.summary])
         rows = [row for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
         return next((row for row in rows if row.get("ego") == ego), {})
@@ -84,7 +84,7 @@ class RunFolder:
         """Read a folder that ``giveway run`` wrote.
 
         Raises:
-            ResultsError: it holds no run, or one of its files cannot be read.
+            ResultsError: the folder holds no run, or one of its files cannot be read.
         """
         _require_run(folder)
         try:
@@ -114,10 +114,10 @@ class RunFolder:
 
 
 def read_predictions(file: Path) -> pd.DataFrame:
-    """The table of ``predictions.csv``.
+    """Read the table ``predictions.csv``.
 
     Raises:
-        ResultsError: it cannot be read.
+        ResultsError: the file cannot be read.
     """
     return _table(file, PREDICTION_COLUMNS)
 
@@ -137,7 +137,7 @@ def _require_run(folder: Path) -> None:
 
 
 def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
-    """Read a table whose ids are texts, even those of digits.
+    """Read a table in which ids are texts, even those of digits only.
 
     Missing texts become empty ones.
     """
@@ -167,7 +167,7 @@ def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
 
 
 def _require_numbers(file: Path, column: pd.Series, always: bool) -> None:
-    """Make sure that a column holds numbers, or nothing where there may be none."""
+    """Make sure that a column holds numbers; ``always`` means that no number may be missing."""
     numbers = pd.to_numeric(column, errors="coerce").to_numpy(np.float64)
     bad = np.isnan(numbers) & column.notna().to_numpy()
     if always:

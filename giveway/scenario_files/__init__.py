@@ -1,6 +1,6 @@
 """A SUMO scenario as files: its contents, and how to run it without changing it.
 
-``read_scenario`` returns the contents of a .sumocfg; ``prepare_start`` turns them into a command
+``read_scenario`` returns the contents of a .sumocfg. ``prepare_start`` turns them into a command
 for SUMO that writes nothing beside the scenario.
 """
 

@@ -21,10 +21,11 @@ from giveway.scenario_files.options import (
 
 _Value = TypeVar("_Value")
 
-SUMO_SEED: Final = 23423  # SUMO's seed if neither scenario nor command line names one
-STRIPING: Final = "striping"  # SUMO's default pedestrian model, and the only one that can be moved
+SUMO_SEED: Final = 23423  # Seed of SUMO if neither scenario nor command line names one
+# Default pedestrian model of SUMO, the only one whose persons can be moved
+STRIPING: Final = "striping"
 
-_LATEST: Final = 9e15  # [s] SUMO counts milliseconds in 63 bits
+_LATEST: Final = 9e15  # Largest time [s]: SUMO counts milliseconds in 63 bits
 _A_TIME: Final = "seconds, h:m:s or d:h:m:s"
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _TRUE = frozenset({"true", "1", "yes", "on", "x", "t"})
@@ -36,18 +37,17 @@ class ScenarioFiles:
     """The contents of a .sumocfg; all paths are absolute.
 
     Attributes:
-        config_file: The .sumocfg.
-        options: Each option that it sets, under the name that SUMO's help lists, to its value.
-        net_file: The road network.
-        route_files, additional_files: Files in the order in which SUMO
-            reads them.
+        config_file: Path of the .sumocfg.
+        options: Value of each option that it sets, by the name in SUMO's help.
+        net_file: Path of the road network.
+        route_files, additional_files: Paths in the order in which SUMO reads them.
         begin: First instant [s].
         end: Last instant [s]; None if the scenario ends when nobody is left.
-        step_length: SUMO's step [s].
-        seed: Seed that the scenario names; None: SUMO's own.
+        step_length: Step of SUMO [s].
+        seed: Seed that the scenario names, or None for SUMO's own.
         random: True if SUMO is to seed itself with the clock.
-        pedestrian_model: One of SUMO's, ``striping`` where none is named.
-        outputs: Each output option set, to the file or files as the scenario names them.
+        pedestrian_model: Pedestrian model of SUMO, ``striping`` if none is named.
+        outputs: File or files of each output option that is set, as the scenario names them.
     """
 
     config_file: Path
@@ -65,7 +65,7 @@ class ScenarioFiles:
 
     @cached_property
     def inputs(self) -> tuple[tuple[str, Path], ...]:
-        """Every file that SUMO will read because an option names it: (option, file)."""
+        """The files that SUMO reads because an option names them: (option, file)."""
         return tuple(
             (option, path)
             for option in INPUTS
@@ -74,7 +74,7 @@ class ScenarioFiles:
 
     @property
     def missing(self) -> tuple[tuple[str, Path], ...]:
-        """Those of :attr:`inputs` that do not exist."""
+        """The files of :attr:`inputs` that do not exist."""
         return tuple(
             (option, path)
             for option, path in self.inputs
@@ -83,7 +83,7 @@ class ScenarioFiles:
 
     @property
     def teleport_settings(self) -> dict[str, str]:
-        """The scenario's own options about teleporting."""
+        """The scenario's own options for teleporting."""
         return {name: value for name, value in self.options.items() if "teleport" in name}
 
     def is_set(self, option: str) -> bool:
@@ -91,10 +91,10 @@ class ScenarioFiles:
         return self.options.get(option, "").strip().lower() in _TRUE
 
     def require_inputs(self) -> None:
-        """Make sure that SUMO will find its files.
+        """Make sure that SUMO's input files exist.
 
         Raises:
-            ScenarioError: the first one that does not exist.
+            ScenarioError: a file does not exist; the message names the first one.
         """
         for option, path in self.missing:
             raise ScenarioError(
@@ -121,15 +121,14 @@ class ScenarioFiles:
 def read_scenario(config_file: Path) -> ScenarioFiles:
     """Read ``config_file``; :attr:`ScenarioFiles.missing` lists the files that do not exist.
 
-    Options may stand in sections or flat, under any of SUMO's names, with the value in ``value``,
-    ``v`` or as text; lists are separated by commas; ``${NAME}`` stands for an environment
-    variable.
+    Options may be in sections or not, under any of SUMO's names, with the value in ``value``, ``v``
+    or as text. Lists are separated by commas; ``${NAME}`` stands for an environment variable.
 
     Raises:
         ScenarioError: the file is missing, empty or not XML, or it names no network, an option
             twice, or a value of the wrong kind.
     """
-    config_file = Path(os.path.abspath(config_file))  # noqa: PTH100 - resolve() follows links
+    config_file = Path(os.path.abspath(config_file))  # resolve() would follow links  # noqa: PTH100
     options = _options(config_file)
     for name in INSTEAD_OF_SIMULATING:
         if name in options:
@@ -173,7 +172,7 @@ def _options(config_file: Path) -> dict[str, str]:
         value = element.get("value", element.get("v", element.text or ""))
         name = canonical(element.tag)
         if not value.strip():
-            continue  # a section, or an option that is left as it is
+            continue  # a section, or an option that is not changed
         if name in options:
             raise ScenarioError(
                 f"{config_file}: {name} = '{value}' stands there a second time "
@@ -186,7 +185,7 @@ def _options(config_file: Path) -> dict[str, str]:
 def _root(config_file: Path) -> ET.Element:
     expected = "expected a SUMO configuration (.sumocfg)"
     try:
-        content = config_file.read_bytes()  # SUMO does not read a compressed one either
+        content = config_file.read_bytes()  # SUMO does not read a compressed one, either
     except FileNotFoundError:
         raise ScenarioError(f"{config_file}: no such file; {expected}") from None
     except OSError as error:
@@ -206,12 +205,12 @@ def _names(value: str, option: str) -> tuple[str, ...]:
 
 
 def _paths(config_file: Path, value: str) -> tuple[Path, ...]:
-    """The files in a list; %20 and the like are read as SUMO does in a .sumocfg."""
+    """Return the files in a list; %20 and the like are decoded as SUMO does in a .sumocfg."""
     return tuple(located(unquote(name), config_file) for name in _names(value, ""))
 
 
 def located(name: str, named_in: Path) -> Path:
-    """Return the file that ``name`` means in the file ``named_in``."""
+    """Return the path that ``name`` means in the file ``named_in``."""
     path = Path(name).expanduser() if name.startswith("~/") else Path(name)
     return Path(os.path.abspath(named_in.parent / path))  # noqa: PTH100 - resolve() follows links
 
@@ -220,7 +219,7 @@ def seconds(text: str) -> float:
     """Convert a time of SUMO to seconds: seconds, ``h:m:s`` or ``d:h:m:s``.
 
     Raises:
-        ValueError: it is none of these, or beyond SUMO's clock.
+        ValueError: the text is none of these, or the time is beyond SUMO's clock.
     """
     parts = [float(part) for part in text.split(":")]
     if len(parts) not in (1, 3, 4):
@@ -233,7 +232,7 @@ def seconds(text: str) -> float:
 
 
 def _truth(text: str) -> bool:
-    """Return whether ``text`` is a word for true; a ValueError if it is none for false either."""
+    """Return whether ``text`` is a word for true; anything but true or false is an error."""
     if text.lower() not in _TRUE | _FALSE:
         raise ValueError(text)
     return text.lower() in _TRUE

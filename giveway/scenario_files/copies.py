@@ -1,4 +1,4 @@
-"""Copies of scenario files that write outputs: these go into the results folder."""
+"""The copies of scenario files that write outputs, which go into the results folder."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,14 +23,15 @@ _WRITES: Final = {
     "timedEvent": "dest",
     "calibrator": "output",
 }
-"""Element to the attribute that names a file which SUMO writes."""
+"""Attribute that names a file which SUMO writes, by element."""
 
 _PICTURES: Final = ("imgFile", "osgFile")
 _DEVICES: Final = ("device.ssm.file", "device.toc.file")  # parameters of a type or a vehicle
 _SSM: Final = "has.ssm.device"
 _ELEMENTS: Final = frozenset({*_WRITES, *READS, "param", "poly", "poi", "vType"})
 
-# A file that writes or refers to another file contains one of these signs. They are searched for
+# A file that writes or refers to another file contains one of these texts. They are searched for
+# before the file is parsed.
 # first, which is far faster than parsing the file.
 _SIGNS: Final = tuple(
     sign.encode()
@@ -50,13 +51,13 @@ class Copies:
     outputs placed in the results folder and the names of other files made absolute.
 
     Args:
-        config_file: The .sumocfg, to which the names in vehicles' parameters are relative.
-        scratch: Folder for the copies; they are needed as long as the simulation runs.
+        config_file: Path of the .sumocfg, to which the names in vehicles' parameters are relative.
+        scratch: Folder for the copies, which are needed while the simulation runs.
         outputs: Folder of the outputs.
 
     Attributes:
-        config_file: File as given.
-        has_ssm: True if a type or vehicle in the prepared files carries an SSM device.
+        config_file: Path as given.
+        has_ssm: True if a type or vehicle in the prepared files has an SSM device.
     """
 
     def __init__(self, config_file: Path, scratch: Path, outputs: OutputFolder) -> None:
@@ -65,27 +66,28 @@ class Copies:
         self._outputs = outputs
         self._prepared: dict[Path, Path] = {}
         self.has_ssm = False
-        self.missing: dict[Path, Path] = {}  # included but absent files, to the including one
+        # included files that do not exist, with the files that include them
+        self.missing: dict[Path, Path] = {}
 
     @property
     def read(self) -> tuple[Path, ...]:
-        """Files that were prepared, and all files that they include."""
+        """The files that were prepared, and all files that they include."""
         return tuple(self._prepared)
 
     @property
     def made(self) -> dict[Path, Path]:
-        """Original of each copy, for messages that name the copy."""
+        """The original of each copy, for messages that name the copy."""
         return {copy: file for file, copy in self._prepared.items() if copy != file}
 
     def prepared(self, file: Path) -> Path:
-        """Return the file to give to SUMO instead of ``file``: itself, unless it must be copied.
+        """Return the file for SUMO in place of ``file``: itself, or its copy.
 
         Raises:
             ScenarioError: the file, or one that it includes, cannot be read.
         """
         if file in self._prepared:
             return self._prepared[file]
-        self._prepared[file] = file  # a file that includes itself is SUMO's to refuse
+        self._prepared[file] = file  # SUMO refuses a file that includes itself
         try:
             if _has_signs(file):
                 self._prepared[file] = self._copied(file)
@@ -108,17 +110,17 @@ class Copies:
         return file
 
     def redirected(self, name: str, named_in: Path) -> str:
-        """Return the place of the output ``name`` of ``named_in`` in the results folder."""
+        """Return the path in the results folder of the output ``name`` in ``named_in``."""
         return str(self._outputs.place(located(name, named_in)))
 
 
 class _Editor:
-    """Finds the changes for the copy of one file."""
+    """Finds the changes in the copy of one file."""
 
     def __init__(self, file: Path, copies: Copies) -> None:
         self._file = file
         self._copies = copies
-        self.needed = False  # whether an output was found, here or in an included file
+        self.needed = False  # True if an output was found, here or in an included file
 
     def changes(self, name: str, attributes: Mapping[str, str], parent: str) -> dict[str, str]:
         changes = {}
@@ -146,7 +148,8 @@ class _Editor:
         self._copies.has_ssm |= key == _SSM
         if key in _DEVICES and is_file(value):
             return {"value": self._redirected(value, self._copies.config_file)}
-        if key == "file" and parent == "tlLogic" and is_file(value):  # an actuated one's detectors
+        # the detectors of an actuated traffic light
+        if key == "file" and parent == "tlLogic" and is_file(value):
             return {"value": self._redirected(value, self._file)}
         return {}
 
@@ -156,5 +159,5 @@ class _Editor:
 
 
 def _has_signs(file: Path) -> bool:
-    """Return whether the file can name an output at all; reads it once, in pieces."""
+    """Return whether the file can name an output at all; it is read once, in pieces."""
     return any(sign in text for text in pieces(file) for sign in _SIGNS)

@@ -13,16 +13,16 @@ from giveway.scenario_files.reading import pieces
 
 _VEHICLE = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _PERSON = re.compile(rb"<(?:person|personFlow)\s[^>]*?\bid\s*=\s*[\"']([^\"']*)")
-_CALIBRATOR = b"<calibrator"  # inserts vehicles of names of its own
+_CALIBRATOR = b"<calibrator"  # an element that inserts vehicles with names of its own
 _INCLUDE = b"<include"  # tag of an included file, which may declare anything
-_COMPARED = 5_000  # number of declared names among which a similar one is searched
+_COMPARED = 5_000  # Number of declared names among which a similar one is searched
 
 
 def undeclared(name: str, files: Iterable[Path]) -> str | None:
-    """Return a message if no vehicle ``name`` is declared in ``files``; None if one may be.
+    """Return a message if no vehicle ``name`` is declared in ``files``, or None if one may be.
 
     Args:
-        name: SUMO's id of a vehicle; one of a flow is the flow's id, a point and a number.
+        name: Id of a vehicle in SUMO; a vehicle of a flow has the flow's id, a point and a number.
         files: Files that SUMO reads, compressed or not.
     """
     flow, _, number = name.rpartition(".")
@@ -36,7 +36,7 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
             if len(known) < _COMPARED:
                 known[declared + ".0" if kind == b"flow" else declared] = None
     except (OSError, EOFError):
-        return None  # SUMO will report the fault in the file
+        return None  # SUMO reports the fault in the file
     close = difflib.get_close_matches(name, known, n=1)
     shown = ", ".join(list(known)[:3])
     if close:
@@ -53,11 +53,11 @@ def declares(name: str, files: Iterable[Path]) -> bool:
     try:
         return any(found in wanted for found in _declarations(files))
     except (OSError, EOFError):
-        return False  # SUMO will say what is wrong with the file
+        return False  # SUMO reports the fault in the file
 
 
 def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
-    """Yield kind and id of every vehicle, trip and flow; of a calibrator the kind alone."""
+    """Yield kind and id of every vehicle, trip and flow; for a calibrator only the kind."""
     for file in files:
         for text in pieces(file):
             yield from _in(text)
@@ -72,13 +72,13 @@ def _in(text: bytes) -> Iterator[tuple[bytes, str]]:
 
 
 def declares_people(files: Iterable[Path]) -> bool:
-    """Return whether a person or a flow of persons is declared in any of ``files``, or may be."""
+    """Return whether a person or a flow of persons is declared, or may be, in any of ``files``."""
     try:
         return any(
             _PERSON.search(text) or _INCLUDE in text for file in files for text in pieces(file)
         )
     except (OSError, EOFError):
-        return True  # SUMO will say what is wrong with the file
+        return True  # SUMO reports the fault in the file
 
 
 def free_prefix(wanted: str, files: Iterable[Path]) -> str:
@@ -96,7 +96,7 @@ def free_prefix(wanted: str, files: Iterable[Path]) -> str:
                 found = (match[1] for match in _PERSON.finditer(text))
                 names.update(name for name in found if start in name)
     except (OSError, EOFError):
-        return wanted  # SUMO will say what is wrong with the file
+        return wanted  # SUMO reports the fault in the file
     prefix = wanted
     while any(name.startswith(prefix.encode()) for name in names):
         prefix = f"added_{prefix}"

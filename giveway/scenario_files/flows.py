@@ -1,7 +1,7 @@
-"""The flows of a scenario whose next vehicle is due.
+"""The flows of a scenario with a vehicle that is due.
 
 SUMO knows a single vehicle before it departs, but a flow's vehicle only when it is on the road. An
-ego that wants to enter the road in the same step has to know of it before.
+ego that is to enter the road in the same step has to know about it before.
 """
 
 import math
@@ -16,12 +16,12 @@ from giveway.scenario_files.reading import pieces
 
 _FLOW = re.compile(rb"<flow\s([^>]*)>(?:(?:\s|<!--.*?-->)*<route\s([^>]*)>)?", re.DOTALL)
 _ATTRIBUTE = re.compile(rb"([\w:.]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
-_HOUR = 3600.0  # [s]
-_ROUNDING = 0.001  # [s] SUMO's clock counts milliseconds
+_HOUR = 3600.0  # Seconds of an hour
+_ROUNDING = 0.001  # Resolution [s] of SUMO's clock
 
 
 class FlowStart(NamedTuple):
-    """The place where a flow's vehicles enter the road; both are empty if it is unknown."""
+    """The place where a flow's vehicles enter the road; both texts are empty if it is unknown."""
 
     edge: str
     route: str  # SUMO's id of a route
@@ -30,13 +30,13 @@ class FlowStart(NamedTuple):
 def flows_due(files: Iterable[Path], after: float, until: float, begin: float) -> list[FlowStart]:
     """Return the places of flows that may depart after ``after`` and up to ``until`` [s].
 
-    Flows that depart at random may always do so while they last.
+    Flows with random departures count as due as long as they last.
 
     Args:
         files: Files that SUMO reads, compressed or not.
-        after: Begin of the period [s].
+        after: Beginning of the period [s].
         until: End of the period [s].
-        begin: Start of the simulation [s], for flows without a begin of their own.
+        begin: Start of the simulation [s], for flows without their own.
     """
     due = []
     try:
@@ -48,7 +48,7 @@ def flows_due(files: Iterable[Path], after: float, until: float, begin: float) -
                         inside = b"" if flow.endswith(b"/") else route
                         due.append(_start(attributes, _attributes(inside)))
     except (OSError, EOFError):
-        return due  # SUMO will say what is wrong with the file
+        return due  # SUMO reports the fault in the file
     return due
 
 
@@ -72,7 +72,7 @@ def _is_due(flow: dict[str, str], after: float, until: float, begin: float) -> b
             return False
         period = _period(flow, last - first)
     except ValueError:
-        return True  # like "triggered": at any time
+        return True  # a vehicle may depart at any time, for example if "triggered"
     if not period > 0.0:
         return True
     number = max(0, math.ceil((after + _ROUNDING - first) / period))  # number of the next vehicle
@@ -82,7 +82,7 @@ def _is_due(flow: dict[str, str], after: float, until: float, begin: float) -> b
 
 
 def _period(flow: dict[str, str], duration: float) -> float:
-    """Return the time [s] between two departures; 0 for random departures."""
+    """Return the time [s] between two departures, or 0 for random departures."""
     if "period" in flow:
         return seconds(flow["period"])
     for name in ("vehsPerHour", "perHour"):

@@ -1,4 +1,4 @@
-"""The files that a scenario's files refer to in turn."""
+"""The files to which a scenario's files refer."""
 
 import re
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ from giveway.scenario_files.reading import pieces
 READS: Final = {"include": "href", "calibrator": "file", "variableSpeedSign": "file"} | {
     "rerouter": "file"
 }
-"""Element to the attribute that names a further file with elements."""
+"""Attribute that names a further file with elements, by element."""
 
 _REFERENCE = re.compile(
     rb"<(%s)\s[^>]*?\b(href|file)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')"
@@ -22,11 +22,11 @@ _REFERENCE = re.compile(
 def with_included(files: Iterable[Path]) -> list[Path]:
     """Return the files and all existing files that they refer to, directly or not, each once.
 
-    A file that cannot be read refers to none; its next reader reports the error.
+    A file that cannot be read counts as referring to none; its next reader reports the error.
     """
     found = list(files)
     known = {file.resolve() for file in found}
-    for file in found:  # the list grows meanwhile
+    for file in found:  # the list grows during the loop
         for there in _referred(file):
             if there.is_file() and there.resolve() not in known:
                 known.add(there.resolve())

@@ -1,4 +1,4 @@
-"""XML rewritten as a stream: only the wanted attributes change, all else byte by byte stays."""
+"""The rewriting of XML as a stream: only some attributes change, all other bytes stay."""
 
 import codecs
 import html
@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape
 Changes = Mapping[str, str]
 Visitor = Callable[[str, Mapping[str, str], str], Changes]
 
-_CHUNK = 1 << 20  # [bytes]
+_CHUNK = 1 << 20  # Size of one read [bytes]
 _ENDS = ((b"<!--", b"-->"), (b"<![CDATA[", b"]]>"), (b"<?", b"?>"))
 _TAG = re.compile(rb"<(/?)([\w:.-]+)((?:[^<>\"']|\"[^\"]*\"|'[^']*')*)>")
 _ATTRIBUTE = re.compile(rb"([\w:.-]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
@@ -20,15 +20,15 @@ _ENCODING = re.compile(rb"<\?xml[^>]*encoding\s*=\s*[\"']([\w.-]+)")
 def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor, names: frozenset[str]) -> None:
     """Copy XML from ``source`` to ``target``, with some attributes changed.
 
-    Nothing is checked and nothing else changes. What is not well-formed stays so, and SUMO will
-    report it. The memory used grows with the depth of the nesting, not with the file.
+    Nothing is checked, and nothing else changes. Malformed XML stays malformed, and SUMO reports
+    it. The memory needed grows with the depth of the nesting, not with the file.
 
     Args:
         source: XML in an encoding that contains ASCII.
         target: Stream that receives the copy.
-        visit: Function of an element's name, its attributes and its parent's name; it returns the
-            new values of the attributes that change. Attributes that the element lacks are ignored.
-        names: Names of the elements for which it is called.
+        visit: Function of an element's name, its attributes and its parent's name. It returns the
+            new values of the attributes that change; attributes that the element lacks are ignored.
+        names: Names of the elements for which ``visit`` is called.
     """
     copy = _Copy(target, visit, names)
     pending = b""
@@ -38,7 +38,7 @@ def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor, names: frozens
 
 
 class _Copy:
-    """The state of a copy: the elements that are open, the encoding."""
+    """The state of a copy: the open elements and the encoding."""
 
     def __init__(self, target: IO[bytes], visit: Visitor, names: frozenset[str]) -> None:
         self._target = target
@@ -54,7 +54,7 @@ class _Copy:
             tag = _TAG.match(text, start)
             if tag is None:
                 end = self._end_of_other(text, start)
-                if end is None:  # its end is still to be read
+                if end is None:  # the rest of the tag has not been read yet
                     self._target.write(text[written:start])
                     return text[start:]
                 position = end

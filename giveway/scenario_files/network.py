@@ -1,4 +1,4 @@
-"""Reads a SUMO network file, gzipped or not, as it streams by."""
+"""The reading of a SUMO network file as a stream, gzipped or not."""
 
 import gzip
 import zlib
@@ -22,12 +22,12 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
     """Call a handler with the attributes of each element that has one.
 
     Args:
-        net_file: The network.
-        handlers: Handlers by the elements' names; a missing attribute may raise ``KeyError``, a bad
-            value ``ValueError``.
+        net_file: Path of the network.
+        handlers: Handlers by the elements' names. They may raise ``KeyError`` for a missing
+            attribute and ``ValueError`` for a bad value.
 
     Raises:
-        ScenarioError: unreadable, damaged, or no SUMO network.
+        ScenarioError: the file is unreadable, damaged, or no SUMO network.
     """
     reader = _Reader(handlers)
     try:
@@ -37,7 +37,7 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
             with gzip.GzipFile(fileobj=raw) if zipped else raw as stream:
                 reader.read(stream)
     except OSError as error:
-        # gzip's own complaints are OSErrors without a strerror.
+        # Errors of gzip are OSErrors without a strerror.
         raise ScenarioError(
             f"{net_file}: the network cannot be read: {error.strerror or error}"
         ) from error

@@ -1,8 +1,7 @@
-"""SUMO's options: those that name files, and those that giveway has to know completely.
+"""The options of SUMO that name files, and others whose complete list giveway needs.
 
-The tables hold for SUMO 1.28; a test compares them with what ``sumo --save-template`` says, so
-that no output option of a later version is missed. libsumo ships without the program, which is
-why they stand here.
+The tables hold for SUMO 1.28. A test compares them with the output of ``sumo --save-template``, so
+that no output option of a later version is missed. libsumo does not contain that program.
 """
 
 from collections.abc import Sequence
@@ -54,13 +53,13 @@ OUTPUTS: Final = (
     "vehroute-output",
     "vtk-output",
 )
-"""Every option whose value is a file that SUMO writes while it simulates."""
+"""All options whose value is a file that SUMO writes while it simulates."""
 
 LISTS: Final = frozenset({"save-state.files"})
-"""The outputs whose value is a list of files."""
+"""Outputs whose value is a list of files."""
 
 INSTEAD_OF_SIMULATING: Final = ("save-configuration", "save-schema", "save-template")
-"""With one of these SUMO writes that file and does not simulate."""
+"""Options with which SUMO writes a file and does not simulate."""
 
 INPUTS: Final = (
     "net-file",
@@ -74,7 +73,7 @@ INPUTS: Final = (
     "astar.landmark-distances",
     "device.fcd-replay.files",
 )
-"""Every option whose value is one or several files that SUMO reads without a window."""
+"""All options whose value is one or several files that SUMO reads without a window."""
 
 _OURS: Final = ("configuration-file", "remote-port", "num-clients")
 """Options that only giveway sets."""
@@ -109,19 +108,19 @@ _NAMES: Final = {
 SYNONYMS: Final = {
     synonym: name for name, synonyms in _NAMES.items() for synonym in synonyms.split()
 }
-"""Other names of the options that giveway reads or sets, to the one that SUMO's help lists."""
+"""Name in SUMO's help of each other name of an option that giveway reads or sets."""
 
 
 def canonical(name: str) -> str:
-    """Return the name under which SUMO's help lists the option."""
+    """Return the name of the option in SUMO's help."""
     return SYNONYMS.get(name, name)
 
 
 def parse_options(extra: Sequence[str]) -> dict[str, str]:
-    """Return the user's own SUMO options, by the name that SUMO's help lists.
+    """Return the user's own SUMO options, by their names in SUMO's help.
 
     Raises:
-        ConfigError: a word is no option, or an option is not the user's to set.
+        ConfigError: a word is no option, or the user may not set the option.
     """
     options: dict[str, str] = {}
     words = list(extra)

@@ -9,16 +9,16 @@ _NOWHERE = frozenset({"stdout", "stderr", "-", "nul", "/dev/null", "/dev/stdout"
 
 
 def is_file(name: str) -> bool:
-    """Return whether an output of this name is a file: no stream, no address, not empty."""
+    """Return whether an output of this name is a file, not a stream, address or nothing."""
     colon = name.find(":")  # SUMO takes host:port for an address; C: is a drive
     return bool(name.strip()) and name.strip().lower() not in _NOWHERE and colon <= 1
 
 
 class OutputFolder:
-    """The folder in which every file that SUMO would write gets a name of its own.
+    """The results folder, in which every file that SUMO would write gets a name of its own.
 
     Args:
-        folder: The folder; created with the first file.
+        folder: Path of the folder, which is created with the first file.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -28,11 +28,11 @@ class OutputFolder:
 
     @property
     def placed(self) -> Mapping[Path, Path]:
-        """Files that are written, by the files that the scenario names."""
+        """The files that are written, by the files that the scenario names."""
         return self._placed
 
     def place(self, original: Path) -> Path:
-        """Return the file to write instead of ``original``, at each call the same.
+        """Return the file to write instead of ``original``, which is the same at each call.
 
         Raises:
             ResultsError: SUMO cannot write into this folder.
@@ -42,7 +42,7 @@ class OutputFolder:
         return self._placed[original]
 
     def _free_name(self, original: PurePath) -> str:
-        """Return the original's name, with its folders' names in front if it is taken."""
+        """Return the original's name, preceded by its folders' names if it is taken."""
         name = original.name
         folders = [part for part in reversed(original.parts[1:-1]) if part]
         for folder in folders:

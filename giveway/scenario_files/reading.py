@@ -6,8 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, cast
 
-_CHUNK = 1 << 22  # bytes
-_GZIP = b"\x1f\x8b"  # the magic number: SUMO looks at the content too, not at the name
+_CHUNK = 1 << 22  # Size of one read [bytes]
+_GZIP = b"\x1f\x8b"  # first bytes of gzip files; SUMO looks at the content, too, not at the name
 
 
 @contextmanager
@@ -15,8 +15,8 @@ def opened(path: Path) -> Iterator[IO[bytes]]:
     """Open a file; gzip content is decompressed.
 
     Raises:
-        OSError: it cannot be read.
-        EOFError: its compressed content is cut off.
+        OSError: the file cannot be read.
+        EOFError: the compressed content is cut off.
     """
     with path.open("rb") as raw:
         compressed = raw.read(2) == _GZIP
@@ -32,8 +32,8 @@ def pieces(path: Path) -> Iterator[bytes]:
     """Yield the content of a file in large pieces that begin and end between two tags.
 
     Raises:
-        OSError: it cannot be read.
-        EOFError: its compressed content is cut off.
+        OSError: the file cannot be read.
+        EOFError: the compressed content is cut off.
     """
     with opened(path) as stream:
         rest = b""

@@ -1,8 +1,8 @@
-"""The priorities at each junction, as a network file states them.
+"""The priorities at each junction in a network file.
 
 A junction's links from lane to lane are numbered in the order of its ``intLanes``. Each link has a
-``request`` with two rows of bits, read from the right: the links to which it yields (``response``)
-and the links whose ways cross or join its own (``foes``).
+``request`` with two rows of bits, read from the right: the links to which it yields (``response``),
+and the links whose paths cross or join its own (``foes``).
 """
 
 import functools
@@ -13,7 +13,7 @@ from giveway.scenario_files.network import read_network
 
 
 class Request(NamedTuple):
-    """The numbers of the other links that matter for one link of a junction."""
+    """The numbers of the links that one link of a junction yields to or conflicts with."""
 
     yields_to: frozenset[int]
     meets: frozenset[int]
@@ -22,8 +22,8 @@ class Request(NamedTuple):
 class JunctionLogic(NamedTuple):
     """The priorities at one junction."""
 
-    incoming: tuple[str, ...]  # lanes that lead to it
-    inside: tuple[str, ...]  # last lane of each link inside the junction; or a crossing
+    incoming: tuple[str, ...]  # lanes that lead to the junction
+    inside: tuple[str, ...]  # last lane of each link inside the junction, or a crossing
     requests: tuple[Request, ...]  # priorities of each link
 
 
@@ -31,13 +31,13 @@ def right_of_way(net_file: Path) -> dict[str, JunctionLogic]:
     """Return the logic of each junction that has one.
 
     Raises:
-        ScenarioError: unreadable, damaged, or no SUMO network.
+        ScenarioError: the file is unreadable, damaged, or no SUMO network.
     """
     about = net_file.stat() if net_file.exists() else None
     return _read(net_file, *((about.st_mtime_ns, about.st_size) if about else (0, 0)))
 
 
-@functools.lru_cache(maxsize=2)  # a worker's runs have the same network
+@functools.lru_cache(maxsize=2)  # the runs of a worker have the same network
 def _read(net_file: Path, _changed: int, _size: int) -> dict[str, JunctionLogic]:
     reader = _Reader()
     read_network(net_file, {"junction": reader.junction, "request": reader.request})

@@ -1,4 +1,4 @@
-"""The start of SUMO with a user's scenario: which settings are kept or replaced, and why."""
+"""The start of SUMO with a user's scenario: the settings that are kept or replaced."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from giveway.scenario_files.options import OUTPUTS, parse_options
 from giveway.scenario_files.outputs import OutputFolder, is_file
 
 _VALIDATION: Final = ("xml-validation", "xml-validation.net", "xml-validation.routes")
-_WINDOW_ONLY: Final = ("osg-view",)  # known to a SUMO built with OpenSceneGraph only
+_WINDOW_ONLY: Final = ("osg-view",)  # options that only a SUMO with OpenSceneGraph knows
 _SAVING_STATES: Final = ("save-state.times", "save-state.period")
 
 
@@ -22,15 +22,15 @@ class StartOptions:
     """The settings for SUMO beyond the scenario's own.
 
     Attributes:
-        seed: SUMO's seed; None keeps the scenario's, or SUMO's own where it names none.
-        fallback_seed: The seed of a scenario that wants a random one, where neither ``seed`` nor
-            the scenario names one.
-        step_length: SUMO's step [s]; None keeps the scenario's.
-        interact: True if persons or vehicles are to be moved; if not, SUMO simulates the scenario
+        seed: Seed of SUMO, or None to keep the scenario's or SUMO's own.
+        fallback_seed: Seed for a scenario that asks for a random one, if neither ``seed`` nor the
+            scenario names one.
+        step_length: Step of SUMO [s], or None to keep the scenario's.
+        interact: True if persons or vehicles are to be moved. Otherwise SUMO simulates the scenario
             exactly as without giveway.
-        outputs: The folder for SUMO's output files; None drops them.
-        fcd, tripinfo, summary, ssm: Write this output even if the scenario does not.
-        extra: Further options as on SUMO's command line; they win over ours.
+        outputs: Folder for SUMO's output files, or None to drop them.
+        fcd, tripinfo, summary, ssm: True to write this output even if the scenario does not.
+        extra: Further options as on SUMO's command line, which override giveway's.
     """
 
     seed: int | None = None
@@ -47,15 +47,15 @@ class StartOptions:
 
 @dataclass(frozen=True)
 class Start:
-    """A command that starts SUMO, and what belongs to it.
+    """A command that starts SUMO, with its files and remarks.
 
     Attributes:
         command: Command for ``libsumo.start``.
         remarks: Differences from the scenario, one line each, for the user.
-        outputs: Each output file as the scenario has it, to the file written instead.
-        copies: Each rewritten copy of a scenario file, to its original.
-        read: The scenario's network, routes and additional files, with all that they include.
-        seed: The seed in effect.
+        outputs: File that is written instead of each output file of the scenario.
+        copies: Original of each rewritten copy of a scenario file.
+        read: Network, routes and additional files of the scenario, with all that they include.
+        seed: Seed in effect.
     """
 
     command: tuple[str, ...]
@@ -66,7 +66,7 @@ class Start:
     seed: int
 
     def with_original_names(self, message: str) -> str:
-        """Return SUMO's ``message`` with the names of the scenario's files instead of copies."""
+        """Return SUMO's ``message`` with the scenario's file names instead of the copies'."""
         for copy, original in self.copies.items():
             message = message.replace(str(copy), str(original))
         return message
@@ -82,16 +82,16 @@ def prepare_start(
     """Prepare a start of SUMO that runs ``scenario`` without touching its folder.
 
     Args:
-        scenario: The scenario's files.
+        scenario: Files of the scenario.
         options: Settings for SUMO.
-        scratch: A folder of the caller's own, to be kept until SUMO is closed.
-        types: An additional file's text, read before the scenario's own: the types of whatever
-            is going to be added.
+        scratch: Folder of the caller's own, which is kept until SUMO is closed.
+        types: Text of an additional file that is read before the scenario's own: the types of all
+            that is going to be added.
 
     Raises:
         ScenarioError: an input file is missing or cannot be read.
         ResultsError: the output folder cannot be used.
-        ConfigError: ``options.extra`` holds what cannot be passed on.
+        ConfigError: ``options.extra`` holds an option that cannot be passed on.
     """
     scenario.require_inputs()
     scratch.mkdir(parents=True, exist_ok=True)
@@ -158,7 +158,7 @@ class _Preparation:
         return copy
 
     def _inputs(self, types: str, more: str) -> None:
-        """Set the input files: our types come first, and a file that writes becomes its copy."""
+        """Set the input files: giveway's types first, then copies of files that write."""
         own = self._scratch / "giveway.add.xml"
         own.write_text(types, encoding="utf-8")
         # Naming additional files on the command line replaces the scenario's list.
@@ -222,11 +222,12 @@ class _Preparation:
             self._options["collision.check-junctions"] = "true"
 
     def _connections(self) -> None:
-        """Wait for no outside program or server; outputs to an address stay unchanged."""
+        """Prevent waiting for other programs or servers; outputs to an address stay unchanged."""
         own = self._scenario.options
         for name in _VALIDATION:
             if own.get(name) in ("auto", "always"):
-                self._options[name] = "local"  # the schemas that come with SUMO, not the web's
+                # the schemas that come with SUMO, not those of the web
+                self._options[name] = "local"
         for option, names in self._scenario.outputs.items():
             self._remarks += [
                 f"{option}: {name} is a network address, left as it is; somebody must listen there"

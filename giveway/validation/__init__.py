@@ -1,4 +1,4 @@
-"""Validation of the pedestrian model with recorded tracks: ADE, FDE, contacts, calibration."""
+"""The validation of the pedestrian model with recorded tracks: ADE, FDE, contacts, calibration."""
 
 from giveway.validation.calibrating import Calibration, calibrate
 from giveway.validation.clips import Clip, read_clip, read_clips

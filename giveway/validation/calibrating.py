@@ -25,7 +25,7 @@ DEFAULT = (
     "vehicle_strength",
     "vehicle_lookahead",
 )
-"""Fitted if no parameter is named: the gain of each sub-force, and the vehicle's reach."""
+"""Parameters that are fitted by default: the gain of each sub-force, and the vehicle's reach."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Calibration:
     Attributes:
         fitted: Names of the parameters that were free.
         training, held_out: Names of the clips.
-        train, test: Objective on each; ``test`` is nan throughout without held-out clips.
+        train, test: Objective on each; ``test`` is nan without held-out clips.
         touching: Numbers (before, after) of pedestrians that touch a vehicle in replays of all
             clips.
         apart: Smallest distance [m] between two people's centres, in the data and in replays
@@ -100,16 +100,16 @@ def calibrate(
         names: Fields of :class:`VciParameters`.
         held_out: Share of the clips that the fit does not use, equal in each kind of clip.
         seed: Seed of the choice of these clips.
-        own_pace: True: each pedestrian's desired speed is the present speed; False: the
+        own_pace: True if each pedestrian's desired speed is the present speed, False if it is the
             parameters'.
-        evaluations: Evaluations of the objective, at most.
-        protocol: Rules for cutting and judging clips; None: those of :func:`protocol_of`.
-        progress: Function of evaluations done, their limit, and the least error so far.
+        evaluations: Largest number of evaluations of the objective.
+        protocol: Rules for cutting and judging clips, or None for those of :func:`protocol_of`.
+        progress: Function of the evaluations done, their limit, and the smallest error so far.
 
     Raises:
-        ConfigError: a name is no parameter's or cannot be fitted, or people would tremble by the
+        ConfigError: a name is no parameter's or cannot be fitted, or people would tremble with the
             parameters at the start.
-        DatasetError: too few clips are there, or none is long enough.
+        DatasetError: there are too few clips, or none is long enough.
     """
     names = _checked(names, start)
     try:
@@ -142,9 +142,9 @@ def calibrate(
 def split(
     clips: Sequence[Clip], held_out: float, seed: int
 ) -> tuple[tuple[Clip, ...], tuple[Clip, ...]]:
-    """Return the training clips and the held-out clips, one of each kind before a second of any.
+    """Return training and held-out clips; each kind has a held-out clip before any has a second.
 
-    A clip's kind is its name without the number at its end.
+    A clip's kind is its name without the number at the end.
 
     Raises:
         DatasetError: there are too few clips to hold some out.

@@ -1,8 +1,8 @@
-"""Clips of real pedestrians and vehicles: CSV files like those of CITR, as arrays in our frame.
+"""Clips of real pedestrians and vehicles: CSV files like those of CITR, as arrays in one frame.
 
 CITR and DUT: Yang, Li, Redmill & Özgüner, "Top-view Trajectories: A Pedestrian Dataset of
-Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). Their
-users are asked to cite that paper.
+Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). Users
+of the data sets are asked to cite this paper.
 """
 
 from dataclasses import dataclass
@@ -21,10 +21,11 @@ PEDESTRIANS: Final = "_traj_ped_filtered.csv"
 VEHICLES: Final = "_traj_veh_filtered.csv"
 _PEDESTRIAN_COLUMNS: Final = ("x_est", "y_est", "vx_est", "vy_est")
 _VEHICLE_COLUMNS: Final = ("x_est", "y_est", "psi_est", "vel_est")
-_FARTHEST = 1e5  # [m] largest coordinate that a camera can see
-_LONGEST = 200_000  # frames: nearly two hours
-_WALKING = 0.5  # [m/s] speed below which a pedestrian tells little of the frame rate
-_RATES_APART = 0.1  # largest relative difference of the frame rate and the rate by the speeds
+_FARTHEST = 1e5  # Largest coordinate [m] in a camera's view
+_LONGEST = 200_000  # Largest number of frames: nearly two hours
+_WALKING = 0.5  # Speed [m/s] below which a pedestrian says little about the frame rate
+# Largest relative difference between the given frame rate and the one from speeds
+_RATES_APART = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +35,12 @@ class Clip:
     Attributes:
         name: Name of its files, like ``front_interaction_01``.
         dataset: Description of the data set, which its files lack.
-        first_frame: Data set's number of frame 0 here.
+        first_frame: Number in the data set of this clip's frame 0.
         ids: Ids (n,) of the pedestrians.
         position: Positions (T, n, 2) [m]; nan where a pedestrian is not seen.
         velocity: Velocities (T, n, 2) [m/s]; nan as for positions.
-        poses: Poses (T, m, 4) of the vehicles: x, y [m], heading [rad], speed [m/s]; nan where not
-            seen.
+        poses: Poses (T, m, 4) of the vehicles: x, y [m], heading [rad], speed [m/s]; nan where a
+            vehicle is not seen.
     """
 
     name: str
@@ -52,23 +53,23 @@ class Clip:
 
     @property
     def frames(self) -> int:
-        """Number T of its frames."""
+        """The number T of frames."""
         return int(self.position.shape[0])
 
     @property
     def seen(self) -> NDArray[np.bool_]:
-        """Mask (T, n) of the pedestrians that are seen."""
+        """Flags (T, n) of the pedestrians that are seen."""
         return ~np.isnan(self.position[:, :, 0])
 
     @property
     def last_seen(self) -> NDArray[np.int64]:
-        """Last frame (n,) in which each pedestrian is seen."""
+        """The last frame (n,) in which each pedestrian is seen."""
         last: NDArray[np.int64] = self.frames - 1 - self.seen[::-1].argmax(axis=0)
         return last
 
     @property
     def destination(self) -> Array:
-        """Last observed place (n, 2) [m] of each pedestrian."""
+        """The last observed place (n, 2) [m] of each pedestrian."""
         return self.position[self.last_seen, np.arange(len(self.ids))]
 
 
@@ -80,7 +81,7 @@ def read_clips(folder: Path, dataset: Dataset) -> tuple[Clip, ...]:
         dataset: Description of the data set, which its files lack.
 
     Raises:
-        DatasetError: there is no such folder, no clip in it, a file cannot be used, or people's
+        DatasetError: there is no such folder, it has no clip, a file cannot be used, or people's
             speeds and steps belong to another frame rate.
     """
     if not folder.is_dir():
@@ -111,7 +112,7 @@ def _require_rate(folder: Path, clips: list[Clip], dataset: Dataset) -> None:
     """Make sure that people's steps from frame to frame agree with their speeds.
 
     Raises:
-        DatasetError: the frame rate is another one.
+        DatasetError: they belong to another frame rate.
     """
     rates = np.array([rate for clip in clips if (rate := _rate_of(clip)) is not None])
     if not len(rates):
@@ -136,7 +137,7 @@ def _rate_of(clip: Clip) -> float | None:
 
 
 def read_clip(file: Path, dataset: Dataset) -> Clip:
-    """Read the clip of a file of pedestrians, and the vehicles' file in its folder if any.
+    """Read the clip in a file of pedestrians, with the file of vehicles in its folder, if any.
 
     Raises:
         DatasetError: a file cannot be read, or a column, row or number is not as it should be.
@@ -153,7 +154,8 @@ def read_clip(file: Path, dataset: Dataset) -> Clip:
     poses = np.empty((last - first + 1, 0, 4))
     if vehicles is not None:
         poses = _spread(vehicles, _VEHICLE_COLUMNS, first, last)[1]
-    if dataset.y_axis == "down":  # in our frame y, headings and lateral velocities change sign
+    # in a frame with y up, y, headings and lateral velocities change their sign
+    if dataset.y_axis == "down":
         rows[:, :, [1, 3]] *= -1.0
         poses[:, :, [1, 2]] *= -1.0
     position = np.ascontiguousarray(rows[:, :, :2])

@@ -1,4 +1,4 @@
-"""Replays of whole clips, and the number of pedestrians that touch the vehicle in them."""
+"""Replays of whole clips, and the numbers of pedestrians that touch the vehicle in them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ORDER = (DATA, CV, GOAL_CV, NO_VEHICLE, VCI)
 
 @dataclass(frozen=True, eq=False)
 class _Presence:
-    """The frames from ``first`` to ``last`` in which each pedestrian is in a clip."""
+    """The first and last frame in which each pedestrian is in a clip."""
 
     who: NDArray[np.int64]
     first: NDArray[np.int64]
@@ -45,7 +45,7 @@ class _Presence:
 def replay(clip: Clip, parameters: VciParameters, protocol: Protocol) -> dict[str, Array]:
     """Return the tracks (T, n, 2) [m] of the data and of each predictor, from the first frame on.
 
-    All pedestrians enter at the place and with the velocity of the data, and leave at their end.
+    All pedestrians enter at their recorded place and velocity, and leave at their recorded end.
     """
     presence = _Presence.of(clip, protocol.skip)
     bodies = vehicle_rows(clip, protocol)
@@ -105,9 +105,9 @@ def contact_table(
 ) -> pd.DataFrame:
     """Count pedestrians that touch a vehicle in each clip with one, for data and predictors.
 
-    Columns: clip, predictor, pedestrians, touching, closest [m]. ``closest`` is the least distance
-    from a pedestrian's skin to the body, negative at a contact. A pedestrian is a disc of the
-    model's radius.
+    Columns: clip, predictor, pedestrians, touching, closest [m]. ``closest`` is the smallest
+    clearance between a pedestrian and the body, negative at a contact. A pedestrian is a disc with
+    the model's radius.
     """
     rows = []
     for clip in clips:
@@ -129,8 +129,9 @@ def people_apart(
 ) -> dict[str, float]:
     """Return the smallest distance [m] between two people's centres, in data and model.
 
-    Whole clips are replayed, as for the contacts. A fit can lessen the mean error by letting people
-    walk through each other, which this distance shows. It is infinite if nobody meets anybody.
+    Whole clips are replayed, as for the contacts. A fit may reduce the mean error by letting people
+    walk through each other, which this distance shows. It is infinite if there are never two
+    people.
     """
     apart = {DATA: np.inf, VCI: np.inf}
     for clip in clips:
@@ -146,7 +147,7 @@ def people_apart(
 
 
 def _least_apart(track: Array) -> float:
-    """Return the least distance [m] between any two of n people (T, n, 2) at any instant."""
+    """Return the smallest distance [m] between any two of n people (T, n, 2) at any instant."""
     least = np.inf
     for i in range(track.shape[1] - 1):
         away = track[:, i + 1 :] - track[:, i : i + 1]

@@ -1,4 +1,4 @@
-"""The description of a data set that its files lack: the camera's rate, the vehicle's body."""
+"""The description of a data set that its files lack: the frame rate and the vehicle's body."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -40,12 +40,12 @@ class Dataset(Section):
 CITR = Dataset(
     name="CITR", frame_rate=29.97, vehicle=Body(front=1.0, rear=1.2, width=1.2), y_axis="down"
 )
-"""The controlled experiments with a golf cart (Yang et al. 2019, arXiv 1902.00487)."""
+"""Controlled experiments with a golf cart (Yang et al. 2019, arXiv 1902.00487)."""
 
 DUT = Dataset(
     name="DUT", frame_rate=23.976, vehicle=Body(front=2.25, rear=2.25, width=1.8), y_axis="down"
 )
-"""The crowded campus, with cars of about 4.5 m by 1.8 m (Yang et al. 2019, arXiv 1902.00487)."""
+"""Crowded campus, with cars of about 4.5 m by 1.8 m (Yang et al. 2019, arXiv 1902.00487)."""
 
 DATASETS: Mapping[str, Dataset] = MappingProxyType({"citr": CITR, "dut": DUT})
 
@@ -54,7 +54,7 @@ def dataset_of(wanted: str | None) -> Dataset:
     """Return the description that ``--dataset`` names: a known one, or that of a TOML file.
 
     Raises:
-        ConfigError: nothing is named, or it cannot be used.
+        ConfigError: no data set is named, or it cannot be used.
     """
     known = " or ".join(DATASETS)
     if not wanted:

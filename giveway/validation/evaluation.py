@@ -26,11 +26,11 @@ class Evaluation:
         names: Names (P,) of the predictors.
         horizons: Horizons (K,) [frames].
         clip: Clip (R,) of each row.
-        valid: Mask (R, K): the pedestrian is seen for that long.
-        near: Mask (R, K): the pedestrian comes near the vehicle within that time.
+        valid: Flags (R, K): the pedestrian is seen for that long.
+        near: Flags (R, K): the pedestrian comes near the vehicle within that time.
         ade, fde: Errors (P, R, K) [m]; nan where not valid.
         error: Displacement (P, R, H) [m] at each frame; nan where not seen.
-        place: Place (R, 2) [m] at the start, before and left of the vehicle; nan without one.
+        place: Place (R, 2) [m] at the start, ahead and to the left of the vehicle; nan without one.
         clips: Number C of clips.
     """
 
@@ -46,12 +46,12 @@ class Evaluation:
     clips: int
 
     def chosen(self, subset: str, horizon: int) -> NDArray[np.bool_]:
-        """Return a mask (R,) of a subset at the horizon of this number."""
+        """Return flags (R,) of a subset at the horizon with this number."""
         everybody = self.valid[:, horizon]
         return everybody if subset == EVERYWHERE else everybody & self.near[:, horizon]
 
     def per_clip(self, values: Array, mask: NDArray[np.bool_]) -> tuple[Array, Array]:
-        """Return sum and number (C,) of the ``values`` (R,) in each clip where ``mask``."""
+        """Return sum and number (C,) of the ``values`` (R,) in each clip where ``mask`` holds."""
         clip = self.clip[mask]
         total = np.bincount(clip, values[mask], self.clips).astype(np.float64)
         return total, np.bincount(clip, minlength=self.clips).astype(np.float64)
@@ -70,7 +70,7 @@ def evaluate(
         cut: Windows, at least one.
         by: Predictors by name.
         protocol: Protocol by which the windows were cut.
-        clips: Number of clips, those without a window included.
+        clips: Number of clips, including those without a window.
         advance: Function that is called after each window.
     """
     steps = np.array(protocol.horizons) - 1
@@ -106,10 +106,10 @@ def displacement(predicted: Array, window: Window) -> Array:
 
 
 def error_table(found: Evaluation, protocol: Protocol, draws: ClipBootstrap) -> pd.DataFrame:
-    """Return means, their intervals, and paired differences to constant velocity.
+    """Return means, their intervals, and paired differences from constant velocity.
 
-    One row per subset, horizon [s], metric [m] and predictor; ``count`` is the number of
-    pedestrians in windows, ``clips`` the number of clips that have any.
+    There is one row per subset, horizon [s], metric [m] and predictor. ``count`` is the number of
+    pedestrians in windows, ``clips`` the number of clips with such pedestrians.
     """
     rows: list[dict[str, Any]] = []
     for subset in (EVERYWHERE, NEAR):
@@ -147,7 +147,7 @@ def _ratio(total: float, count: float) -> float:
 
 
 def _place(window: Window) -> Array:
-    """Return the places (n, 2) [m] at the start, before and to the left of the first vehicle."""
+    """Return the places (n, 2) [m] at the start, ahead and to the left of the first vehicle."""
     if not window.vehicles.shape[1]:
         return np.full((len(window.who), 2), np.nan)
     start = to_vehicle_frame(window.position[None], *window.vehicles[:1, 0, :3].T)

@@ -1,11 +1,11 @@
-"""The fit: the least displacement error over some of the parameters.
+"""The fit: the smallest displacement error over some of the parameters.
 
 The objective is the ADE [m] at each horizon, averaged over all pedestrians who are seen for that
-long, and then over the horizons. It is minimised by Nelder & Mead's simplex (The Computer Journal
-1965) as in scipy, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012), over the
-logarithm of each parameter's ratio to its start. Parameters with which people would tremble at the
-crowd's longest step are refused. The method needs no derivatives, since contacts and limits make
-the objective rough, and it stays near published numbers.
+long, and then over the horizons. It is minimised by the simplex method of Nelder & Mead (The
+Computer Journal 1965) as in scipy, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012),
+over the logarithm of each parameter's ratio to its start. Parameters with which people would
+tremble at the crowd's longest step are refused. The method needs no derivatives, which would not
+exist at contacts and limits, and it stays near the published numbers.
 """
 
 import math
@@ -27,11 +27,11 @@ from pedestrian_model import (
     require_steady,
 )
 
-FACTOR = 10.0  # parameters stay between start / 10 and 10 start
-_SPREAD = 0.2  # size of the first simplex, in the logarithm
-_SMALL = 0.02  # size of the simplex at which the search ends, in the logarithm,
-_FLAT = 5e-5  # [m] if the errors at its corners differ by less than this
-_AT_BOUND = 1e-3  # distance to its bound below which a parameter is at it, in the logarithm
+FACTOR = 10.0  # Factor by which parameters may differ from their start
+_SPREAD = 0.2  # Size of the first simplex, in the logarithm
+_SMALL = 0.02  # Size of the simplex at which the search ends, in the logarithm
+_FLAT = 5e-5  # Difference [m] of the errors at its corners below which it ends
+_AT_BOUND = 1e-3  # Distance, in the logarithm, below which a parameter is at its bound
 
 
 class Objective:
@@ -39,7 +39,7 @@ class Objective:
 
     Args:
         cut: Windows, at least one.
-        protocol: Protocol by which they were cut.
+        protocol: Protocol by which the windows were cut.
         clips: Number of clips.
         own_pace: Flag, see :class:`VciPredictor`.
     """
@@ -75,20 +75,20 @@ class Objective:
 
 
 def average(total: Array, count: Array) -> float:
-    """Return the objective of sums and counts (C, K): the mean of the means at each horizon."""
+    """Return the objective from sums and counts (C, K): the mean of the means at each horizon."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.nanmean(total.sum(axis=0) / count.sum(axis=0)))
 
 
 class Search:
-    """A descent from ``start``.
+    """A search for the smallest error, from ``start``.
 
     Args:
         objective: Objective to minimise.
         start: Start of the search; parameters that are not named stay.
         names: Names of the free parameters; none may start at 0.
-        evaluations: Evaluations of the objective, at most.
-        progress: Function of evaluations done, their limit, and the least error so far.
+        evaluations: Largest number of evaluations of the objective.
+        progress: Function of the evaluations done, their limit, and the smallest error so far.
     """
 
     def __init__(

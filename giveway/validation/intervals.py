@@ -1,6 +1,6 @@
 """Intervals of means over people who share clips: the bootstrap over clips.
 
-Pedestrians of one clip, and the windows of one pedestrian, are not independent, but clips are.
+Pedestrians of one clip, and windows of one pedestrian, are not independent, but clips are.
 Therefore whole clips are drawn (Davison & Hinkley 1997, "Bootstrap Methods and their Application",
 section 3.8).
 """
@@ -20,7 +20,7 @@ RESAMPLES = 5000
 
 @dataclass(frozen=True, eq=False)
 class ClipBootstrap:
-    """The draws of clips, equal for every number, so that differences are paired.
+    """The draws of clips, which are the same for every number, so that differences are paired.
 
     Attributes:
         weights: Number (B, C) of draws of each clip.
@@ -37,7 +37,7 @@ class ClipBootstrap:
     def interval(self, total: Array, count: Array) -> tuple[float, float]:
         """Return the percentile interval of ``sum(total) / sum(count)``, both (C,).
 
-        It is nan, nan if fewer than two clips have a count.
+        It is (nan, nan) if fewer than two clips have a count.
         """
         if np.count_nonzero(count) < 2:
             return np.nan, np.nan

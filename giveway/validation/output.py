@@ -25,7 +25,7 @@ TABLES = ("errors.csv", "contacts.csv")
 PICTURES = ("growth", "tracks", "places")
 _SUFFIXES = (".png", ".svg")
 FILES = frozenset({*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)})
-"""Everything that ``giveway validate`` writes into its folder."""
+"""Names of all files that ``giveway validate`` writes into its folder."""
 _DECIMALS = 6
 
 

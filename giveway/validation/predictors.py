@@ -16,7 +16,7 @@ NO_VEHICLE = "VCI without f_v"
 OWN_PACE = "VCI at own pace"
 NAMES = (VCI, OWN_PACE, NO_VEHICLE, CV, GOAL_CV)
 
-SLOWEST_PACE = 0.3  # [m/s] desired speed of a pedestrian that stands at the start (ours)
+SLOWEST_PACE = 0.3  # Desired speed [m/s] of a pedestrian who stands at the start (own choice)
 
 
 class TrackPredictor(Protocol):
@@ -49,8 +49,8 @@ class VciPredictor:
         parameters: Parameters of the model.
         time_step: Time step from frame to frame [s].
         frames: Number H of frames of a window.
-        own_pace: True: each pedestrian's desired speed is the present speed, not the parameters'.
-            In a run it is known of each pedestrian, too.
+        own_pace: True if each pedestrian's desired speed is the present speed, not the parameters'.
+            In a run it is known for each pedestrian, too.
     """
 
     def __init__(

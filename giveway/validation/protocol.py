@@ -15,9 +15,9 @@ from giveway.geometry.kernel import Array
 from giveway.validation.clips import Clip
 from giveway.validation.dataset import CITR, Dataset
 
-_PAUSE = 0.5  # [s] skipped at the start, and from window to window
-_HORIZONS = (0.75, 2.0, 4.0)  # [s]
-_NOWHERE = 1e6  # [m] place of a vehicle in frames in which it is not seen
+_PAUSE = 0.5  # Time [s] skipped at the start, and between the starts of windows
+_HORIZONS = (0.75, 2.0, 4.0)  # Prediction horizons [s]
+_NOWHERE = 1e6  # Place [m] of a vehicle in frames in which it is not seen
 
 
 @dataclass(frozen=True)
@@ -51,12 +51,12 @@ class Protocol:
 
     @property
     def time_step(self) -> float:
-        """Time [s] from frame to frame."""
+        """The time [s] between two frames."""
         return 1.0 / self.frame_rate
 
     @property
     def longest(self) -> int:
-        """Last frame of a window."""
+        """The last frame of a window."""
         return max(self.horizons)
 
 
@@ -67,7 +67,7 @@ class Window:
     Attributes:
         clip: Index of its clip.
         frame: Frame of the clip, at which the prediction begins.
-        who: Indices (n,) in the clip of the pedestrians seen there.
+        who: Indices (n,) in the clip of the pedestrians seen at that frame.
         position, velocity, destination: Arrays (n, 2) [m], [m/s], [m].
         vehicles: Vehicles (H, m, 7) at 0 ... H - 1 frames ahead, as the pedestrian model takes
             them.
@@ -89,7 +89,7 @@ class Window:
 
 
 def windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ...]:
-    """Return all windows of the clips with somebody seen for the shortest horizon."""
+    """Return all windows of the clips in which a pedestrian is seen for the shortest horizon."""
     return tuple(w for number, clip in enumerate(clips) for w in _of_clip(number, clip, protocol))
 
 
@@ -142,7 +142,7 @@ def distance_to_bodies(position: Array, rows: Array) -> Array:
 
 
 def to_vehicle_frame(position: Array, x: Array, y: Array, heading: Array) -> tuple[Array, Array]:
-    """Return how far (T, n) [m] positions are before, and to the left of, a vehicle (T,)."""
+    """Return how far (T, n) [m] positions are ahead of, and to the left of, a vehicle (T,)."""
     dx, dy = position[:, :, 0] - x[:, None], position[:, :, 1] - y[:, None]
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
     return cos * dx + sin * dy, cos * dy - sin * dx

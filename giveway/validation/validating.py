@@ -14,7 +14,7 @@ from giveway.validation.predictors import predictors
 from giveway.validation.protocol import Protocol, Window, windows
 from pedestrian_model import VciParameters
 
-Progress = Callable[[int, int], None]  # done, in all
+Progress = Callable[[int, int], None]  # numbers of windows done and of all
 
 SEED = 0  # seed of the bootstrap's draws
 
@@ -40,7 +40,7 @@ class Validation:
 
     @property
     def pedestrians(self) -> int:
-        """Number of recorded pedestrians in all clips."""
+        """The number of recorded pedestrians in all clips."""
         return sum(len(clip.ids) for clip in self.clips)
 
 
@@ -56,8 +56,8 @@ def validate(
     Args:
         clips: Clips from :func:`giveway.validation.read_clips`.
         parameters: Parameters of the pedestrian model.
-        protocol: Rules for cutting and judging clips; None: those of :func:`protocol_of`.
-        progress: Function of the amounts done and in all.
+        protocol: Rules for cutting and judging clips, or None for those of :func:`protocol_of`.
+        progress: Function of the number of windows done and of all.
 
     Raises:
         DatasetError: no clip is long enough.
@@ -86,7 +86,7 @@ def protocol_of(clips: Sequence[Clip]) -> Protocol:
     """Return the protocol of the data set that the clips belong to.
 
     Raises:
-        DatasetError: they are from several, or there is none.
+        DatasetError: they belong to several data sets, or there are none.
     """
     datasets = list(dict.fromkeys(clip.dataset for clip in clips))
     if len(datasets) != 1:
@@ -99,7 +99,7 @@ def cut_windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ..
     """Return the windows of the clips.
 
     Raises:
-        DatasetError: there is none.
+        DatasetError: there is no window.
     """
     cut = windows(clips, protocol)
     if not cut:

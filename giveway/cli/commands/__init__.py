@@ -1,1 +1,1 @@
-"""The commands: one module each, imported when its command is asked for."""
+"""The commands: one module each, which is imported when its command is needed."""

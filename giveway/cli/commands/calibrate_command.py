@@ -1,4 +1,4 @@
-"""``giveway calibrate``: parameters fitted to recorded trajectories, judged on held-out clips."""
+"""The command ``giveway calibrate``: parameters fitted to recorded trajectories."""
 
 import math
 from pathlib import Path
@@ -31,7 +31,7 @@ def calibrate_command(
     force: bool,
     quiet: bool,
 ) -> None:
-    """Fit, print the errors before and after, write the preset.
+    """Fit, print the errors before and after the fit, and write the preset.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -72,7 +72,7 @@ def calibrate_command(
 
 
 def _provenance(found: Calibration, settings: dict[str, Any]) -> dict[str, Any]:
-    """Describe how the preset was made, for readers of the file."""
+    """Return a description of how the preset was made, for readers of the file."""
     return {
         "made_by": "giveway calibrate",
         **settings,
@@ -93,7 +93,7 @@ def _provenance(found: Calibration, settings: dict[str, Any]) -> dict[str, Any]:
 
 
 def _apart(found: Calibration) -> dict[str, float]:
-    """The smallest distances between people [m], as far as any two meet."""
+    """Return the smallest distances between people [m], for cases in which any two meet."""
     names = (f"closest_people_{when}" for when in ("data", "before", "after"))
     return {
         name: round(value, 3)
@@ -143,7 +143,7 @@ def _gap(fit: Fit) -> str:
 
 
 def _remarks(found: Calibration) -> list[str]:
-    """Remarks on what the fit shows and does not show."""
+    """Return remarks on what the fit shows and does not show."""
     said = []
     if not found.held_out:
         said.append("No clip was held out: nothing is known of other recordings.")

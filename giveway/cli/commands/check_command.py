@@ -1,4 +1,4 @@
-"""The command ``giveway check``: it tries a plug-in on made-up scenes, in a process of its own."""
+"""The command ``giveway check``: it tries a plug-in on made-up scenes, in another process."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ def check_command(
     time_step: float | None = None,
     profile: str = "",
 ) -> int:
-    """Print what was found and return the exit code: 1 if a rule is broken.
+    """Print the findings and return the exit code: 1 if a rule is broken.
 
-    The battery runs in a process of its own, which may hang or end.
+    The rules are tried in a process of their own, which may hang or end.
 
     Args:
         name: Name of the plug-in.
         words: Words of the command line that set its options.
         socket: Socket for which the plug-in is written.
-        limit: [s] for one rule.
-        time_step: [s] of the scenes; none: that of a run which sets none.
+        limit: Time limit [s] for one rule.
+        time_step: Time step [s] of the scenes, or None for that of a run which sets none.
         profile: Profile of a controller FMU.
 
     Raises:
-        GivewayError: it cannot be found, imported or given its options.
+        GivewayError: the plug-in cannot be found, imported or given its options.
     """
     config = _configured(name, words, socket, time_step, profile)
     own = [one for one in foreign_code(config) if one.socket is socket]
@@ -72,7 +72,7 @@ def _configured(
         settings["time_step"] = time_step
     if profile:
         settings["controller_profile"] = profile
-    if socket is not RULE:  # whose name is a key
+    if socket is not RULE:  # the name of a rule is a key
         node = settings
         for table in socket.location[:-1]:
             node = node.setdefault(table, {})
@@ -81,11 +81,11 @@ def _configured(
 
 
 def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple[str, str]]:
-    """Return the rules and what breaks each.
+    """Return the rules and the faults found in each.
 
-    The last one counts as broken if the process hangs or ends in it.
+    The last rule counts as broken if the process hangs or ends in it.
     """
-    # a fresh process, without threads or state of ours
+    # a new process, without threads or state of this one
     spawn = multiprocessing.get_context("spawn")
     ours, theirs = spawn.Pipe(duplex=False)
     process = spawn.Process(
@@ -112,9 +112,9 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
 
 
 def _battery(connection: Connection, config: str, what: str) -> None:
-    """Print each rule's name before it is tried, and its findings.
+    """Print each rule's name before it is tried, and the findings after it.
 
-    This function runs in the process of its own.
+    This function runs in the other process.
     """
     effective = RunConfig.model_validate_json(config)
     step = effective.time_step or PAPER_STEP

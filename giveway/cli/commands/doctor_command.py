@@ -1,4 +1,4 @@
-"""``giveway doctor``: the findings as a table, the exit code for scripts."""
+"""The command ``giveway doctor``: the findings as a table, and an exit code for scripts."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
     """Examine the environment, and the scenario if one is named.
 
     Args:
-        scenario: name or path.
-        as_json: print the findings as JSON.
+        scenario: Name or path, or None.
+        as_json: True to print the findings as JSON.
 
     Returns:
         1 if there is an error among the findings, 0 otherwise.

@@ -1,4 +1,4 @@
-"""``giveway export controller``: the controller, as configured, as an FMU for other masters."""
+"""The command ``giveway export controller``: the configured controller as an FMU."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ def export_command(
     """Write the controller of the effective configuration as an FMU.
 
     Args:
-        scenario: name or path; None: the file's, or the default.
-        config: a TOML file.
+        scenario: Name or path, or None for the file's or the default.
+        config: TOML file, or None.
         settings: Settings given by flags.
-        out: the .fmu file.
-        fmi: "2.0" or "3.0".
-        force: replace a file that is there.
+        out: File .fmu to write.
+        fmi: FMI version, "2.0" or "3.0".
+        force: True to replace an existing file.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -64,11 +64,11 @@ def export_command(
 
 
 def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
-    """The parameters of the egos' controller.
+    """Return the parameters of the egos' controller.
 
     Raises:
         ConfigError: there is no ego, or their controllers differ or cannot be exported.
-        ControlError: its parameters contradict each other.
+        ControlError: the parameters contradict each other.
     """
     exports = dict.fromkeys(_parameters(ego, time_step) for ego in config.each_ego())
     if len(exports) == 1:
@@ -78,7 +78,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
 
 
 def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
-    """The parameters of one ego's controller."""
+    """Return the parameters of one ego's controller."""
     if config.reference_speed == LANE:
         msg = f"[regulation] reference_speed = {LANE}: an exported controller knows no lanes"
         raise ConfigError(f"{msg}; give a speed, like --regulation-reference-speed 8 [m/s]")
@@ -117,7 +117,7 @@ def _check_file(out: Path, *, force: bool) -> None:
     """Make sure that the FMU may be written.
 
     Raises:
-        ResultsError: the name does not fit, or something is there that is not to be replaced.
+        ResultsError: the name does not fit, or an existing file is not to be replaced.
     """
     if out.suffix != ".fmu":
         msg = f"--out {out}: expected the name of an .fmu file, like mpc.fmu"

@@ -1,4 +1,4 @@
-"""``giveway export run``: a results folder in other people's formats."""
+"""The command ``giveway export run``: a results folder in other formats."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from giveway.replays.run_folder import RunFolder
 
 class _Format(NamedTuple):
     suffix: str  # Suffix of the file's name
-    step: float | None  # Default step [s]; None: the control step
+    step: float | None  # default step [s], or None for the control step
     write: Callable[[RunFolder, Sampled, Path], str]
 
 
@@ -46,11 +46,11 @@ def export_run_command(
     """Write a run in another format and return the exit code 0.
 
     Args:
-        folder: the results folder.
-        to: one of ``FORMATS``.
-        out: the file; None: in the working folder, named after the results folder.
-        step: Time [s] between two instants. None: the one that fits the format.
-        force: replace a file that is there.
+        folder: Results folder.
+        to: Format, one of ``FORMATS``.
+        out: File to write, or None for one in the working folder, named after the results folder.
+        step: Time [s] between two instants, or None for one that suits the format.
+        force: True to replace an existing file.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -68,7 +68,7 @@ def export_run_command(
         with writing(file, "name another file with --out"):
             told = found.write(run, samples, file)
     except BaseException:
-        file.unlink(missing_ok=True)  # do not leave half a file
+        file.unlink(missing_ok=True)  # half a file must not stay
         raise
     console = Console()
     print_place(console, "Written", file)
@@ -80,7 +80,7 @@ def _check(file: Path, suffix: str, *, force: bool) -> None:
     """Make sure that the file may be written.
 
     Raises:
-        ResultsError: the name does not fit, or something is there that is not to be replaced.
+        ResultsError: the name does not fit, or an existing file is not to be replaced.
     """
     ending = suffix[suffix.rindex(".") :]
     if file.suffix != ending:

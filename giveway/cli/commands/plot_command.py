@@ -1,4 +1,4 @@
-"""``giveway plot``."""
+"""The command ``giveway plot``."""
 
 import math
 from pathlib import Path
@@ -35,7 +35,7 @@ def influence_command(out: Path, speeds: str, *, preset: str, length: float, wid
 
 
 def reference_command(out: Path) -> None:
-    """Draw the reference speeds of the paper's PID, its figure 3, and of the tuned one.
+    """Draw the reference speeds of the paper's PID (its figure 3) and of the tuned PID.
 
     Raises:
         ConfigError: ``out`` is no name of a picture.

@@ -1,4 +1,4 @@
-"""``giveway recover``: the rows of runs that were killed, written as results."""
+"""The command ``giveway recover``: the rows of runs that were killed, written as results."""
 
 from pathlib import Path
 
@@ -13,9 +13,9 @@ def recover_command(journal: Path | None, out: Path | None, *, force: bool) -> i
     """Write the rows of a journal, or list the journals, and return the exit code 0.
 
     Args:
-        journal: the folder of one; None lists them.
-        out: Folder for the rows. None: the folder in which the run would have written them.
-        force: replace the results there.
+        journal: Folder of a journal, or None to list the journals.
+        out: Folder for the rows, or None for the folder of the run.
+        force: True to replace existing results.
 
     Raises:
         GivewayError: one line that says what to do.

@@ -1,4 +1,4 @@
-"""``giveway replay``: from a results folder to a page that plays the run."""
+"""The command ``giveway replay``: a page that plays the run of a results folder."""
 
 import contextlib
 import sys
@@ -27,11 +27,12 @@ def replay_command(
     """Write the replay of a run and return the exit code 0.
 
     Args:
-        run: a results folder.
-        out: the page; None: ``replay.html`` in the folder, or beside another run one here.
-        beside: another results folder, to be played in step with it.
-        rerun: make a run again if its predictions are not on record.
-        show: open the page in the browser.
+        run: Results folder.
+        out: Page to write, or None for ``replay.html`` in the folder; with another run it is in the
+            working folder.
+        beside: Results folder of another run, which is played at the same time, or None.
+        rerun: True to repeat a run whose predictions are not recorded.
+        show: True to open the page in the browser.
 
     Raises:
         ResultsError: a folder holds no run, or the page cannot be written.
@@ -56,7 +57,7 @@ def replay_command(
 
 @contextlib.contextmanager
 def _predicted(run: Path, console: Console, *, rerun: bool) -> Iterator[Predicted]:
-    """The predictions of a run, made once more if that is wanted and worth it."""
+    """Yield the predictions of a run, which is repeated for them if this is useful."""
     with contextlib.ExitStack() as stack:
         predicted = Predicted(None)
         if rerun and _worth_it(run):
@@ -70,7 +71,7 @@ def _predicted(run: Path, console: Console, *, rerun: bool) -> Iterator[Predicte
 
 
 def _worth_it(run: Path) -> bool:
-    """True if a repetition may give predictions that are not recorded.
+    """Return whether a repetition may give predictions that are not recorded.
 
     A run that crashed is not repeated.
     """

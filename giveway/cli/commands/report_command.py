@@ -1,4 +1,4 @@
-"""``giveway report``: figures, replays and the HTML report of a study."""
+"""The command ``giveway report``: figures, replays and the HTML report of a study."""
 
 import sys
 from collections.abc import Collection
@@ -15,13 +15,13 @@ def report_command(
 ) -> int:
     """Write figures, replays and report anew.
 
-    Only the runs that are shown are computed again.
+    Only the runs that are shown are made again.
 
     Args:
-        study: the study's folder.
-        replays: True if the shown runs are to be made again.
-        quiet: print nothing.
-        trusted: code, as module:Class, that the study may have imported.
+        study: Folder of the study.
+        replays: True to make the shown runs again.
+        quiet: True to print nothing.
+        trusted: Code, as module:Class, that the study may import.
 
     Raises:
         GivewayError: there is no study, or nothing to show, or the disk is full.

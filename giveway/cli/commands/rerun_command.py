@@ -1,4 +1,4 @@
-"""``giveway rerun``: one run of a study once more, as ``giveway run`` would make it."""
+"""The command ``giveway rerun``: the repetition of one run of a study, as by ``giveway run``."""
 
 from collections.abc import Collection
 from pathlib import Path
@@ -24,15 +24,15 @@ def rerun_command(
     journal: Path | None,
     trusted: Collection[str] = (),
 ) -> int:
-    """Make the run again, and say whether its numbers are the study's.
+    """Make the run again, and print whether its numbers are the study's.
 
     Args:
-        study: the study's folder.
-        run: the run's id.
+        study: Folder of the study.
+        run: Id of the run.
         outputs: Outputs to keep and to print.
-        predictions: keep the predicted positions.
-        trusted: code, as module:Class, that the study may have imported.
-        journal: a folder for the rows in case this process dies.
+        predictions: True to keep the predicted positions.
+        trusted: Code, as module:Class, that the study may import.
+        journal: Folder for the rows in case this process dies.
 
     Raises:
         GivewayError: one line that says what to do.

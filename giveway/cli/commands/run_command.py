@@ -1,4 +1,4 @@
-"""``giveway run``: progress bar, run, files, one screen of summary."""
+"""The command ``giveway run``: progress bar, run, files, and a summary of one screen."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outputs:
-    """The outputs that the user wants to keep, and to see."""
+    """The outputs that the user wants to keep and to see."""
 
     folder: Path | None
     force: bool
@@ -41,7 +41,7 @@ class Outputs:
 def layers_of(
     scenario: str | None, config: Path | None, settings: Mapping[str, Any]
 ) -> list[Layer]:
-    """The user's settings: the file, then the flags."""
+    """Return the user's settings: the file, then the flags."""
     layers = [] if config is None else [read_toml(config)]
     named = {} if scenario is None else {"scenario": scenario}
     return [*layers, Layer("command line", {**named, **settings}, from_flags=True)]
@@ -57,11 +57,11 @@ def run_command(
     """Run once and return the exit code: 0, or 130 if the user interrupted.
 
     Args:
-        scenario: name or path; None: the file's, or the default.
-        config: a TOML file.
+        scenario: Name or path, or None for the file's or the default.
+        config: TOML file, or None.
         settings: Settings given by flags.
         outputs: Outputs to keep and to print.
-        journal: a folder for the rows in case this process dies.
+        journal: Folder for the rows in case this process dies.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -110,15 +110,15 @@ def run_command(
 
 
 def interrupted(result: RunResult, folder: Path) -> int:
-    """Say what has been kept of a run that the user has ended, and return the exit code."""
+    """Print what has been kept of a run that the user has ended, and return the exit code."""
     kept = f"rows up to then are in {folder}" if len(result.time) else "there are no rows yet"
     return fail(f"interrupted; {kept}", INTERRUPTED)
 
 
 def default_folder(config: RunConfig, scenario: str) -> Path:
-    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos taken over.
+    """Return ``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos.
 
-    Where anything else differs from the scenario's settings and the defaults, six digits of a hash
+    If anything else differs from the scenario's settings and the defaults, six digits of a hash
     over the whole configuration follow, so that different runs have different folders.
     """
     egos = config.each_ego()
@@ -133,12 +133,12 @@ def default_folder(config: RunConfig, scenario: str) -> Path:
 
 
 def _safe(name: str) -> str:
-    """A part of a folder's name, on every system."""
+    """Return a part of a folder's name that is valid on every system."""
     return "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in name)
 
 
 def _is_told_by_name(config: RunConfig) -> bool:
-    """True if the folder's name tells everything that differs from the scenario's own settings."""
+    """Return whether the folder's name says all that differs from the scenario's own settings."""
     ego = {key: value for key in ("take_over", "none") if (value := getattr(config.ego, key))}
     told = {
         "scenario": config.scenario,
@@ -155,7 +155,7 @@ def _is_told_by_name(config: RunConfig) -> bool:
 
 
 def show(console: Console, result: RunResult, folder: Path) -> None:
-    """Print the run's summary and what was written."""
+    """Print the run's summary and the places of the files."""
     from giveway.cli.screen.run_summary import summary_table
 
     console.print(summary_table(result))

@@ -1,4 +1,4 @@
-"""``giveway schema``: JSON schemas, with which editors complete and check giveway's TOML files."""
+"""The command ``giveway schema``: JSON schemas, by which editors complete and check TOML files."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def schema_command(folder: Path) -> int:
     """Write the schemas of run, study, profile and preset files into ``folder``.
 
     Raises:
-        ResultsError: one cannot be written.
+        ResultsError: a schema cannot be written.
     """
     for name, schema in schemas().items():
         with writing(folder / name, "name another folder with --out"):
@@ -39,7 +39,7 @@ def schema_command(folder: Path) -> int:
 
 
 def schemas() -> dict[str, dict[str, Any]]:
-    """The schemas by the names of their files."""
+    """Return the schemas by the names of their files."""
     makers: dict[str, Callable[[], dict[str, Any]]] = {
         RUN: _run_schema,
         STUDY: _study_schema,
@@ -98,7 +98,7 @@ def _preset_schema() -> dict[str, Any]:
 
 
 def _tidy(schema: dict[str, Any]) -> dict[str, Any]:
-    """The schema with units in its descriptions, without what no editor knows."""
+    """Return the schema with units in its descriptions, and without keys that no editor knows."""
     unit, description = schema.get("unit"), schema.get("description")
     tidied: dict[str, Any] = {}
     for key, value in schema.items():

@@ -1,4 +1,4 @@
-"""``giveway study``: the plan, a progress bar, tables, pictures, report."""
+"""The command ``giveway study``: the plan, a progress bar, tables, pictures, report."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from giveway.studies.study import StudyOptions, StudyProgress, estimate, run_stu
 from giveway.studies.study_files import find_study
 from giveway.studies.varying import chosen, varied
 
-_REFRESH = 0.2  # [s] of wall clock between two redraws
-_LINE = 30.0  # [s] between two lines where there is no terminal
+_REFRESH = 0.2  # Wall-clock time [s] between two redraws
+_LINE = 30.0  # Time [s] between two lines without a terminal
 
 
 @dataclass(frozen=True)
 class StudyRequest:
-    """The study that the user asked for, and how it is to be computed."""
+    """The study that the user requested, and how it is to be computed."""
 
-    study: str | None  # None if the study consists of variations given by flags
+    study: str | None  # None if the study consists of variations from flags
     vary: tuple[str, ...]
     only: tuple[str, ...]
     config: Path | None
@@ -81,7 +81,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         from giveway.cli.commands.report_command import write_all
 
         imported = {one.name for cell in planned.cells for one in foreign_code(cell.config)}
-        write_all(study, console, trusted=imported)  # the user has just confirmed this
+        write_all(study, console, trusted=imported)  # the user has just confirmed these
     if request.as_json:
         print_json(
             {
@@ -101,7 +101,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
 def study_progress(console: Console, name: str) -> Iterator[_Watcher]:
     """Show a bar with rate, remaining time and failures.
 
-    Without a terminal a line is printed now and then.
+    Without a terminal, a line is printed from time to time.
     """
     if console.quiet:
         yield _Watcher()
@@ -119,10 +119,10 @@ def study_progress(console: Console, name: str) -> Iterator[_Watcher]:
 
 
 class _Watcher:
-    """Counts the runs that this session makes, and shows nothing.
+    """A watcher that counts the runs that this session makes, and shows nothing.
 
     Attributes:
-        made: runs so far.
+        made: Number of runs made so far.
     """
 
     def __init__(self) -> None:
@@ -134,10 +134,10 @@ class _Watcher:
         self.show(state)
 
     def show(self, state: StudyProgress) -> None:
-        """Show where the study stands."""
+        """Show the progress of the study."""
 
     def text(self, state: StudyProgress) -> str:
-        """Runs so far, runs per second of this session, failures."""
+        """Return the number of runs so far, runs per second of this session, and failures."""
         elapsed = time.monotonic() - self._began
         rate = state.made / elapsed if elapsed else 0.0
         failed = f"  {state.failed} failed" if state.failed else ""

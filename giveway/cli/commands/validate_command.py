@@ -1,4 +1,4 @@
-"""``giveway validate``: the pedestrian model against recorded trajectories, printed and drawn."""
+"""The command ``giveway validate``: the pedestrian model compared with recorded trajectories."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def validate_command(
     clips_in: Path, *, dataset: str | None, preset: str, out: Path | None, force: bool, quiet: bool
 ) -> None:
-    """Read the clips, predict, print the tables, write the folder.
+    """Read the clips, predict, print the tables, and write the folder.
 
     Raises:
         GivewayError: one line that says what to do.

@@ -1,1 +1,1 @@
-"""Guards: files are checked, or opened in a process of their own, before a command trusts them."""
+"""Guards: files are checked, or opened in another process, before a command trusts them."""

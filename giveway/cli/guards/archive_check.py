@@ -1,7 +1,7 @@
-"""The archive gate of foreign FMUs, before a command loads what it needs for its work.
+"""The check of foreign FMUs' archives, before a command loads what it needs for its work.
 
-An archive that is refused costs no more than its examination: neither SUMO nor any library of
-numbers is loaded for it.
+An archive that is refused costs only its examination: neither SUMO nor any numerical library is
+loaded for it.
 """
 
 from collections.abc import Iterator, Mapping
@@ -15,12 +15,12 @@ from giveway.plug_ins.finding import is_fmu
 
 
 def require_archives(config: Path | None, settings: Mapping[str, Any]) -> None:
-    """Have the FMUs that a file and the flags name pass the gate.
+    """Check the archives of the FMUs that a file and the flags name.
 
-    One that is not there is left to the command, which knows what it was for.
+    A missing FMU is left to the command, whose message can say what it was for.
 
     Args:
-        config: a TOML file; None: there is none.
+        config: TOML file, or None.
         settings: Settings given by flags.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Arguments of ``giveway fmu check`` and ``identify``: an FMU and its profile."""
+"""The arguments of ``giveway fmu check`` and ``identify``: an FMU and its profile."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def require_fmu(path: Path) -> None:
-    """Make sure that there is a file to look at.
+    """Make sure that the file exists.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: it does not exist.
     """
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
@@ -31,7 +31,7 @@ def require_number(flag: str, value: float, low: float, high: float, unit: str) 
     """Make sure that a flag's number is above ``low`` and not above ``high``.
 
     Raises:
-        ConfigError: it is not.
+        ConfigError: the number is outside.
     """
     if not (math.isfinite(value) and low < value <= high):
         raise ConfigError(
@@ -43,7 +43,7 @@ def profile_in(path: Path | None) -> VehicleProfile | None:
     """Return the profile that the user names, or None if no profile is named.
 
     Raises:
-        ConfigError: it cannot be used.
+        ConfigError: the profile cannot be used.
     """
     if path is None:
         return None
@@ -57,7 +57,7 @@ def save_picture(figure: Figure, path: Path) -> None:
     """Write a picture, and the folders that it needs.
 
     Raises:
-        ResultsError: it cannot be written.
+        ResultsError: the picture cannot be written.
     """
     with writing(path, "name another with --out"):
         save_figure(figure, path)

@@ -1,4 +1,4 @@
-"""``giveway run`` as a supervisor: the run is a child process, whose crash loses no row."""
+"""The supervisor of ``giveway run``: the run is a child process, whose crash loses no row."""
 
 import sys
 from collections.abc import Callable
@@ -12,13 +12,13 @@ from giveway.processes.supervisor import journal_folder, own_command, supervise
 
 
 def run_isolated() -> int:
-    """Run this very command line in a process of its own.
+    """Run the same command line in a process of its own.
 
     Returns:
         The exit code: the child's own, or 1 after a crash, whose report goes to stderr.
 
     Raises:
-        GivewayError: the run's process cannot be started, or the rows of a crashed run not be
+        GivewayError: the run's process cannot be started, or the rows of a crashed run cannot be
             written.
     """
     with journal_folder() as journal:
@@ -41,8 +41,9 @@ def supervised(journal: Path | None, command: Callable[[], int]) -> None:
     """Make the run in the child process, and end with its exit code.
 
     Args:
-        journal: folder named by the supervisor; None without one.
-        command: makes the run and tells the exit code; may raise a ``GivewayError``.
+        journal: Folder named by the supervisor, or None without one.
+        command: Function that makes the run and returns the exit code; it may raise a
+            ``GivewayError``.
 
     Raises:
         SystemExit: always.
@@ -55,5 +56,5 @@ def supervised(journal: Path | None, command: Callable[[], int]) -> None:
             code = fail(f"{who_ended(error)} before the run began", INTERRUPTED)
         except GivewayError as error:
             code = fail(str(error), error.exit_code)
-        # raised inside: a failed run that then crashes while it ends still fails
+        # raised inside: a failed run that crashes while it ends counts as failed
         raise SystemExit(code)

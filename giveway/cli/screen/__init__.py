@@ -1,1 +1,1 @@
-"""Output to the terminal: tables, progress bars and lines."""
+"""The output to the terminal: tables, progress bars and lines."""

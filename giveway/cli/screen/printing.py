@@ -1,4 +1,4 @@
-"""Output that several commands share: findings, the place of a file, errors in writing it."""
+"""The output that several commands share: findings, a file's place, errors in writing it."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 
 def escape(text: str) -> str:
-    """``text`` as it is, and no markup of rich's: names and labels come from a user's files."""
+    """Return ``text`` with rich's markup escaped, since a user's names may look like it."""
     return markup.escape(visible(text))
 
 
 def findings_table(
     title: str, styles: Mapping[str, str], findings: Iterable[tuple[str, str, str, str]]
 ) -> Table:
-    """A row per finding.
+    """Return a table with a row per finding.
 
     Args:
         title: Title above the table.
         styles: Style of each level.
-        findings: level, subject, text and remedy of each; the remedy may be empty.
+        findings: Level, subject, text and remedy of each finding; the remedy may be empty.
     """
     table = Table(
         title=Text(title), title_justify="left", show_header=False, box=None, pad_edge=False
@@ -42,7 +42,7 @@ def findings_table(
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold", ratio=1)
     for level, subject, finding, remedy in findings:
-        text = Text(visible(finding))  # not markup: ids, names and paths may hold brackets
+        text = Text(visible(finding))  # not markup: ids, names and paths may contain brackets
         if remedy:
             text.append(f"\n-> {remedy}", style="italic")
         table.add_row(Text(level, style=styles[level]), Text(visible(subject)), text)
@@ -50,13 +50,13 @@ def findings_table(
 
 
 def print_place(console: Console, what: str, path: Path) -> None:
-    """Tell where something has been written, on one line, so that the path can be copied."""
+    """Print where a file has been written, on one line, so that the path can be copied."""
     where = f"{what} in [bold]{escape(str(path))}[/bold]"
     console.print(where, highlight=False, soft_wrap=True)
 
 
 def print_json(content: dict[str, Any]) -> None:
-    """Print what a command has found for a script: JSON on standard output, and nothing else."""
+    """Print the findings of a command for a script: only JSON on standard output."""
     sys.stdout.write(json_text(content))
 
 

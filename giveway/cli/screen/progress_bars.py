@@ -1,4 +1,4 @@
-"""Progress bars: over a run, and over things that are counted."""
+"""The progress bars: of a run, and of things that are counted."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from giveway.run_data.progress import Progress as State
     from giveway.run_data.progress import Watcher
 
-_REFRESH = 0.1  # [s] of wall clock between two redraws
+_REFRESH = 0.1  # Wall-clock time [s] between two redraws
 
 
 @contextmanager
 def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None]:
-    """A bar over the distance driven, which vanishes when the run has ended.
+    """Show a bar of the distance driven, which vanishes when the run has ended.
 
-    Drawn from the loop itself: a refreshing thread would write while file descriptor 2 belongs
-    to SUMO.
+    The loop itself draws it: a refreshing thread would write while file descriptor 2 belongs to
+    SUMO.
     """
     if console.quiet:
         yield None

@@ -1,4 +1,4 @@
-"""One screen that says how the run went."""
+"""The summary of a run on one screen."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _OF_THE_LAW = (  # Metrics that are shown if traffic law applies on an ego's rou
     ("Stops without a cause", "stops_without_cause", ""),
     ("Farthest that somebody was pushed back", "pushed_back", "m"),
 )
-_OF_THE_PEOPLE = (  # Metrics that are shown if there is a twin
+_OF_THE_PEOPLE = (  # metrics that are shown if there is a counterfactual run
     ("People's delay, all together", "people_delay", "s"),
     ("on average", "mean_people_delay", "s"),
     ("of one in twenty at least", "people_delay_95", "s"),
@@ -67,9 +67,9 @@ _COUNTED = (
 
 
 def summary_table(result: RunResult) -> Table:
-    """Return a table of the summary's most asked-for numbers, with units.
+    """Return a table of the summary's most important numbers, with units.
 
-    A dash stands where there is no number.
+    A missing number is shown as a dash.
     """
     table = Table(
         title=Text(_title(result)), show_header=len(result.egos) > 1, title_justify="left"
@@ -97,7 +97,7 @@ def summary_table(result: RunResult) -> Table:
 
 
 def _shown(result: RunResult) -> Iterator[tuple[str, str, str]]:
-    """Return label, column and unit of each number shown of an ego."""
+    """Yield label, column and unit of each number that is shown of an ego."""
     if result.egos:
         yield from _SHOWN
     if result.effect is not None:

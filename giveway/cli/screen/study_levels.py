@@ -1,4 +1,4 @@
-"""The table of levels in a terminal, in parts as wide as there is room for."""
+"""The table of levels in a terminal, in parts that fit its width."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from giveway.studies.folder.study_folder import StudyFolder
 if TYPE_CHECKING:
     from rich.console import Console
 
-_GAP = 3  # Characters between two columns: padding on both sides, and the box's own blank
+_GAP = 3  # Characters between two columns: padding on both sides, and a blank of the box
 _COLOURS = {"better": "green", "worse": "red"}
 
 
 def print_levels(console: Console, study: StudyFolder) -> None:
-    """Mean and half interval of every level: a block of rows per context."""
+    """Print mean and half interval of every level: a block of rows per context."""
     table = level_table(study)
     if not table.rows:
         return
@@ -45,7 +45,7 @@ def _text(mean: Mean) -> str:
 
 
 def _widths(table: LevelTable) -> list[int]:
-    """The width of each column of means."""
+    """Return the width of each column of means."""
     return [
         max(
             *map(len, _heading(*heading).split("\n")), *(len(_text(r.means[k])) for r in table.rows)
@@ -59,7 +59,7 @@ def _names_width(table: LevelTable) -> int:
 
 
 def _parts(table: LevelTable, width: int) -> Iterator[list[int]]:
-    """The columns of each part."""
+    """Yield the columns of each part."""
     room = width - _names_width(table)
     part: list[int] = []
     used = 0

@@ -1,4 +1,4 @@
-"""Output of ``giveway study``: the plan before the runs, the findings after them."""
+"""The output of ``giveway study``: the plan before the runs, the findings after them."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ _SHOWN = (
     ("overlaps", "general"),
     ("mean_people_delay", "general"),
 )
-_OF_TWINS = frozenset({"mean_people_delay"})  # not shown in a study without twins
-_MOST_ROWS = 40  # about a screen; comparison.csv has them all
-_BYTES_PER_RUN = 4096  # a file's block on most disks
+_OF_TWINS = frozenset({"mean_people_delay"})  # not shown in a study without counterfactual runs
+_MOST_ROWS = 40  # Largest number of rows: about a screen; comparison.csv has all
+_BYTES_PER_RUN = 4096  # Size [bytes] of a run's file: a block on most disks
 
 
 def print_plan(
     console: Console, planned: Plan, seconds: float, by_cell: Mapping[str, float], out: Path
 ) -> None:
-    """The cells, and what running them will take."""
+    """Print the cells, and what running them will take."""
     definition = planned.definition
     title = f"Study {definition.name}"
     title += f": {definition.description}" if definition.description else ""
@@ -73,14 +73,14 @@ def _trial(seconds: float) -> str:
 def print_summary(
     console: Console, study: StudyFolder, *, made: int, elapsed: float, workers: int | None
 ) -> None:
-    """The main rows of what the study shows, failures, and where everything is.
+    """Print the main results of the study, its failures, and the places of the files.
 
     Args:
         console: Console to print on.
-        study: its folder.
+        study: Folder of the study.
         made: Number of runs that this session has made.
-        elapsed: [s] that making them took.
-        workers: Number of processes that made them. None: a cluster made them.
+        elapsed: Time [s] that making them took.
+        workers: Number of processes that made them, or None if a cluster made them.
     """
     if study.definition.reference:
         _print_reference(console, study)
@@ -113,7 +113,7 @@ def print_summary(
 
 
 def print_comparison(console: Console, study: StudyFolder) -> None:
-    """Mean differences with their intervals: a table per metric, a row per context and level."""
+    """Print mean differences with intervals: a table per metric, a row per context and level."""
     comparison = study.comparison
     if comparison.empty:
         return
@@ -152,7 +152,7 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
 
 
 def _print_lacking(console: Console, study: StudyFolder, fewest: float) -> None:
-    """Say how many pairs are missing for intervals, if the fewest (``fewest``) are too few."""
+    """Print how many pairs are missing for intervals, if ``fewest`` pairs are too few."""
     if fewest < math.inf:
         wanted = study.definition.comparison.minimum_pairs
         more = wanted - int(fewest)
@@ -180,13 +180,13 @@ def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
 
 
 def _seeds_for(study: StudyFolder, more: int) -> int:
-    """Seeds with which there are so many more pairs, if each seed gives one."""
+    """Return the number of seeds for ``more`` further pairs, if each seed gives one."""
     return study.definition.replications + more
 
 
 def _short(names: Sequence[str]) -> Iterator[str]:
-    """The last part of each factor's name, where no two are the same."""
-    last = [*(name.rpartition(".")[2] for name in names), "seed"]  # the crowd's
+    """Yield the last part of each factor's name, if no two of them are the same."""
+    last = [*(name.rpartition(".")[2] for name in names), "seed"]  # the seed is the crowd's
     for name, short in zip(names, last, strict=False):
         yield short if short and last.count(short) == 1 else name
 
@@ -202,7 +202,7 @@ def _cells(row: Mapping[Any, Any]) -> tuple[str, ...]:
 
 
 def _print_precision(console: Console, study: StudyFolder) -> None:
-    """Say whether the seeds were enough, if the study asks for that."""
+    """Print whether the seeds were enough, if the study sets a precision."""
     wanted = study.definition.precision
     if wanted is None:
         return
@@ -250,7 +250,7 @@ def _print_reference(console: Console, study: StudyFolder) -> None:
 
 
 def _ours_and_published(row: Mapping[Any, Any]) -> str:
-    """Ours above, the published number below."""
+    """Return the study's number above the published one."""
     published = "N.A." if math.isnan(row["published"]) else f"{row['published']:+.2f}"
     if math.isnan(row["mean_difference"]):
         ours = "N.A."

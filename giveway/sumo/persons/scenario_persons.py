@@ -31,7 +31,7 @@ _DETOUR = 5.0
 
 
 class Arrival(enum.Enum):
-    """What becomes of a person who has reached the end of the route."""
+    """The outcome for a person who has reached the end of the route."""
 
     ARRIVED = "arrived"  # the person leaves SUMO with the next step
     CONTINUED = "continued"  # a stop, a ride or another walk follows in SUMO

@@ -1,4 +1,4 @@
-"""``giveway fmu check``: a vehicle FMU's dry run as a table, and as a picture."""
+"""The command ``giveway fmu check``: a vehicle FMU's dry run as a table and a picture."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -37,23 +37,24 @@ def check_command(
     speed: float = 4.0,
     as_json: bool = False,
 ) -> int:
-    """Dry-run a vehicle FMU, print what was found, draw its response.
+    """Dry-run a vehicle FMU, print the findings, and draw its response.
 
     Args:
-        path: the .fmu file.
-        profile: its profile; None: drafted from its names and units.
+        path: File .fmu.
+        profile: Profile of the FMU, or None to draft one from names and units.
         step: Control step [s].
-        out: folder of the picture; None: none is drawn.
-        mass: M of the controller's model [kg]; that of a profile's [model] comes first. None:
-            1000 kg for the controller, and nothing is known of the vehicle.
-        ego_class: SUMO's vehicle class, which tells roughly what it weighs.
-        friction: alpha of it [N.s/m]; likewise.
-        force_limit: u_max [N].
+        out: Folder for the picture, or None for no picture.
+        mass: M of the controller's model [kg], which a profile's [model] overrides. With None it is
+            1000 kg for the controller, and the vehicle's mass is unknown.
+        ego_class: Vehicle class in SUMO, from which the mass is roughly known.
+        friction: Friction alpha of the controller's model [N.s/m], which a profile's [model]
+            overrides.
+        force_limit: Largest force u_max [N].
         speed: Speed of the rolling start [m/s].
-        as_json: print the findings as JSON.
+        as_json: True to print the findings as JSON.
 
     Returns:
-        0 if every test passed, with warnings or without; 1 if one failed.
+        0 if every test passed, with or without warnings; 1 if a test failed.
 
     Raises:
         ConfigError: there is no such file, or a value or the profile cannot be used.

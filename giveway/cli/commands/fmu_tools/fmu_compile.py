@@ -1,4 +1,4 @@
-"""``giveway fmu compile``: an FMU that brings its C sources, made ready for this platform."""
+"""The command ``giveway fmu compile``: it compiles an FMU's C sources for this platform."""
 
 from pathlib import Path
 
@@ -16,16 +16,16 @@ def compile_command(path: Path, out: Path | None = None, *, force: bool = False)
     """Write a copy of an FMU with a binary for this platform.
 
     Args:
-        path: the FMU.
-        out: the copy; None: named after the FMU and the platform, in the working folder.
-        force: replace a file that is there.
+        path: File of the FMU.
+        out: Copy to write, or None for one in the working folder, named after FMU and platform.
+        force: True to replace an existing file.
 
     Returns:
         0.
 
     Raises:
         ConfigError: there is no such FMU, or the copy exists.
-        VehicleError: the FMU is refused, brings no sources, or they do not compile.
+        VehicleError: the FMU is refused, has no sources, or they do not compile.
         ResultsError: the copy cannot be written.
     """
     require_fmu(path)

@@ -1,4 +1,4 @@
-"""``giveway fmu identify``: M and alpha of a vehicle FMU, into its profile."""
+"""The command ``giveway fmu identify``: M and alpha of a vehicle FMU, written into its profile."""
 
 import tomllib
 from collections.abc import Sequence
@@ -37,15 +37,15 @@ def identify_command(
     """Find M and alpha by step tests, print them, and write the profile with them.
 
     Args:
-        path: the .fmu file.
-        profile: its profile; None: ``out`` if that is there, else drafted.
-        out: the profile to write; None: only printed.
+        path: File .fmu.
+        profile: Profile of the FMU, or None for ``out`` if it exists, else for a draft.
+        out: Profile to write, or None to print only.
         step: Time step of the MPC [s].
         horizon: Prediction horizon of the MPC [steps].
-        force_limit: u_max [N].
+        force_limit: Largest force u_max [N].
         speeds: Speeds from which the tests start [m/s].
-        picture: .png, .svg or .pdf to draw; None: none.
-        force: replace another file at ``out``.
+        picture: Picture to draw (.png, .svg or .pdf), or None for no picture.
+        force: True to replace another file at ``out``.
 
     Raises:
         ConfigError: a file, a value or the profile cannot be used.
@@ -165,7 +165,7 @@ def _title(path: Path, found: Identification) -> str:
 
 
 def _text(path: Path, file: Path | None, profile: VehicleProfile) -> str:
-    """The profile's text, with the user's comments where there is a file."""
+    """Return the profile's text, with the user's comments if the file exists."""
     if file is not None:
         return file.read_text(encoding="utf-8-sig")
     from fmus.profile.bundled import is_bundled

@@ -1,4 +1,4 @@
-"""``giveway fmu inspect``: what an FMU is, and the draft of a profile to drive it by.
+"""The command ``giveway fmu inspect``: the description of an FMU, and the draft of its profile.
 
 Nothing of the FMU is unpacked, loaded or run.
 """
@@ -26,9 +26,9 @@ from fmus.text import printable
 from giveway.cli.exit import fail
 from giveway.config.files.schema_names import PROFILE, with_schema
 
-SHOWN: Final = 12  # rows of a list
+SHOWN: Final = 12  # Number of rows shown of a list
 SHOWN_FINDINGS: Final = 4
-VALIDATED: Final = 5000  # variables; FMPy's validation takes long for more
+VALIDATED: Final = 5000  # Largest number of variables for FMPy's validation, which is slow
 REFUSED: Final = 2
 GROUPS: Final = (
     ("Inputs", frozenset({"input"})),
@@ -40,16 +40,16 @@ GROUPS: Final = (
 def inspect_command(
     path: Path, draft: Path | None = None, *, everything: bool = False, controller: bool = False
 ) -> int:
-    """Print what an FMU is and a drafted profile.
+    """Print the description of an FMU and a drafted profile.
 
     Args:
-        path: the FMU.
-        draft: file for the drafted profile; it must not exist.
-        everything: whole lists instead of their beginnings.
-        controller: it is a controller, and no vehicle.
+        path: File of the FMU.
+        draft: File for the drafted profile, which must not exist, or None.
+        everything: True for whole lists instead of their beginnings.
+        controller: True if the FMU is a controller and no vehicle.
 
     Returns:
-        0; 2 for an FMU that is refused, or a file that is there already.
+        0, or 2 for an FMU that is refused or a file that exists already.
     """
     try:
         archive = open_archive(path)
@@ -92,7 +92,7 @@ def _parts(model: Model, sha256: str, *, everything: bool) -> Iterator[Table]:
         yield _findings(found, len(found) if everything else SHOWN_FINDINGS)
 
 
-# ---- what it is ----
+# ---- the description ----
 
 
 def _overview(model: Model, sha256: str) -> Table:
