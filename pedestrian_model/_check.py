@@ -1,18 +1,19 @@
-"""Checks of arrays that come from outside, with messages that name the index and the value."""
+"""Checks of arrays from callers, with messages that name the index and the value."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model.errors import PedestrianModelError
 
-# Beyond this, squares and differences of coordinates lose their meaning in float64.
-LARGEST = 1e9  # [m], [m/s], [rad]
+# Largest accepted number [m], [m/s] or [rad]. Squares and differences of larger coordinates are not
+# accurate in float64.
+LARGEST = 1e9
 
 
 def as_floats(
     values: ArrayLike, what: str, error: type[PedestrianModelError]
 ) -> NDArray[np.float64]:
-    """A C-contiguous float64 array of ``values`` (a copy only if it must be).
+    """Return a C-contiguous float64 array of ``values``, which is a copy only if needed.
 
     Raises:
         error: if ``values`` are not numbers.
@@ -29,7 +30,7 @@ def check_shape(
     what: str,
     error: type[PedestrianModelError],
 ) -> None:
-    """Raise ``error`` unless ``array`` has ``shape``; None stands for any length."""
+    """Raise ``error`` unless ``array`` has ``shape``, in which None stands for any length."""
     fits = array.ndim == len(shape) and all(
         wanted in (None, actual) for wanted, actual in zip(shape, array.shape, strict=True)
     )
@@ -39,7 +40,7 @@ def check_shape(
 
 
 def check_values(array: NDArray[np.float64], what: str, error: type[PedestrianModelError]) -> None:
-    """Raise ``error``, naming the first offender, unless all values are finite and sane."""
+    """Raise ``error`` for the first value that is not finite or too large."""
     bad = ~(np.abs(array) <= LARGEST)
     if bad.any():
         index = tuple(int(k) for k in np.argwhere(bad)[0])
@@ -52,7 +53,7 @@ def check_values(array: NDArray[np.float64], what: str, error: type[PedestrianMo
 def check_not_negative(
     array: NDArray[np.float64], what: str, error: type[PedestrianModelError]
 ) -> None:
-    """Raise ``error``, naming the first offender, unless all values are >= 0."""
+    """Raise ``error`` for the first value below 0."""
     bad = array < 0.0
     if bad.any():
         index = int(np.argmax(bad))

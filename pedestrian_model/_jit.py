@@ -1,7 +1,7 @@
-"""The compiler, typed: kernels are numba functions under strict IEEE arithmetic.
+"""Typed decorators for numba: kernels are compiled with strict IEEE arithmetic.
 
-No fast-math, no libm call and no reordering of sums: each operation is correctly rounded by the
-standard, so the same state gives the same bytes on every machine.
+There is no fast-math, no libm call and no reordering of sums. Each operation is correctly rounded
+by the standard, so the same state gives the same bytes on every machine.
 """
 
 from collections.abc import Callable
@@ -18,12 +18,12 @@ _Arrays = TypeVar("_Arrays")
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
 _STRICT: dict[str, Any] = {
     "error_model": "numpy",
-    "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
+    "no_cfunc_wrapper": True,  # no kernel is called from C
 }
 
 
 def kernel(function: _Function) -> _Function:
-    """Compile ``function`` on its first call; the machine code is cached on disk."""
+    """Compile ``function`` on its first call, and cache the machine code on disk."""
     return cast("_Function", numba.njit(cache=True, nogil=True, **_STRICT)(function))
 
 
@@ -59,7 +59,7 @@ def _from_bits(_typing: Any, k: Any) -> Any:
 
 
 def _block_pointer(context: Any, builder: Any, array_type: Any, array: Any, at: Any) -> Any:
-    """The address at which a block of eight float64 of a 1-D array begins."""
+    """Return the address of a block of eight float64 in a 1-D array."""
     data = context.make_array(array_type)(context, builder, array).data
     block = ir.VectorType(ir.DoubleType(), 8).as_pointer()
     return builder.bitcast(builder.gep(data, [at]), block)
@@ -89,7 +89,7 @@ def _add_block(_typing: Any, to_array: Any, to: Any, array: Any, at: Any) -> Any
 
 
 def _uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """An array, or all those of a tuple of whatever there is, without whom to tell of a use."""
+    """Return an array, or a tuple with arrays, without reference counts."""
     is_tuple = isinstance(kind, types.BaseTuple)
     if is_tuple:
         held = enumerate(kind.types)
@@ -110,20 +110,20 @@ def _borrow(_typing: Any, arrays: Any) -> Any:
     return arrays(arrays), generate
 
 
-#: The same array, or tuple with arrays, without a count of its users, for kernels that hand many
-#: arrays on and on: each time would change each count. Only for what somebody else keeps as long.
+#: The same array, or tuple with arrays, without reference counts, for kernels that pass many arrays
+#: on. The caller must keep a reference as long as they are used.
 borrowed = cast("Callable[[_Arrays], _Arrays]", intrinsic(_borrow))
-#: a * b + c, rounded once: one instruction, and the same result wherever it runs.
+#: a * b + c, rounded once.
 fma = cast("Callable[[float, float, float], float]", intrinsic(_fma))
 #: The bits of a float64 as an int64.
 bits = cast("Callable[[float], int]", intrinsic(_bits))
 #: The float64 of these bits.
 from_bits = cast("Callable[[int], float]", intrinsic(_from_bits))
-#: to_array[to:to + 8] = array[at:at + 8], in one go and unchecked: short loops stay scalar.
+#: to_array[to:to + 8] = array[at:at + 8], as one block and without bounds checks.
 copy_block = cast(
     "Callable[[NDArray[np.float64], int, NDArray[np.float64], int], None]", intrinsic(_copy_block)
 )
-#: to_array[to:to + 8] += array[at:at + 8], likewise.
+#: to_array[to:to + 8] += array[at:at + 8], as one block and without bounds checks.
 add_block = cast(
     "Callable[[NDArray[np.float64], int, NDArray[np.float64], int], None]", intrinsic(_add_block)
 )

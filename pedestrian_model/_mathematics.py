@@ -1,4 +1,4 @@
-"""Elementary functions of the kernels, of basic operations only: no libm, no branch."""
+"""Elementary functions for the kernels, made of basic operations without libm and branches."""
 
 import math
 from fractions import Fraction
@@ -8,19 +8,22 @@ from pedestrian_model._jit import bits, fma, from_bits, inlined
 
 _LOG2_E = 1.4426950408889634
 _LN2_HIGH, _LN2_LOW = 0.6931471803691238, 1.9082149292705877e-10
-_ROUND = 6755399441055744.0  # 1.5 * 2**52: adding it leaves the nearest integer in the low bits
+_ROUND = 6755399441055744.0  # 1.5 * 2**52: a sum with it has the nearest integer in its low bits
 _TWO_OVER_PI = 0.6366197723675814
 _HALF_PI_HIGH, _HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17
 
-#: cos and sin of pi/8: the centre of the folded range of ``angle_polynomial``.
+#: cos and sin of pi/8, the centre of the folded range of ``angle_polynomial``.
 COS_PI_8, SIN_PI_8 = 0.9238795325112867, 0.3826834323650898
-#: Degree of the polynomial of ``angle_polynomial``: exact to 1e-12 for a decay of 1.
+#: Degree of the polynomial of ``angle_polynomial``, which is exact to 1e-12 for a decay of 1.
 DEGREE = 15
 
 
 @inlined
 def exponential(x: float) -> float:
-    """exp(x) to about 1 ulp for -700 <= x <= 700: x = k ln 2 + r, Taylor in |r| <= ln(2)/2."""
+    """Return exp(x) to about 1 ulp for -700 <= x <= 700.
+
+    x = k ln 2 + r, with a Taylor series in |r| <= ln(2)/2.
+    """
     shifted = fma(x, _LOG2_E, _ROUND)
     k = shifted - _ROUND
     r = fma(-k, _LN2_LOW, fma(-k, _LN2_HIGH, x))
@@ -43,7 +46,10 @@ def exponential(x: float) -> float:
 
 @inlined
 def cosine_sine(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle [rad], to about 1 ulp near 0: Taylor in |r| <= pi/4."""
+    """Return cosine and sine of an angle [rad], to about 1 ulp near 0.
+
+    They are Taylor series in |r| <= pi/4.
+    """
     k = fma(angle, _TWO_OVER_PI, _ROUND) - _ROUND
     r = fma(-k, _HALF_PI_LOW, fma(-k, _HALF_PI_HIGH, angle))
     z = r * r
@@ -76,7 +82,7 @@ def cosine_sine(angle: float) -> tuple[float, float]:
 
 @inlined
 def angle_polynomial(t: float, g: tuple[float, ...]) -> float:
-    """The polynomial of degree 15 with coefficients g at t (Estrin's scheme: short chains)."""
+    """Return the polynomial of degree 15 with coefficients ``g`` at ``t``, by Estrin's scheme."""
     t2 = t * t
     t4 = t2 * t2
     low = fma(
@@ -94,10 +100,10 @@ def angle_polynomial(t: float, g: tuple[float, ...]) -> float:
 
 @lru_cache(maxsize=16)
 def angle_decay_coefficients(decay: float) -> tuple[float, ...]:
-    """Coefficients of the polynomial for exp(-decay atan(t)), |t| <= tan(pi/8).
+    """Return the coefficients of the polynomial for exp(-decay atan(t)), |t| <= tan(pi/8).
 
-    The Taylor series of y = exp(-l atan t) follows from (1 + t^2) y' = -l y; it is economised in
-    Chebyshev polynomials. Rational arithmetic throughout, so that no platform's rounding shows.
+    The Taylor series of y = exp(-l atan t) follows from (1 + t^2) y' = -l y. It is economised in
+    Chebyshev polynomials, in rational arithmetic, so that the result is the same on every platform.
     """
     terms = 72
     decay_ = Fraction(decay)

@@ -1,4 +1,4 @@
-"""Plain tuples of arrays that Python hands to the kernels, and the columns of vehicles."""
+"""Plain tuples of arrays that Python passes to the kernels, and the columns of vehicles."""
 
 from typing import Any
 
@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from pedestrian_model._jit import kernel
 
-#: What Python hands to a kernel: numba looks the class of a named tuple up in each call, which
-#: takes 10 us for the arrays of a step; one plain tuple takes less time than its arrays alone.
+#: The arrays that Python passes to a kernel, as one plain tuple.
 Arrays = tuple[NDArray[Any], ...]
 
 
@@ -18,7 +17,7 @@ X, Y, HEADING, SPEED, FRONT, REAR, WIDTH = range(7)
 
 @kernel
 def extent(mask: NDArray[np.bool_], start: NDArray[np.int64]) -> tuple[int, int]:
-    """Return the number of people in ``mask``, and that of their way-points."""
+    """Return the number of people in ``mask`` (n,), and that of their way-points."""
     n, total = 0, 0
     for i in range(len(mask)):
         if mask[i]:
@@ -29,14 +28,12 @@ def extent(mask: NDArray[np.bool_], start: NDArray[np.int64]) -> tuple[int, int]
 
 @kernel
 def select_into(arrays: tuple[NDArray[Any], ...], mask: NDArray[np.bool_], to: Arrays) -> int:
-    """Copy those in ``mask``, in the same order; as ``Crowd.signals`` of these.
-
-    What a kernel returns as arrays takes Python longer than to make them: half a microsecond each.
+    """Copy the people in ``mask``, in the same order, and return their ``Crowd.signals``.
 
     Args:
         arrays: ``Crowd.state`` and ``Crowd.fixed_arrays``.
-        mask: (n,) who is copied.
-        to: the same of the copy, to be filled.
+        mask: Marks (n,) of the people who are copied.
+        to: The same arrays of the copy, filled.
     """
     position, velocity, index, desired_speed, priority, waypoints, passage, signal, start = arrays
     x, v, at, wanted, relying, points, lines, lights, offsets = to

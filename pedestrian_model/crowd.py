@@ -15,36 +15,37 @@ from pedestrian_model.arrays import Arrays, extent, select_into
 from pedestrian_model.errors import CrowdError
 from pedestrian_model.routes import Routes, offsets, passage_rows, signal_rows
 
-_UNIT = 1e-6  # a direction's length may differ from one by this
+_UNIT = 1e-6  # tolerance of a direction's length of one
 
 
 @dataclass(frozen=True, eq=False)
 class Crowd:
-    """A structure of arrays; build it with ``Crowd.create`` or ``Crowd.empty``.
+    """The state of a crowd, a structure of arrays; made by ``Crowd.create`` or ``Crowd.empty``.
 
-    The way-points of all pedestrians stand in one array; those of pedestrian i are
-    ``waypoints[waypoint_start[i]:waypoint_start[i + 1]]``, the last one is the destination.
+    The way-points of all pedestrians are in one array. Those of pedestrian i are
+    ``waypoints[waypoint_start[i]:waypoint_start[i + 1]]``, and the last one is the destination.
 
-    A way-point with a passage (direction_x, direction_y, half_width) is a line across that
-    direction; it counts as passed beyond the line, within its half-width. (0, 0, 0) is a point
-    only. A way-point with a signal is not passed while ``Surroundings.closed[signal]``.
+    A way-point with a passage (direction_x, direction_y, half_width) is a line across this
+    direction. It is passed beyond the line, within its half-width. With (0, 0, 0) it is only a
+    point. A way-point with a signal is not passed while ``Surroundings.closed[signal]``.
 
-    Priority is how far somebody relies on vehicles to stop: 1 on a crossing that is theirs, 0 as in
-    the paper. It may be changed in place; copies share it, as they share all that no step changes.
+    Priority is the degree to which a person relies on vehicles to stop: 1 on a crossing with
+    priority, 0 as in the paper. It may be changed in place. Copies share it, as they share all
+    arrays that a step does not change.
 
     Raises:
         CrowdError: if an array has a wrong shape, or a value is not finite or out of range.
     """
 
-    position: NDArray[np.float64]  # (n, 2) [m] centres
-    velocity: NDArray[np.float64]  # (n, 2) [m/s]
-    desired_speed: NDArray[np.float64]  # (n,) [m/s]
-    waypoints: NDArray[np.float64]  # (total, 2) [m]
-    waypoint_start: NDArray[np.int64]  # (n + 1,) offsets into ``waypoints``
-    waypoint_index: NDArray[np.int64]  # (n,) current target, counted from the pedestrian's first
-    waypoint_passage: NDArray[np.float64]  # (total, 3) unit direction, half-width [m]
-    waypoint_signal: NDArray[np.int64]  # (total,) which signal must be open, -1 for none
-    priority: NDArray[np.float64]  # (n,) 0 to 1
+    position: NDArray[np.float64]  # centres (n, 2) [m]
+    velocity: NDArray[np.float64]  # velocities (n, 2) [m/s]
+    desired_speed: NDArray[np.float64]  # desired speeds (n,) [m/s]
+    waypoints: NDArray[np.float64]  # way-points (total, 2) [m]
+    waypoint_start: NDArray[np.int64]  # offsets (n + 1,) into ``waypoints``
+    waypoint_index: NDArray[np.int64]  # next way-point (n,), counted from the pedestrian's first
+    waypoint_passage: NDArray[np.float64]  # passages (total, 3): unit direction, half-width [m]
+    waypoint_signal: NDArray[np.int64]  # signals (total,) that must be open; -1 without one
+    priority: NDArray[np.float64]  # priorities (n,), 0 to 1
 
     def __post_init__(self) -> None:
         n = self.position.shape[0]
@@ -179,12 +180,12 @@ class Crowd:
 
     @classmethod
     def empty(cls) -> Crowd:
-        """A crowd of nobody."""
+        """Return a crowd without people."""
         return cls.create(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), [])
 
     @cached_property
     def routes(self) -> Arrays:
-        """All about the routes that a step never changes: the arrays of ``Routes``."""
+        """The arrays of ``Routes``, which a step never changes."""
         return tuple(
             Routes(self.waypoints, self.waypoint_passage, self.waypoint_signal, self.waypoint_start)
         )
@@ -196,7 +197,7 @@ class Crowd:
 
     @property
     def state(self) -> Arrays:
-        """The arrays that a step changes: position, velocity, current way-point."""
+        """The arrays that a step changes: position, velocity, index of the next way-point."""
         return self.position, self.velocity, self.waypoint_index
 
     @cached_property
@@ -205,7 +206,7 @@ class Crowd:
         return int(self.waypoint_signal.max(initial=-1)) + 1
 
     def copy(self) -> Crowd:
-        """An independent state; what a step never changes is shared."""
+        """Return a copy with its own state. Arrays that a step never changes are shared."""
         return _unchecked(
             self.__dict__
             | {
@@ -219,8 +220,8 @@ class Crowd:
         """The pedestrians where ``mask`` (n,) is true, in the same order.
 
         Args:
-            mask: (n,) who is selected.
-            room: an earlier selection that nobody needs any more; it is overwritten where it fits.
+            mask: Marks (n,) of the people who are selected.
+            room: Earlier selection that is no longer needed, or None. It is reused if it fits.
 
         Raises:
             CrowdError: if ``mask`` is not a boolean array of length n.
@@ -240,7 +241,7 @@ class Crowd:
         return room
 
     def concatenate(self, other: Crowd) -> Crowd:
-        """This crowd followed by ``other``."""
+        """Return this crowd followed by ``other``."""
         joined: dict[str, Any] = {
             name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in _JOINED
         }
@@ -250,18 +251,18 @@ class Crowd:
         return _unchecked(joined)
 
 
-#: All fields but ``waypoint_start``, whose offsets move on.
+#: All fields but ``waypoint_start``, whose offsets are shifted.
 _JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint_start")
 
 
 def _check_memory(array: NDArray[np.generic], dtype: np.dtype[np.generic], name: str) -> None:
-    """The kernels take C-contiguous arrays of one type only."""
+    """Raise an error unless an array is C-contiguous and of the type that the kernels take."""
     if array.dtype != dtype or not array.flags.c_contiguous:
         raise CrowdError(f"{name} is {array.dtype}, expected C-contiguous {dtype}: Crowd.create")
 
 
 def _unfilled(n: int, total: int) -> Crowd:
-    """Memory for n pedestrians with ``total`` way-points."""
+    """Return a crowd with uninitialised arrays for n pedestrians and ``total`` way-points."""
     state = np.empty((n, 2)), np.empty((n, 2)), np.empty(n, dtype=np.int64)
     signal, start = np.empty(total, dtype=np.int64), np.empty(n + 1, dtype=np.int64)
     routes = np.empty((total, 2)), np.empty((total, 3)), signal, start
@@ -284,12 +285,12 @@ def _unfilled(n: int, total: int) -> Crowd:
 
 
 def _unchecked(state: dict[str, Any]) -> Crowd:
-    """A crowd of these fields, valid already, without the checks: the hot path."""
+    """Return a crowd of these fields, which are known to be valid, without checks."""
     crowd = object.__new__(Crowd)
     crowd.__dict__.update(state)
     return crowd
 
 
 def _for_each(values: NDArray[np.float64], n: int) -> NDArray[np.float64]:
-    """A value for each of n pedestrians, from one for all or one each."""
+    """Return one value for each of n pedestrians, from one value for all or one for each."""
     return np.full(n, values) if values.ndim == 0 or values.size == 0 else values.copy()

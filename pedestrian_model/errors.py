@@ -1,8 +1,8 @@
-"""Errors of the pedestrian model, one class for each thing that a user can act on."""
+"""The errors of the pedestrian model, one class for each cause that a user can remove."""
 
 
 class PedestrianModelError(Exception):
-    """Root of the errors of this room."""
+    """The root of the errors of this package."""
 
 
 class ParameterError(PedestrianModelError):
@@ -26,10 +26,10 @@ class DivergenceError(PedestrianModelError):
 
 
 class PlugInError(PedestrianModelError):
-    """Somebody else's model raised, or answered what no crowd can do.
+    """A model of another package raised an error, or its answer is not valid.
 
     Attributes:
-        person: which of the pedestrians it was about; None: all of them.
+        person: Row of the pedestrian that the error is about, or None for the whole crowd.
     """
 
     def __init__(self, message: str, person: int | None = None) -> None:

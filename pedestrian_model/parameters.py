@@ -1,12 +1,12 @@
-"""The numbers of the vehicle-crowd interaction (VCI) model.
+"""The parameters of the vehicle-crowd interaction (VCI) model.
 
 The decomposition of the total force and the role of the vehicle are those of Yang & Özgüner 2019
 (arXiv 1907.05178), which takes its sub-forces from Yang, Özgüner & Redmill, "Social Force Based
 Microscopic Modeling of Vehicle-Crowd Interaction" (IEEE Intelligent Vehicles Symposium, IV 2018).
 The calibrated numbers are those of the same authors' "A Social Force Based Pedestrian Motion Model
 Considering Multi-Pedestrian Interaction with a Vehicle" (ACM Transactions on Spatial Algorithms
-and Systems, TSAS 2020): the same five sub-forces and the same beta.
-"ours" marks what no publication states.
+and Systems, TSAS 2020), with the same five sub-forces and the same beta. "ours" marks values that
+no publication states.
 """
 
 from collections.abc import Mapping
@@ -22,12 +22,12 @@ _SHARE = "it is a share"
 
 @dataclass(frozen=True)
 class _Range:
-    """The values of a parameter that make sense, and why no others do.
+    """The range of a parameter, with its reason.
 
     Attributes:
         low, high: Bounds in the parameter's unit; both are allowed.
         reason: Reason of the two bounds.
-        zero: whether 0 is allowed too, as "there is none".
+        zero: Whether 0 is allowed as well, for a force or distance that is left out.
     """
 
     low: float
@@ -47,7 +47,7 @@ _RANGES: Mapping[str, _Range] = MappingProxyType(
         "repulsion_strength": _Range(0.01, 10_000.0, _FORCE, zero=True),
         "navigation_distance": _Range(0.01, 20.0, _LENGTH),
         "navigation_smoothing": _Range(0.001, 20.0, _LENGTH),
-        # up to 4 the kernel's polynomial is exact to 1e-12
+        # The kernel's polynomial is exact to 1e-12 up to 4.
         "navigation_anisotropy": _Range(0.0, 4.0, "a steeper decay is not resolved"),
         "navigation_strength": _Range(0.01, 10_000.0, _FORCE, zero=True),
         "collision_stiffness": _Range(
@@ -80,7 +80,7 @@ _RANGES: Mapping[str, _Range] = MappingProxyType(
 
 @dataclass(frozen=True)
 class VciParameters:
-    """Parameters of the VCI model; the defaults are the simulation preset ``SIM``.
+    """The parameters of the VCI model. The defaults are the simulation preset ``SIM``.
 
     Raises:
         ParameterError: if a value is not finite or out of its range.
@@ -89,7 +89,7 @@ class VciParameters:
     # The body.
     mass: float = 80.0  # m [kg], TSAS 2020
     body_radius: float = 0.27  # R [m], TSAS 2020
-    desired_speed: float = 1.394293  # v0 [m/s], TSAS 2020; the default of a new crowd
+    desired_speed: float = 1.394293  # v0 [m/s], TSAS 2020; default of a new crowd
 
     # Between pedestrians, TSAS 2020.
     repulsion_distance: float = 0.7801  # d_rep [m]
@@ -101,33 +101,34 @@ class VciParameters:
     navigation_anisotropy: float = 1.0  # l_nav [1/rad]
     navigation_strength: float = 410.875  # M_nav [N]
     collision_stiffness: float = 9825.125  # k_col [N/m]
-    interaction_radius: float = 8.0  # [m] between centres: the set Q(i) (ours)
+    interaction_radius: float = 8.0  # largest distance [m] of centres in the set Q(i) (ours)
 
     # From a vehicle: the contour and the force, TSAS 2020.
-    vehicle_clearance: float = 0.2151011  # le [m] round the body
-    vehicle_nose: float = 0.510985  # dx0 [m] more in front of a moving car
-    vehicle_lookahead: float = 1.394358  # alpha_x [s] the nose grows by alpha_x |u|
+    vehicle_clearance: float = 0.2151011  # le [m] around the body
+    vehicle_nose: float = 0.510985  # additional length dx0 [m] in front of a moving car
+    vehicle_lookahead: float = 1.394358  # alpha_x [s]: the nose grows by alpha_x |u|
     vehicle_strength: float = 777.5852  # A [N]
     vehicle_decay: float = 2.613755  # b [1/m]
     vehicle_anisotropy: float = 0.3119132  # l_v [-]
-    vehicle_exponent_cap: float = 4.0  # [-] bounds the force deep inside a contour (ours)
-    static_speed: float = 0.2  # [m/s] below, a vehicle is a rectangle (Yang & Özgüner 2019)
+    vehicle_exponent_cap: float = 4.0  # largest exponent [-] deep inside a contour (ours)
+    # speed [m/s] below which a vehicle's contour is a rectangle (Yang & Özgüner 2019)
+    static_speed: float = 0.2
 
-    # From a wall: the form of Helbing, Farkas & Vicsek (Nature 2000), the values ours. At most
-    # a_max slows somebody down, so that the force must set in 0.2 m before touch: who walks into
-    # a wall at v0 overlaps it by 6 cm for a moment and then stands 8 cm off; half a metre from
-    # its centre a wall is felt with 63 N, of the 760 N that drive a walker. A harder
-    # wall makes walkers of 2 m/s tremble in front of it, at steps of 0.05 s.
-    wall_strength: float = 2500.0  # A_w [N] in touch with the wall
+    # From a wall: the form of Helbing, Farkas & Vicsek (Nature 2000), the values ours. People
+    # decelerate by at most a_max, so the force must begin 0.2 m before contact. A person who walks
+    # into a wall at v0 overlaps it by 6 cm for a moment and then stands 8 cm away. At half a metre
+    # from the centre the force is 63 N, compared with the 760 N that drive a walker. With a
+    # stronger force, people who walk at 2 m/s oscillate in front of the wall in steps of 0.05 s.
+    wall_strength: float = 2500.0  # A_w [N] at contact with the wall
     wall_decay: float = 16.0  # b_w [1/m]
 
     # To the destination, TSAS 2020.
     destination_gain: float = 545.3125  # k_des [N s/m]
     destination_smoothing: float = 1.0  # s_des [m]
-    influence_low: float = 199.7455  # F_1 [N] up to here beta = 1
-    influence_high: float = 672.6487  # F_2 [N] from here on beta = 0
-    waypoint_radius: float = 0.5  # [m] a way-point (not the last) counts as passed (ours)
-    detour_margin: float = 0.3  # [m] kept, besides le and R, round a standing car (ours)
+    influence_low: float = 199.7455  # vehicle force F_1 [N] up to which beta = 1
+    influence_high: float = 672.6487  # vehicle force F_2 [N] from which on beta = 0
+    waypoint_radius: float = 0.5  # distance [m] within which a way-point is passed (ours)
+    detour_margin: float = 0.3  # distance [m] to a standing car in addition to le and R (ours)
 
     # Limits, TSAS 2020.
     max_acceleration: float = 5.0  # a_max [m/s^2]
@@ -144,10 +145,10 @@ class VciParameters:
 
 
 def _require(name: str, value: object, expected: _Range) -> None:
-    """Make sure that ``value`` makes sense as the parameter ``name``.
+    """Make sure that ``value`` is in the range of the parameter ``name``.
 
     Raises:
-        ParameterError: it does not; the message says what would, and why.
+        ParameterError: the value is out of its range; the message has the range and its reason.
     """
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ParameterError(f"{name} = {value!r}, expected a number")
@@ -162,11 +163,11 @@ def _require(name: str, value: object, expected: _Range) -> None:
     raise ParameterError(f"{name} = {value}, expected {wanted}: {expected.reason}")
 
 
-#: The preset to simulate with: head-on pedestrians never overlap.
+#: The preset for simulations, in which pedestrians who meet head-on never overlap.
 SIM = VciParameters()
 
-#: A second published reading of the same table, each strength one digit shorter. It predicts free
-#: walking a little better, but head-on pedestrians pass through each other.
+#: A second published version of the same table, in which each strength has one digit less. It
+#: predicts free walking a little better, but pedestrians who meet head-on pass through each other.
 TABLE2 = replace(
     SIM, repulsion_strength=30.028, navigation_strength=41.875, collision_stiffness=982.125
 )

@@ -1,4 +1,4 @@
-"""The protocol of whatever moves a crowd: all that giveway asks of a model of people."""
+"""The protocols of pedestrian models and of predictors, which giveway uses."""
 
 from typing import Protocol
 
@@ -12,26 +12,26 @@ from pedestrian_model.vehicles import Vehicles
 
 
 class PedestrianModel(Protocol):
-    """Moves a crowd, step by step."""
+    """A pedestrian model, which moves a crowd step by step."""
 
     @property
     def parameters(self) -> VciParameters:
-        """Bodies and limits of its people, whatever moves them."""
+        """The bodies and limits of its people; other parameters need not be used."""
 
     @property
     def time_step(self) -> float:
         """The time step [s]."""
 
     def advance(self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = ...) -> None:
-        """Change position, velocity and waypoint_index of ``crowd`` in place, a time step on."""
+        """Advance position, velocity and waypoint_index of ``crowd`` in place by one time step."""
 
 
 class CrowdPredictor(Protocol):
-    """Predicts N steps of a crowd: what a controller that looks ahead asks of a model."""
+    """A predictor of N steps of a crowd, for controllers that look ahead."""
 
     @property
     def parameters(self) -> VciParameters:
-        """Bodies and limits of the people, whatever model they are believed to walk by."""
+        """The bodies and limits of the people; other parameters need not be used."""
 
     @property
     def time_step(self) -> float:
@@ -39,7 +39,7 @@ class CrowdPredictor(Protocol):
 
     @property
     def horizon(self) -> int:
-        """N [steps]."""
+        """The prediction horizon N [steps]."""
 
     def predict(
         self,
@@ -47,9 +47,12 @@ class CrowdPredictor(Protocol):
         vehicles_trajectory: NDArray[np.float64],
         surroundings: Surroundings = ...,
     ) -> NDArray[np.float64]:
-        """The positions (N, n, 2) [m] after 1 ... N steps under (N, m, 7) vehicles."""
+        """Return the positions (N, n, 2) [m] after 1 ... N steps, for vehicles (N, m, 7)."""
 
     def desired_velocities(
         self, crowd: Crowd, surroundings: Surroundings = ...
     ) -> NDArray[np.float64]:
-        """(n, 3) velocities [m/s] wished for at the end of the latest, and for how long [s]."""
+        """Return the desired velocities (n, 3) at the end of the latest prediction.
+
+        The columns are x, y [m/s], and the time [s] for which the velocity is kept.
+        """

@@ -1,8 +1,9 @@
-"""The next point of a route: way-points hit, lines crossed, signals waited at.
+"""Finds the next point of a route: way-points passed, lines crossed, signals waited at.
 
-A way-point is passed within a radius. With a passage it is a line as well, across the way: who
-crosses the line within its half-width has passed, and who has not yet walks to the nearest point
-of the line, so that a crowd goes through side by side instead of through one point. All ours.
+A way-point is passed within a radius. A way-point with a passage is a line across the route. A
+person who crosses the line within its half-width has passed it. Until then the person walks to the
+nearest point of the line, so that a crowd walks through side by side instead of through one point.
+All of this is giveway's own.
 """
 
 from collections.abc import Sequence
@@ -19,25 +20,25 @@ from pedestrian_model.errors import CrowdError
 class Routes(NamedTuple):
     """The routes of a crowd, as in ``Crowd``."""
 
-    waypoints: NDArray[np.float64]  # (total, 2) [m]
-    passage: NDArray[np.float64]  # (total, 3) unit direction, half-width [m]; 0: none
-    signal: NDArray[np.int64]  # (total,) index into ``closed``; -1: none
-    start: NDArray[np.int64]  # (n + 1,) offsets
+    waypoints: NDArray[np.float64]  # way-points (total, 2) [m]
+    passage: NDArray[np.float64]  # passages (total, 3): unit direction, half-width [m]; or 0
+    signal: NDArray[np.int64]  # indices (total,) into ``closed``; -1 without a signal
+    start: NDArray[np.int64]  # offsets (n + 1,) into ``waypoints``
 
 
 class Line(NamedTuple):
-    """A way-point and its passage: scalars, because passing arrays about costs a count of each."""
+    """A way-point and its passage."""
 
-    x: float  # [m]
+    x: float  # coordinates of the way-point [m]
     y: float
-    d_x: float  # unit direction
+    d_x: float  # unit direction of the passage
     d_y: float
-    half: float  # [m] half-width, 0: a point only
+    half: float  # half-width [m] of the passage; 0 for a point
 
 
 @inlined
 def aim(x: float, y: float, p: Line, R: float) -> tuple[float, float]:
-    """The nearest point to (x, y) of a line, R inside its ends if it can be."""
+    """Return the point of a line nearest to (x, y) [m], at least R from its ends if possible."""
     if p.half <= 0.0:
         return p.x, p.y
     room = max(p.half - R, 0.0)
@@ -65,10 +66,16 @@ def heading_for(
     closed: NDArray[np.bool_],
     radii: tuple[float, float],
 ) -> tuple[int, bool, float, float]:
-    """Return the next way-point of a person at (x, y), whether to stop there, and its place.
+    """Return the next way-point of a person, whether to stop there, and the point to walk to.
 
-    ``at`` was the next one so far, ``last`` ends the way; ``routes`` are the arrays of ``Routes``.
-    The ``radii`` [m] are those of a way-point and of a body.
+    Args:
+        x: Coordinate of the person [m].
+        y: Coordinate of the person [m].
+        at: Index of the next way-point so far.
+        last: Index of the last way-point of the route.
+        routes: Arrays of ``Routes``.
+        closed: Marks (signals,) of closed signals.
+        radii: Radius [m] of a way-point and of a body.
     """
     radius, R = radii
     w, q, signal = routes[0], routes[1], routes[2]
@@ -87,7 +94,7 @@ def heading_for(
 def passage_rows(
     passages: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
 ) -> NDArray[np.float64]:
-    """Return the passages of all way-points, (total, 3), with directions of length one."""
+    """Return the passages (total, 3) of all way-points, with directions of length one."""
     _check_count(passages, "passages", routes)
     rows = [as_floats(rows, f"passages[{i}]", CrowdError) for i, rows in enumerate(passages)]
     for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
@@ -104,7 +111,7 @@ def passage_rows(
 def signal_rows(
     signals: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
 ) -> NDArray[np.int64]:
-    """Return the signals of all way-points, (total,)."""
+    """Return the signals (total,) of all way-points."""
     _check_count(signals, "signals", routes)
     rows = [np.asarray(row) for row in signals]
     for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
@@ -124,5 +131,5 @@ def _check_count(
 
 
 def offsets(count: NDArray[np.int64]) -> NDArray[np.int64]:
-    """(n + 1,) offsets of runs of these lengths."""
+    """Return the offsets (n + 1,) of n runs of these lengths."""
     return np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(count, dtype=np.int64)])

@@ -1,4 +1,4 @@
-"""Sub-steps and the errors of a state or signal, which the steps of all models share."""
+"""The sub-steps, and the errors of states and signals, that all models share."""
 
 import math
 
@@ -11,16 +11,16 @@ from pedestrian_model.errors import DivergenceError, ParameterError, Surrounding
 from pedestrian_model.surroundings import Surroundings
 from pedestrian_model.vehicles import COLUMNS, Vehicles
 
-#: The result of a step that went well; otherwise the index of the offending pedestrian.
+#: The result of a step without an error; otherwise a step returns the index of a pedestrian.
 FINE = -1
-_SANE = 1e12  # [m], [m/s] beyond, a state counts as diverged (and could not be sorted by cell)
-#: The longest step the integration takes at once: k_col dt^2 / m = 0.31 is stable.
-LONGEST_STEP = 0.05  # [s]
+_SANE = 1e12  # number [m] or [m/s] above which a state counts as diverged
+#: Longest step [s] of the integration: k_col dt^2 / m = 0.31 is stable.
+LONGEST_STEP = 0.05
 
 
 @inlined
 def first_insane(position: NDArray[np.float64], velocity: NDArray[np.float64]) -> int:
-    """The first pedestrian whose state is not finite (or absurd), or ``FINE``."""
+    """Return the first pedestrian whose state is not finite or too large, or ``FINE``."""
     for i in range(position.shape[0]):
         largest = abs(position[i, 0]) + abs(position[i, 1])
         if not largest + abs(velocity[i, 0]) + abs(velocity[i, 1]) <= _SANE:
@@ -29,7 +29,7 @@ def first_insane(position: NDArray[np.float64], velocity: NDArray[np.float64]) -
 
 
 def substeps(time_step: float, longest: float = LONGEST_STEP) -> int:
-    """Return the number of equal sub-steps, at most ``longest`` [s] each, in ``time_step`` [s].
+    """Return the number of equal sub-steps of at most ``longest`` [s] in ``time_step`` [s].
 
     Raises:
         ParameterError: if the time step is not positive and finite.
@@ -40,7 +40,7 @@ def substeps(time_step: float, longest: float = LONGEST_STEP) -> int:
 
 
 def unknown_signal(crowd: Crowd, surroundings: Surroundings) -> SurroundingsError:
-    """The error of a way-point whose signal is beyond ``surroundings.closed``."""
+    """Return the error of a way-point whose signal is not in ``surroundings.closed``."""
     at = int(np.argmax(crowd.waypoint_signal))
     i = int(np.searchsorted(crowd.waypoint_start, at, side="right")) - 1
     return SurroundingsError(
@@ -50,7 +50,7 @@ def unknown_signal(crowd: Crowd, surroundings: Surroundings) -> SurroundingsErro
 
 
 def divergence(i: int, crowd: Crowd, vehicles: Vehicles) -> DivergenceError:
-    """The error of a state that is not finite, with the most likely cause."""
+    """Return the error of a state that is not finite, with the most likely cause."""
     bad = np.argwhere(~np.isfinite(vehicles.array))
     if bad.size:
         return DivergenceError(

@@ -1,4 +1,4 @@
-"""The walls that a crowd walks among, and the signals that hold it."""
+"""The walls that a crowd walks among, and the signals at which it waits."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model.errors import SurroundingsError
 from pedestrian_model.walls import COLUMNS, REACH, join_walls, nearest_walls, sort_walls
 
-_CELL = 1.0  # [m] of the grid of walls
-_MOST_CELLS = 2**21  # the grid of a larger place is coarser: 16 MB
-_SHORTEST = 1e-6  # [m] a shorter wall has no direction
+_CELL = 1.0  # side [m] of the cells of walls
+_MOST_CELLS = 2**21  # largest number of cells (16 MB); a larger area has larger cells
+_SHORTEST = 1e-6  # least length [m] of a wall
 
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """Directed wall segments, the walkable side on the left; build it with ``Walls.create``.
+    """Directed wall segments with the walkable side on the left; made by ``Walls.create``.
 
-    Where a wall ends within 1 cm of the start of another, the two make a corner. Somebody on the
-    walkable side is kept off, somebody up to 1 m behind a wall is pushed back in. A loose end
-    keeps people off like a post.
+    Two walls form a corner if one ends within 1 cm of the start of the other. Walls keep people on
+    the walkable side at a distance. People up to 1 m behind a wall are pushed back. The end of a
+    wall without a corner acts like a post.
     """
 
-    segments: NDArray[np.float64]  # (k, 4) [m] x0, y0, x1, y1
+    segments: NDArray[np.float64]  # segments (k, 4): x0, y0, x1, y1 [m]
     _lines: NDArray[np.float64] = field(repr=False)
     _cells: NDArray[np.int64] = field(repr=False)
 
@@ -35,7 +35,7 @@ class Walls:
 
     @classmethod
     def create(cls, segments: ArrayLike) -> Walls:
-        """Walls from segments (k, 4) [m] x0, y0, x1, y1; those without length are left out.
+        """Return walls from segments (k, 4), x0, y0, x1, y1 [m], without those of length 0.
 
         Raises:
             SurroundingsError: if ``segments`` has a wrong shape or a value is not finite.
@@ -50,10 +50,13 @@ class Walls:
         return cls(array, lines, _sorted(lines) if len(array) else _NO_CELLS)
 
     def nearest(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The signed distances (n,) [m] of ``points`` (n, 2) [m] to the nearest wall, and normals.
+        """Return the signed distances (n,) [m] to the nearest wall, and its normals (n, 2).
 
-        Negative behind the wall; the normals (n, 2) point into the walkable side. Where no wall
-        is near (from 2 m on, at the latest 5 m) the distance is inf and the normal zero.
+        Distances are negative behind the wall. Normals point to the walkable side. A wall counts up
+        to 2 m away, and may count up to 5 m. Without one the distance is inf and the normal zero.
+
+        Args:
+            points: Points (n, 2) [m].
 
         Raises:
             SurroundingsError: if ``points`` has a wrong shape or a value is not finite.
@@ -67,7 +70,7 @@ class Walls:
 
 
 def _lines(segments: NDArray[np.float64], length: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the rows of the segments, (1 + k, COLUMNS), without grid and normals of loose ends."""
+    """Return the rows (1 + k, COLUMNS) of the segments, still without grid and corner normals."""
     lines = np.zeros((1 + len(segments), COLUMNS))
     lines[1:, :2] = segments[:, :2]
     lines[1:, 2:4] = (segments[:, 2:] - segments[:, :2]) / length[:, None]
@@ -76,7 +79,7 @@ def _lines(segments: NDArray[np.float64], length: NDArray[np.float64]) -> NDArra
 
 
 def _sorted(lines: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The cells of the lines; sets their grid and joins them."""
+    """Set the grid of the lines, join the walls, and return the cells."""
     ends = lines[1:, :2] + lines[1:, 2:4] * lines[1:, 4:5]
     low = np.minimum(lines[1:, :2], ends).min(axis=0) - REACH
     size = np.maximum(lines[1:, :2], ends).max(axis=0) + REACH - low
@@ -108,16 +111,16 @@ def _none_closed() -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Walls, and which signals are closed; signals are numbered as in ``Crowd.waypoint_signal``.
+    """The walls and the closed signals, numbered as in ``Crowd.waypoint_signal``.
 
-    ``closed`` may be changed in place as the signals change.
+    ``closed`` may be changed in place when signals change.
 
     Raises:
         SurroundingsError: if ``closed`` is not a boolean array of one dimension.
     """
 
     walls: Walls | None = None
-    closed: NDArray[np.bool_] = field(default_factory=_none_closed)  # (signals,)
+    closed: NDArray[np.bool_] = field(default_factory=_none_closed)  # marks (signals,)
 
     def __post_init__(self) -> None:
         closed = self.closed
@@ -139,5 +142,5 @@ class Surroundings:
         return self.closed, self.walls._lines, self.walls._cells
 
 
-#: No walls, no signals.
+#: Surroundings without walls and signals.
 OPEN_GROUND = Surroundings()

@@ -10,11 +10,11 @@ from pedestrian_model.routes import Line, Routes, aim, is_passed
 
 
 def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(k, 2) [m] the next way-points of the pedestrians ``rows`` (k,), or where on their lines.
+    """Return the next way-points (k, 2) [m] of the pedestrians ``rows`` (k,).
 
-    A line that somebody has just stepped over, which the model will note in its next step, is not
-    behind them but done with; not so one with a signal, where they may have to stop. Standing cars
-    do not count.
+    For a way-point with a line it is the nearest point of the line. A line crossed in the last step
+    counts as passed, although ``waypoint_index`` advances only in the next step, unless a signal
+    guards it. Detours around standing vehicles are ignored.
     """
     out = np.empty((len(rows), 2))
     _fill_targets(crowd.position, crowd.waypoint_index, crowd.routes, rows, out)
@@ -22,7 +22,7 @@ def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def remaining_distance(crowd: Crowd) -> NDArray[np.float64]:
-    """Return the rest of each pedestrian's route, (n,) [m], straight from line to line."""
+    """Return the remaining length (n,) [m] of each route, straight from line to line."""
     out = np.empty(len(crowd))
     _fill_remaining(
         crowd.position,
@@ -44,7 +44,7 @@ def _fill_remaining(
     waypoint_index: NDArray[np.int64],
     out: NDArray[np.float64],
 ) -> None:
-    """Continue each route at the nearest point of its way-point's line."""
+    """Fill ``out`` (n,) [m] with the remaining lengths, through the nearest points of the lines."""
     w, q = waypoints, passage
     for i in range(len(out)):
         x, y = position[i, 0], position[i, 1]
@@ -79,14 +79,14 @@ def _fill_targets(
 
 
 def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
-    """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
+    """Return marks (n,) of people within ``radius`` [m] of their last way-point or its line."""
     mask = np.empty(len(crowd), dtype=np.bool_)
     _fill_arrived(crowd.position, crowd.waypoint_index, crowd.routes, radius, mask)
     return mask
 
 
 def any_arrived(crowd: Crowd, radius: float) -> bool:
-    """Return whether anybody has arrived, see :func:`arrived`; a quick test for the usual step."""
+    """Return whether anybody has arrived, see :func:`arrived`."""
     return bool(_any_arrived(crowd.position, crowd.waypoint_index, crowd.routes, radius))
 
 
@@ -123,7 +123,7 @@ def _is_there(
     routes: Routes,
     radius: float,
 ) -> bool:
-    """Return whether i walks to its last way-point and is within ``radius`` of it or its line."""
+    """Return whether pedestrian i is within ``radius`` of the last way-point or its line."""
     w, q, last = routes.waypoints, routes.passage, routes.start[i + 1] - 1
     if routes.start[i] + waypoint_index[i] != last:
         return False

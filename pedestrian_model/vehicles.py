@@ -1,4 +1,4 @@
-"""The vehicles a crowd reacts to: moving rectangles."""
+"""The vehicles that a crowd reacts to: moving rectangles."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ COLUMNS = ("x", "y", "heading", "speed", "front", "rear", "width")
 
 @dataclass(frozen=True, eq=False)
 class Vehicles:
-    """m rectangles, one row each: x, y, heading, speed, front, rear, width.
+    """The poses of m rectangles, one row each: x, y, heading, speed, front, rear, width.
 
-    x, y [m] is the reference point; heading [rad] is counter-clockwise from +x; speed [m/s] is
-    longitudinal, negative in reverse; front and rear [m] are the distances from the reference
-    point to the bumpers; width [m]. Build it with ``Vehicles.create`` or ``Vehicles.empty``; for
-    the fastest loops ``array`` may be changed in place.
+    x, y [m] is the reference point. heading [rad] is counter-clockwise from +x. speed [m/s] is
+    longitudinal, negative in reverse. front and rear [m] are the distances from the reference
+    point to the bumpers. width is in [m]. It is made by ``Vehicles.create`` or ``Vehicles.empty``.
+    ``array`` may be changed in place.
 
     Raises:
         VehicleError: if the array has a wrong shape, or a value is not finite or out of range.
@@ -59,10 +59,10 @@ class Vehicles:
         rear: ArrayLike = 2.5,
         width: ArrayLike = 2.0,
     ) -> Vehicles:
-        """Vehicles from one number or (m,) per quantity; the size defaults to the paper's car.
+        """Return vehicles from one number or (m,) numbers per quantity, by default the paper's car.
 
         Raises:
-            VehicleError: naming the column, the vehicle and the value that is not as it should be.
+            VehicleError: a value is invalid; the message has the column, the vehicle and the value.
         """
         columns = [
             as_floats(values, name, VehicleError)
@@ -79,25 +79,25 @@ class Vehicles:
 
     @classmethod
     def empty(cls) -> Vehicles:
-        """No vehicle."""
+        """Return an array without vehicles."""
         return cls(np.empty((0, 7)))
 
     @property
     def x(self) -> NDArray[np.float64]:
-        """The coordinates of the reference points, (m,) [m]."""
+        """The x coordinates (m,) [m] of the reference points."""
         return self.array[:, X]
 
     @property
     def y(self) -> NDArray[np.float64]:
-        """The coordinates of the reference points, (m,) [m]."""
+        """The y coordinates (m,) [m] of the reference points."""
         return self.array[:, Y]
 
     @property
     def heading(self) -> NDArray[np.float64]:
-        """(m,) [rad] counter-clockwise from +x."""
+        """The headings (m,) [rad], counter-clockwise from +x."""
         return self.array[:, HEADING]
 
     @property
     def speed(self) -> NDArray[np.float64]:
-        """The speeds along the heading, (m,) [m/s]."""
+        """The speeds (m,) [m/s] along the heading."""
         return self.array[:, SPEED]

@@ -1,8 +1,9 @@
-"""Walls: the nearest wall point of each pedestrian, and its force into the walkable side.
+"""Walls: the distance of each pedestrian to the nearest wall, and its normal.
 
-A wall is a directed segment, walkable on its left. Which walls can be the nearest to a place is
-looked up in a grid of cells, built once. Where two walls meet, a place is on the walkable side if
-it is on the side of the sum of their normals: either normal alone is wrong behind a sharp corner.
+A wall is a directed segment with the walkable side on its left. A grid of cells, built once, lists
+the walls that can be the nearest to a point. At a corner of two walls a point is on the walkable
+side if it is on the side of the sum of their normals. One normal alone gives a wrong result behind
+a sharp corner.
 """
 
 import math
@@ -13,30 +14,30 @@ from numpy.typing import NDArray
 
 from pedestrian_model._jit import inlined, kernel
 
-REACH = 2.0  # [m] no wall is felt further away: exp(-b_w s) is nothing long before
-DEPTH = 1.0  # [m] who is further behind a wall than this is let go (ours)
-JOINED = 0.01  # [m] ends of walls closer than this are one corner
+REACH = 2.0  # distance [m] beyond which a wall has no force; exp(-b_w s) is negligible there
+DEPTH = 1.0  # depth [m] behind a wall beyond which it has no force (ours)
+JOINED = 0.01  # distance [m] below which two ends of walls form a corner
 
 #: Columns of the walls: start, unit vector along, length, sum of the normals at either end.
-#: Row 0 is the grid (see ``Grid``), the walls follow.
+#: Row 0 is the grid (see ``Grid``). The walls follow.
 X_0, Y_0, T_X, T_Y, LENGTH, N0_X, N0_Y, N1_X, N1_Y, COLUMNS = range(10)
 
-_AT = 1e-9  # [m] closer to a wall's end there is no direction from it; also equal distances
-_LEAST_EXPONENT = -700.0  # exp underflows below
+_AT = 1e-9  # tolerance [m] of equal distances, and least distance that has a direction
+_LEAST_EXPONENT = -700.0  # least exponent without underflow
 
 
 class Grid(NamedTuple):
     """The grid of the walls' cells, from row 0 of the walls.
 
-    The cells themselves are one array of int64: for each cell and for their end, where in this
-    array its members begin; then the members, rows of the walls.
+    The cells are one array of int64. It begins with one index for each cell, and one for their end,
+    at which the cell's members begin in this array. The members follow: rows of the walls.
     """
 
-    x_0: float  # [m] the lower left corner
+    x_0: float  # coordinates [m] of the lower left corner
     y_0: float
-    per_metre: float  # [1/m] cells
-    columns: float
-    strips: float
+    per_metre: float  # cells per metre [1/m]
+    columns: float  # number of columns
+    strips: float  # number of strips (rows of cells)
 
 
 @inlined
@@ -46,7 +47,7 @@ def _grid(walls: NDArray[np.float64]) -> Grid:
 
 @inlined
 def _cell(x: float, y: float, g: Grid) -> int:
-    """The cell of a place, or -1 outside the grid."""
+    """Return the cell of a point, or -1 outside of the grid."""
     column, strip = np.floor((x - g.x_0) * g.per_metre), np.floor((y - g.y_0) * g.per_metre)
     if 0.0 <= column < g.columns and 0.0 <= strip < g.strips:
         return int(strip) * int(g.columns) + int(column)
@@ -54,15 +55,15 @@ def _cell(x: float, y: float, g: Grid) -> int:
 
 
 class _Wall(NamedTuple):
-    """One of the lines: scalars, because passing arrays about costs a count of each."""
+    """One wall of the array of walls."""
 
-    x: float  # [m] its start
+    x: float  # coordinates [m] of its start
     y: float
-    t_x: float  # the unit vector along it
+    t_x: float  # unit vector along the wall
     t_y: float
-    length: float  # [m]
-    N0: tuple[float, float]  # the sum of the normals at its start
-    N1: tuple[float, float]  # and at its end
+    length: float  # length [m]
+    N0: tuple[float, float]  # sum of the normals at its start
+    N1: tuple[float, float]  # sum of the normals at its end
 
 
 @inlined
@@ -73,9 +74,9 @@ def _wall(line: NDArray[np.float64]) -> _Wall:
 
 @inlined
 def _to_wall(x: float, y: float, w: _Wall) -> tuple[float, float, float, bool]:
-    """Return the vector from a wall to (x, y), its square, and whether one may walk there.
+    """Return the vector from a wall's nearest point to (x, y), and its squared length.
 
-    Within the wall's length, the vector is along its normal.
+    The last result is whether (x, y) is on the wall's walkable side.
     """
     dx, dy = x - w.x, y - w.y
     along = w.t_x * dx + w.t_y * dy
@@ -98,10 +99,10 @@ def find_walls(
     cells: NDArray[np.int64],
     nearest: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
 ) -> None:
-    """Fill ``nearest``: the signed distance of each place from a wall, and the unit normal x, y.
+    """Fill ``nearest`` with the signed distance [m] of n points to the nearest wall, and normals.
 
-    The distance is negative behind the wall; the normal points into the walkable side. Out of
-    reach of any wall they are inf and zero.
+    The distance is negative behind the wall. The unit normal x, y points to the walkable side. Out
+    of reach of all walls they are inf and zero.
     """
     s, n_x, n_y = nearest
     grid = _grid(walls)
@@ -111,13 +112,13 @@ def find_walls(
         for at in range(cells[cell], cells[cell + 1] if cell >= 0 else 0):
             wall = _wall(walls[cells[at]])
             dx, dy, square, walkable = _to_wall(x[k], y[k], wall)
-            # of two walls back to back, the one whose walkable side this is counts
+            # Of two walls back to back, the one with the point on its walkable side counts.
             tie = abs(square - best) <= _AT * square
             if (square < best and not tie) or (tie and walkable and not inside):
                 best, best_x, best_y, inside = square, dx, dy, walkable
                 t_x, t_y = wall.t_x, wall.t_y
         distance = math.sqrt(best)
-        if distance <= _AT:  # on the wall there is no direction from it: its own normal
+        if distance <= _AT:  # for a point on the wall the wall's own normal is used
             distance, best_x, best_y, best = 0.0, -t_y, t_x, 1.0
         sign = 1.0 if inside else -1.0
         inverse = sign / math.sqrt(best)
@@ -128,12 +129,19 @@ def find_walls(
 def sort_walls(
     walls: NDArray[np.float64], closest: NDArray[np.float64], cells: NDArray[np.int64], phase: int
 ) -> None:
-    """One of the three passes that sort the walls into the cells of the grid.
+    """Perform one of the three passes that sort the walls into the cells of the grid.
 
-    A wall belongs to a cell if it may be the nearest to any place there: with h half the cell's
-    diagonal, if it is no further from the centre than the closest one plus 2 h, or than
-    ``REACH`` + h. Pass 0 finds the closest distance of each cell; pass 1 counts the walls of cell
-    i in ``cells[i + 1]``; pass 2 puts the members where ``cells[i]`` says and moves that on.
+    A wall belongs to a cell if it may be the nearest one to a point of the cell. With h half of the
+    cell's diagonal, its distance to the centre is then at most that of the closest wall plus 2 h,
+    and at most ``REACH`` + h. Pass 0 finds the closest distance of each cell. Pass 1 counts the
+    walls of cell i in ``cells[i + 1]``. Pass 2 writes the members to index ``cells[i]``, which it
+    increments.
+
+    Args:
+        walls: Grid and walls, (1 + k, COLUMNS).
+        closest: Closest distance [m] of each cell.
+        cells: Cells of the grid.
+        phase: Number of the pass.
     """
     g = _grid(walls)
     side = 1.0 / g.per_metre
@@ -162,13 +170,13 @@ def sort_walls(
 
 @inlined
 def _index(x: float, x_0: float, per_metre: float, count: float) -> int:
-    """The column (or strip) of a coordinate, the nearest there is."""
+    """Return the column (or strip) of a coordinate, limited to those of the grid."""
     return int(min(max(np.floor((x - x_0) * per_metre), 0.0), count - 1.0))
 
 
 @inlined
 def _follower(j: int, walls: NDArray[np.float64], cells: NDArray[np.int64]) -> int:
-    """The wall that goes on where wall j ends, along the same walkable ground; 0 if none does."""
+    """Return the wall that continues wall j along the same walkable side, or 0."""
     wall = _wall(walls[j])
     x, y = wall.x + wall.length * wall.t_x, wall.y + wall.length * wall.t_y
     cell = _cell(x, y, _grid(walls))
@@ -178,8 +186,8 @@ def _follower(j: int, walls: NDArray[np.float64], cells: NDArray[np.int64]) -> i
         apart = math.sqrt((other.x - x) ** 2 + (other.y - y) ** 2)
         if cells[at] == j or apart > JOINED or apart > closest + _AT:
             continue
-        # Where many meet, the sharpest turn to the left bounds the same walkable ground (rises
-        # with the angle, from -2 to 2); straight back is the tip of a thin wall, the last choice.
+        # Of several walls, the sharpest turn to the left bounds the same walkable side. `turn`
+        # rises with the angle from -2 to 2. Straight back is the tip of a thin wall, used last.
         dot = wall.t_x * other.t_x + wall.t_y * other.t_y
         left = wall.t_x * other.t_y - wall.t_y * other.t_x >= 0.0 and dot > _AT - 1.0
         turn = 1.0 - dot if left else dot - 1.0
@@ -190,7 +198,7 @@ def _follower(j: int, walls: NDArray[np.float64], cells: NDArray[np.int64]) -> i
 
 @kernel
 def join_walls(walls: NDArray[np.float64], cells: NDArray[np.int64]) -> None:
-    """Fill the sums of the normals where the end of one wall is the start of another."""
+    """Fill the sums of the normals at corners, where one wall ends and another one starts."""
     for j in range(1, walls.shape[0]):
         i = _follower(j, walls, cells)
         if i > 0:
@@ -207,5 +215,5 @@ def nearest_walls(
     cells: NDArray[np.int64],
     out: NDArray[np.float64],
 ) -> None:
-    """Fill ``out`` (3, n): signed distance and unit normal into the walkable side, x and y."""
+    """Fill ``out`` (3, n): signed distance [m], and unit normal x, y to the walkable side."""
     find_walls(x, y, x.shape[0], walls, cells, (out[0], out[1], out[2]))
