@@ -1,8 +1,8 @@
-"""The scratch memory of a step: one row per quantity, so that every loop reads contiguous memory.
+"""The scratch memory of a step, with one row per quantity.
 
-Pedestrians are copied into the rows (sorted by cell when there are many), which are padded with
-far-away dummies, so that vector loops need no scalar tail. The pair loops work in a small buffer
-whose rows lie a constant ``STRIDE`` apart: the compiler then sees that they do not overlap.
+Pedestrians are copied into the rows, sorted by cell if there are many. The rows are padded with
+dummies far away, so that all loops cover whole blocks. The pair loops work in a small buffer whose
+rows have the constant distance ``STRIDE``.
 """
 
 import math
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from pedestrian_model._jit import inlined
 from pedestrian_model.arrays import Arrays
 
-#: Width of the blocks in which pairs are evaluated and summed, whatever the machine's vectors:
-#: the order of the sums, and so the result, depends on it.
+#: Width of the blocks in which pairs are evaluated and summed on every machine. The order of the
+#: sums, and so the result, depends on it.
 BLOCK = 8
 
 # fmt: off
@@ -26,48 +26,45 @@ BLOCK = 8
  TX, TY, V0, SOFT,        # target, desired speed, [m^2] s_des^2 of the target
  WS, WX, WY,              # signed distance to the nearest wall, its normal
  NX, NY, NVX, NVY,        # next state
- PRIORITY,                # 0 to 1; filled where anybody has it
+ PRIORITY,                # 0 to 1; filled if anybody has priority
  ROWS) = range(24)
 # fmt: on
 
-#: Distance of the buffer's rows, not a multiple of 4096 bytes (cache sets).
+#: Distance of the buffer's rows, in float64; not a multiple of 4096 bytes.
 STRIDE = 680
-#: The largest crowd whose ring fits in the buffer, twice and padded.
+#: Largest crowd that fits into the buffer twice, with padding, as the all-pairs loops need.
 LARGEST_RING = (STRIDE - 2 * BLOCK) // 2
-#: Offsets of the buffer's rows: as PX ... UY above, then forces on the one and on the others.
+#: Offsets of the buffer's rows: PX ... UY as above, then forces on one person and on the others.
 BX, BY, BVX, BVY, BUX, BUY, ON_X, ON_Y, BACK_X, BACK_Y = (k * STRIDE for k in range(10))
-#: Of the ring besides: as BX ... BUY the ones ahead, and sums of the forces on these.
+#: Further offsets for all pairs: BX ... BUY of the people ahead, and sums of the forces on them.
 AHEAD, SUM_X, SUM_Y = (k * STRIDE for k in (10, 16, 17))
 
-#: The cell list never has more cells than this times the number of pedestrians (plus 62).
+#: Largest number of cells of the cell list per pedestrian (plus 62).
 CELLS_PER_PEDESTRIAN = 16
 
-_FAR = 1e12  # [m] a dummy's coordinates: beyond any cut-off, its square far from overflow
+_FAR = 1e12  # coordinates [m] of a dummy: beyond any cut-off, without overflow of their squares
 
 
 class Scratch(NamedTuple):
-    """The memory that a step works in; what it holds before does not matter."""
+    """The memory that a step works in. Its contents before the step do not matter."""
 
-    rows: NDArray[np.float64]  # (ROWS, padded n)
-    sorting: NDArray[np.int64]  # (3, cells): order of the pedestrians, cell of each, first of each
-    buffer: NDArray[np.float64]  # (18 STRIDE,) of the pair loops
+    rows: NDArray[np.float64]  # quantities (ROWS, padded n)
+    sorting: NDArray[np.int64]  # (3, cells): order of the people, cell of each, first of each cell
+    buffer: NDArray[np.float64]  # buffer (18 STRIDE,) of the pair loops
 
 
 def aligned(size: int) -> NDArray[np.float64]:
-    """(size,) zeros, the first of which begins a line of the processor's memory.
-
-    Where each block of eight lies across two lines, the pair loops take twice the time.
-    """
+    """Return zeros (size,) that begin at a cache line."""
     memory = np.zeros(size + BLOCK)
     skipped = -memory.ctypes.data % (8 * BLOCK) // 8
     return memory[skipped : skipped + size]
 
 
 class Workspace:
-    """The scratch of the kernels, grown when a larger crowd comes.
+    """The scratch memory of the kernels, which grows with the crowd.
 
     Attributes:
-        arrays: those of :class:`Scratch`.
+        arrays: Arrays of :class:`Scratch`.
     """
 
     arrays: Arrays
@@ -78,7 +75,7 @@ class Workspace:
         self.reserve(64)
 
     def reserve(self, n: int) -> None:
-        """Have room for n pedestrians."""
+        """Make room for n pedestrians."""
         if n > self.capacity:
             self.capacity = max(n, 2 * self.capacity)
             columns = (self.capacity + BLOCK - 1) // BLOCK * BLOCK + 2 * BLOCK
@@ -94,7 +91,7 @@ def fill(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
 ) -> None:
-    """Copy the state into the rows in ``order``, pad them, and clear the forces."""
+    """Copy the state into the rows in the given order, pad the rows, and clear the forces."""
     n = position.shape[0]
     for k in range(n):
         i = order[k]
@@ -129,10 +126,7 @@ def fill_some(
     start: int,
     stop: int,
 ) -> None:
-    """Fill the rows start ... stop - 1 as ``fill`` does, and the padding after them.
-
-    Not what ``fill`` calls: the ring's loops become a seventh slower with it.
-    """
+    """Fill the rows start ... stop - 1 as ``fill`` does, and the padding after them."""
     for k in range(start, stop):
         i = order[k]
         rows[PX, k] = position[i, 0]

@@ -1,4 +1,4 @@
-"""The parameters as the kernels want them: one numpy record, derived factors included."""
+"""The constants of the kernels: the parameters and derived factors in one numpy record."""
 
 import math
 from functools import lru_cache
@@ -45,15 +45,16 @@ def _exp(x: float) -> float:
 def pack(
     parameters: VciParameters, *, detour: bool = True, creep: bool = True, longer: float = 0.0
 ) -> NDArray[Any]:
-    """The constants of the kernels for ``parameters``: a read-only array of one record.
+    """Return the constants of the kernels for ``parameters``, a read-only array of one record.
 
     Args:
         parameters: Parameters of the model.
-        detour: whether people see a way round a standing car.
-        creep: whether the angle of f_v takes a car below the static speed to move.
-        longer: [s] by which a step is longer than those of the crowd for which it stands. One of
-            2 h gives the speed that two of h under the same forces do, the destination force's
-            part -k_des v being felt by the second, if the mass is m/(1 - k_des h/(2 m)).
+        detour: Whether people walk around a standing car.
+        creep: Whether the angle of f_v treats a car below the static speed as moving.
+        longer: Time [s] by which a step is longer than the crowd's own. One step of 2 h gives the
+            same speed as two steps of h under the same forces if the mass is
+            m/(1 - k_des h/(2 m)). In the second of them the part -k_des v of the destination force
+            has changed.
     """
     p = parameters
     l_nav = p.navigation_anisotropy
@@ -88,7 +89,7 @@ def pack(
         "b_v": (1.0 - p.vehicle_anisotropy) / 2.0,
         "cap": p.vehicle_exponent_cap,
         "u_static": p.static_speed,
-        "u_angle": 0.0 if creep else p.static_speed,  # below it phi_v takes a car to stand
+        "u_angle": 0.0 if creep else p.static_speed,  # speed below which phi_v is that of a stand
         "reach": p.body_radius
         + math.ceil(math.log(max(p.vehicle_strength / LEAST_FORCE, 1.0))) / p.vehicle_decay,
         "A_w": p.wall_strength,
@@ -100,7 +101,7 @@ def pack(
         "a_max": p.max_acceleration,
         "v_max": p.max_speed,
         "r_waypoint": p.waypoint_radius,
-        "u_detour": p.static_speed if detour else 0.0,  # below it they see the way round
+        "u_detour": p.static_speed if detour else 0.0,  # speed below which people walk around it
         "detour": p.vehicle_clearance + p.body_radius + p.detour_margin,
     }
     constants = np.zeros(1, dtype=_DTYPE)

@@ -9,7 +9,7 @@ from pedestrian_model._jit import inlined
 from pedestrian_model.routes import Routes, heading_for
 from pedestrian_model.vci.buffers import PX, PY, SOFT, TX, TY, V0
 
-# [m^2] instead of s_des^2 towards a way-point at which nobody stops: 1 um, against 0/0 only
+# Value [m^2] that replaces s_des^2 for a way-point without a stop; it only avoids 0/0.
 _NO_SLOWING = 1e-12
 
 
@@ -23,13 +23,15 @@ def set_targets(
     closed: NDArray[np.bool_],
     c: Any,
 ) -> None:
-    """Pass the way-points reached (not the last, none that is closed); targets into the rows.
+    """Advance ``waypoint_index`` past the way-points reached, and write the targets into the rows.
 
-    Row k is that of pedestrian ``order[k]``; further rows stay as they are.
+    Row k belongs to pedestrian ``order[k]``. Further rows are not changed. The last way-point is
+    never passed, nor is one with a closed signal.
 
-    The destination force fades towards a way-point at which somebody stops: the last, or one
-    whose signal is closed. Towards all others people walk at their desired speed (ours: with the
-    fading everywhere, way-points 2 m apart cost a quarter of it, 5 m apart an eighth).
+    The destination force fades towards a way-point at which people stop: the last one, or one with
+    a closed signal. People walk to all others at their desired speed. This is giveway's own: with
+    the fading everywhere, way-points at distances of 2 m would cost a quarter of the speed, and at
+    distances of 5 m an eighth.
     """
     start = routes.start
     for k in range(order.shape[0]):

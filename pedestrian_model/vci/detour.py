@@ -1,7 +1,7 @@
-"""The way round a standing car: a corner of it as the next target.
+"""The detour around a standing car: one of its corners becomes the next target.
 
-Without this, a person who walks into the side of a standing car is pushed back along his own line
-and never gets round it: a local minimum of the force field. All of this file is ours.
+Without a detour, a person who walks into the side of a standing car is pushed straight back and
+never gets past it: a local minimum of the force field. All of this file is giveway's own.
 """
 
 import math
@@ -15,10 +15,10 @@ from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 from pedestrian_model.vci.buffers import NVX, NX, NY, PX, PY, TX, TY
 
-_TOUCH = 1e-9  # [m] a path along the obstacle's edge does not cross it
-_TOGETHER = 32  # rows
+_TOUCH = 1e-9  # tolerance [m], so that a path along the obstacle's edge does not cross it
+_TOGETHER = 32  # number of rows that are examined together
 _ENTRY, _CORNER_X, _CORNER_Y = NVX, NX, NY  # rows that are free until the step is integrated
-_CLEAR = 2.0  # an entry parameter beyond the segment's end: no crossing
+_CLEAR = 2.0  # entry parameter of a segment that does not cross the box
 
 
 class _Box(NamedTuple):
@@ -37,7 +37,10 @@ def _grown(box: _Box, by: float) -> _Box:
 
 @inlined
 def _entry(x: float, y: float, dx: float, dy: float, box: _Box) -> float:
-    """Return where in [0, 1] the segment enters the open box, or 2."""
+    """Return the parameter in [0, 1] at which a segment enters the open box, or 2.
+
+    The segment leads from (x, y) to (x + dx, y + dy).
+    """
     enter, leave = 0.0, 1.0
     low, high, h = box
     for axis in range(2):
@@ -54,19 +57,19 @@ def _entry(x: float, y: float, dx: float, dy: float, box: _Box) -> float:
 
 @inlined
 def _outside(x: float, y: float, box: _Box) -> float:
-    """Return the distance (maximum norm) of a point from the box; it is negative inside."""
+    """Return the distance (maximum norm) of a point from the box, which is negative inside."""
     return max(max(box.low - x, x - box.high), abs(y) - box.half)
 
 
 @inlined
 def _length(dx: float, dy: float) -> float:
-    """The Euclidean length, without libm's hypot."""
+    """Return the Euclidean length, without libm's hypot."""
     return math.sqrt(dx * dx + dy * dy)
 
 
 @inlined
 def _corner(k: int, box: _Box) -> tuple[float, float]:
-    """The corners 0 ... 3 of a box, counter-clockwise from (high, half)."""
+    """Return corner k of a box, 0 ... 3, counter-clockwise from (high, half)."""
     return (box.high if k == 0 or k == 3 else box.low), (box.half if k < 2 else -box.half)
 
 
@@ -74,10 +77,11 @@ def _corner(k: int, box: _Box) -> tuple[float, float]:
 def _way_round(
     place: tuple[float, float], target: tuple[float, float], box: _Box, margin: float, radius: float
 ) -> tuple[float, float]:
-    """The first corner of the shortest way round a box from a place to a target, all local.
+    """Return the first corner of the shortest path around a box from a place to a target.
 
-    The corners are those of the box grown by ``margin``; whoever stands or wants to go closer than
-    that sees a box grown by less. A corner within ``radius`` is passed already.
+    All coordinates are in the vehicle's frame. The corners are those of the box grown by
+    ``margin``. For a person who stands closer, or whose target is closer, the obstacle is a box
+    grown by less. A corner within ``radius`` counts as passed.
     """
     (x, y), (x_p, y_p) = place, target
     closest = min(_outside(x, y, box), _outside(x_p, y_p, box))
@@ -113,7 +117,7 @@ def _way_round(
 def _look_ahead(
     rows: NDArray[np.float64], start: int, stop: int, vehicle: NDArray[np.float64], c: Any
 ) -> None:
-    """Find whether a standing vehicle is the first in the way, for the rows start ... stop - 1."""
+    """Set the corners around a vehicle for the rows start ... stop - 1, if it is the first hit."""
     reach = vehicle[FRONT] + vehicle[REAR] + vehicle[WIDTH] + 2.0 * c.detour
     v_x, v_y = vehicle[X], vehicle[Y]
     cos, sin = cosine_sine(vehicle[HEADING])
@@ -129,7 +133,7 @@ def _look_ahead(
         to_y = cos * (y_p - v_y) - sin * (x_p - v_x)
         room = min(_outside(at_x, at_y, box), _outside(to_x, to_y, box))
         if room <= 0.0:
-            continue  # inside the car, or bound for its inside: no way round
+            continue  # without a detour if the person or the target is inside the car
         seen = _grown(box, min(room, c.detour) - _TOUCH)
         entry = _entry(at_x, at_y, to_x - at_x, to_y - at_y, seen)
         if entry < rows[_ENTRY, k]:
@@ -143,8 +147,8 @@ def _look_ahead(
 def detour(rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], c: Any) -> None:
     """Replace the targets behind a standing vehicle by corners of its grown rectangle.
 
-    Some rows at a time, neighbours if they are sorted by cell, so that most vehicles are out of
-    the way of all of them.
+    Rows are examined in groups. If they are sorted by cell, a group consists of neighbours, and
+    most vehicles are far from all of them.
     """
     standing = False
     for v in range(vehicles.shape[0]):

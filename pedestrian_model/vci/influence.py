@@ -1,4 +1,4 @@
-"""The vehicle influence alone, at any point: the paper's figure 2."""
+"""The force of vehicles alone, at any point, as in the paper's figure 2."""
 
 from typing import Any
 
@@ -21,13 +21,13 @@ def vehicle_influence(
     vehicles: Vehicles,
     parameters: VciParameters = SIM,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The force of all vehicles on pedestrians at ``points``.
+    """Return the force of all vehicles on pedestrians at ``points``.
 
     Args:
-        points: (k, 2) [m].
-        velocities: (k, 2) [m/s] of the pedestrians there.
-        vehicles: the vehicles.
-        parameters: the numbers of the model.
+        points: Points (k, 2) [m].
+        velocities: Velocities (k, 2) [m/s] of the pedestrians there.
+        vehicles: Vehicles.
+        parameters: Parameters of the model.
 
     Returns:
         Forces (k, 2) [N] and signed distances (k,) [m] to the nearest contour: negative inside,

@@ -1,4 +1,4 @@
-"""The crowd, stepped: Newton's law under the sum of the sub-forces."""
+"""The VCI model with a time step: Newton's law under the sum of the sub-forces."""
 
 from typing import TYPE_CHECKING, Final
 
@@ -20,33 +20,33 @@ if TYPE_CHECKING:
 
 #: Crowd size from which on neighbours are found by a cell list (benchmarks/speed/bench_crowd.py).
 CELL_LIST_FROM = 100
-#: From so many on, several threads step a crowd: with fewer, they would wait for each other more.
+#: Crowd size from which on several threads step a crowd.
 THREADS_FROM = 1000
-#: More threads than this are taken for a mistake.
+#: Largest number of threads that is accepted.
 MOST_THREADS = 256
-_NOWHERE: Final = np.empty((1, 0, 2))  # where nobody's position after a step is noted
+_NOWHERE: Final = np.empty((1, 0, 2))  # output (1, 0, 2) of one step without recorded positions
 
 
 def require_steady(
     parameters: VciParameters, time_step: float, longest: float = LONGEST_STEP
 ) -> None:
-    """Make sure that the integration's step does not make people's speeds swing.
+    """Make sure that people's speeds do not oscillate with the step of the integration.
 
-    Somebody alone under the destination force has v' = (k_des/m)(v_d - v), of which one step of
-    forward Euler makes v_d - v_(n+1) = (1 - z)(v_d - v_n), z = k_des dt/m (Hairer & Wanner 1996,
-    "Solving Ordinary Differential Equations II", section IV.2). For z <= 1 the speed settles, for
-    1 < z < 2 it overshoots in every step, beyond 2 it swings until a_max and v_max hold it. Near
-    the last destination v_d = -v0 x/s_des, and the step (x too is integrated) has
-    the trace 2 - z - z W/2 and the determinant 1 - z + z W/2 with W = v0 dt/s_des: for z <= 1 it
-    is stable and has no negative eigenvalue exactly if W < 2.
+    A person alone under the destination force has v' = (k_des/m)(v_d - v). One step of forward
+    Euler gives v_d - v_(n+1) = (1 - z)(v_d - v_n), z = k_des dt/m (Hairer & Wanner 1996, "Solving
+    Ordinary Differential Equations II", section IV.2). For z <= 1 the speed settles. For 1 < z < 2
+    it overshoots in every step. Beyond 2 it grows until a_max and v_max limit it. Near the last
+    destination v_d = -v0 x/s_des. The step, in which x is integrated as well, has the trace
+    2 - z - z W/2 and the determinant 1 - z + z W/2 with W = v0 dt/s_des. For z <= 1 it is stable
+    without a negative eigenvalue exactly if W < 2.
 
     Args:
         parameters: Parameters of the model.
-        time_step: [s]; its sub-steps count.
-        longest: [s] of these.
+        time_step: Time step [s], which is divided into sub-steps.
+        longest: Longest sub-step [s].
 
     Raises:
-        ParameterError: they swing.
+        ParameterError: speeds would oscillate.
     """
     dt = time_step / substeps(time_step, longest)
     p = parameters
@@ -67,23 +67,23 @@ def require_steady(
 
 
 class CrowdModel:
-    """The VCI model with a time step; it holds no state but scratch memory.
+    """The VCI model with a time step. It keeps no state but scratch memory.
 
     Args:
-        parameters: the numbers of the model.
-        time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
-            drive straight on at constant speed.
-        cell_list_from: the crowd size from which neighbours are found by a cell list (they always
-            are beyond 332, where the ring no longer fits its buffer).
-        detour: whether people see the way round a standing car (ours), or walk into its side and
-            stay there, as by the published forces alone.
-        creep: whether the angle of a vehicle's force takes it to move below the static speed
-            too, or to stand, as its contour does.
-        threads: how many step a crowd of ``THREADS_FROM`` or more; the result is the same, bit by
-            bit.
+        parameters: Parameters of the model.
+        time_step: Time step [s]. Above 0.05 s it is divided into equal sub-steps, during which the
+            vehicles drive straight on at constant speed.
+        cell_list_from: Crowd size from which on neighbours are found by a cell list. Beyond 332
+            people they always are, because all pairs no longer fit into the buffer.
+        detour: Whether people walk around a standing car (ours). If not, they walk into its side
+            and stay there, as by the published forces alone.
+        creep: Whether the angle of a vehicle's force treats the vehicle as moving below the static
+            speed as well. If not, it stands, as for its contour.
+        threads: Number of threads that step a crowd of ``THREADS_FROM`` or more. The result is the
+            same, bit by bit.
 
     Raises:
-        ParameterError: if the time step is not positive and finite, or makes speeds swing, or
+        ParameterError: if the time step is not positive and finite, or makes speeds oscillate, or
             there are less than one or more than ``MOST_THREADS`` threads.
     """
 
@@ -143,8 +143,8 @@ class CrowdModel:
         if crowd is not self._latest[0] or surroundings is not self._latest[1]:
             state, memory = crowd.state, self._workspace.arrays
             people = (*state, *crowd.fixed_arrays, *surroundings.arrays, *memory)
-            people += (*state, crowd.velocity)  # the crowd is its own memory for the state ahead:
-            self._latest = crowd, surroundings, people  # one kernel less to compile
+            people += (*state, crowd.velocity)  # the rollout changes the crowd itself
+            self._latest = crowd, surroundings, people
         time = (self._dt, self._substeps)
         if self._team is not None and n >= max(THREADS_FROM, self.cell_list_from):
             bad = self._team.advance(
@@ -158,7 +158,7 @@ class CrowdModel:
 
 
 def _team(threads: int) -> "CrowdThreads":
-    """The threads; imported here, so that who has one only loads none of their kernels."""
+    """Return the threads; the import is here so that one thread does not load their kernels."""
     from pedestrian_model.vci.threads import CrowdThreads
 
     return CrowdThreads(threads)

@@ -1,4 +1,4 @@
-"""Prediction of the crowd: the model itself, applied N times under given vehicle poses."""
+"""Predicts the crowd by applying the VCI model N times, for given vehicle poses."""
 
 import math
 
@@ -26,19 +26,18 @@ class Predictor:
     Yang & Özgüner 2019, section "Motion Prediction".
 
     Args:
-        parameters: the numbers of the model.
-        time_step: [s]; above ``longest_step`` it is divided into sub-steps as in ``CrowdModel``.
-        horizon: N, the number of steps.
-        cell_list_from: the crowd size from which neighbours are found by a cell list.
-        detour: whether people see the way round a standing car (ours), or walk into its side and
-            stay there, as by the published forces alone.
-        creep: whether the angle of a vehicle's force takes it to move below the static speed
-            too, or to stand, as its contour does.
-        longest_step: [s] that the integration takes at once; the crowd's own by default. A longer
-            one stands for several of these, see :func:`rollout_step`.
+        parameters: Parameters of the model.
+        time_step: Time step [s]. Above ``longest_step`` it is divided as in ``CrowdModel``.
+        horizon: Number N of steps.
+        cell_list_from: Crowd size from which on neighbours are found by a cell list.
+        detour: Whether people walk around a standing car, as in ``CrowdModel``.
+        creep: Whether the angle of a vehicle's force treats the vehicle as moving below the static
+            speed as well, as in ``CrowdModel``.
+        longest_step: Longest step [s] of the integration, by default that of the crowd. A longer
+            step stands for several of these, see :func:`rollout_step`.
 
     Raises:
-        ParameterError: if the time step or the horizon is not positive, or speeds would swing.
+        ParameterError: if the time step or the horizon is not positive, or speeds would oscillate.
     """
 
     def __init__(
@@ -70,7 +69,7 @@ class Predictor:
         self._reserve(0)
 
     def _reserve(self, n: int) -> None:
-        """Contiguous views of buffers that grow only: people come and go in each step."""
+        """Make contiguous views for n people of buffers that only grow."""
         if n > self._workspace.capacity:
             self._workspace.reserve(n)
         if n > self._capacity:
@@ -86,16 +85,17 @@ class Predictor:
         vehicles_trajectory: NDArray[np.float64],
         surroundings: Surroundings = OPEN_GROUND,
     ) -> NDArray[np.float64]:
-        """The positions (N, n, 2) [m] after 1 ... N steps; ``crowd`` is not changed.
+        """Predict the crowd, without changing ``crowd``.
 
         Args:
-            crowd: the present state.
-            vehicles_trajectory: (N, m, 7) the vehicles at 0 ... N - 1 steps, see ``Vehicles``.
-            surroundings: walls and signals; those closed now stay closed over the horizon.
+            crowd: Present state.
+            vehicles_trajectory: Vehicles (N, m, 7) at steps 0 ... N - 1, see ``Vehicles``.
+            surroundings: Walls and signals. Signals closed now stay closed over the horizon.
 
         Returns:
-            A buffer that the next call overwrites (copy it to keep it). Bit-equal to N times
-            ``CrowdModel.step`` with the same vehicles, if its steps are integrated as the crowd's.
+            Positions (N, n, 2) [m] after 1 ... N steps, in a buffer that the next call overwrites.
+            They are bit-equal to N times ``CrowdModel.step`` with the same vehicles, if the steps
+            are not longer than those of the crowd.
 
         Raises:
             VehicleError: if the trajectory is not C-contiguous float64 of shape (N, m, 7).
@@ -116,7 +116,7 @@ class Predictor:
         return self._out
 
     def arrays(self, crowd: Crowd, surroundings: Surroundings) -> Arrays:
-        """Return the arrays that :func:`start` takes; the last four are memory for the state ahead.
+        """Return the arrays that :func:`start` takes. The last four hold the predicted state.
 
         Raises:
             SurroundingsError: if a way-point's signal is not one of the surroundings.
@@ -135,10 +135,11 @@ class Predictor:
     def desired_velocities(
         self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND
     ) -> NDArray[np.float64]:
-        """The desired velocities at the end of the latest prediction.
+        """Return the desired velocities at the end of the latest prediction.
 
         Returns:
-            (n, 3) Velocity x, y [m/s], and how long [s] it holds; see :func:`desired_velocity`.
+            Velocities x, y [m/s] and the time [s] for which each is kept, (n, 3); see
+            :func:`desired_velocity`.
         """
         velocities = np.empty((len(crowd), 3))
         fill_desired_velocities(self.arrays(crowd, surroundings), velocities)
@@ -146,7 +147,7 @@ class Predictor:
 
     @staticmethod
     def divergence(crowd: Crowd, bad: int) -> DivergenceError:
-        """The error that says whose state a step has made infinite."""
+        """Return the error of a pedestrian whose predicted state is not finite."""
         return DivergenceError(
             f"pedestrian {bad}: the predicted state is not finite; check its present position "
             f"{crowd.position[bad]} m, velocity {crowd.velocity[bad]} m/s and the vehicles"
@@ -157,17 +158,17 @@ class Predictor:
 def desired_velocity(
     x: float, y: float, target: int, i: int, scene: Scene
 ) -> tuple[float, float, float]:
-    """The velocity [m/s] that a pedestrian would have with nobody about, and for how long [s].
+    """Return the desired velocity x, y [m/s] of a pedestrian, and the time [s] that it is kept.
 
-    It leads to the way-point, or to the nearest point of its passage; beyond it they are taken to
-    go straight on, unless it is their last or one that is closed.
+    It leads to the next way-point, or to the nearest point of its passage. Pedestrians are assumed
+    to go straight on beyond it, unless it is the last one or its signal is closed.
 
     Args:
-        x: where they are [m].
-        y: [m].
-        target: the index of their way-point.
-        i: who.
-        scene: what the crowd walks among.
+        x: Coordinate [m] of the pedestrian.
+        y: Coordinate [m] of the pedestrian.
+        target: Index of the next way-point, counted from the pedestrian's first.
+        i: Row of the pedestrian.
+        scene: Surroundings and routes of the crowd.
     """
     w, q, signal, begin = scene.routes
     at = begin[i] + target
@@ -183,7 +184,7 @@ def desired_velocity(
 
 @kernel
 def fill_desired_velocities(arrays: Arrays, velocities: NDArray[np.float64]) -> None:
-    """Fill ``velocities`` (n, 3) with those at the end of the latest prediction."""
+    """Fill ``velocities`` (n, 3) with the desired ones at the end of the latest prediction."""
     scene = parts(arrays[:-4])[1]
     x, _, at, _ = borrowed(arrays[-4:])
     for i in range(x.shape[0]):

@@ -1,4 +1,4 @@
-"""The crowd on and on: steps under given vehicle poses, from a state that stays as it is."""
+"""The rollout of a crowd: steps under given vehicle poses, from a state that is not changed."""
 
 from typing import Any, NamedTuple
 
@@ -13,21 +13,18 @@ from pedestrian_model.vci.step import Scene, State, parts, step_n
 
 
 class Rollout(NamedTuple):
-    """A state that is predicted, and memory."""
+    """A predicted state, and memory."""
 
     state: State
-    velocity: NDArray[np.float64]  # (n, 2) [m/s] before the latest step
+    velocity: NDArray[np.float64]  # velocities (n, 2) [m/s] before the latest step
 
 
 @inlined
 def start(arrays: Arrays) -> tuple[Rollout, Scene, Scratch]:
-    """Copy the present state into the memory of a rollout, for :func:`rollout_step` to change.
-
-    Inlined, for compiled functions that predict step by step: handing so many arrays from one to
-    the next costs as much as the forces of ten people.
+    """Copy the present state into the memory of a rollout, which :func:`rollout_step` changes.
 
     Args:
-        arrays: those of :meth:`Predictor.arrays`.
+        arrays: Arrays of :meth:`Predictor.arrays`.
     """
     state, scene, scratch = parts(arrays[:-4])
     memory = borrowed(arrays[-4:])
@@ -47,22 +44,23 @@ def rollout_step(
     scratch: Scratch,
     law: tuple[NDArray[Any], float, int, int, float],
 ) -> int:
-    """Step as :func:`step_n` does, also by steps that stand for several of the crowd's own.
+    """Step as :func:`step_n` does, possibly by a long step that replaces several of the crowd's.
 
-    The forces are then those at the mean of the instants at which the own steps would have them:
-    people are moved on by ``lead`` [s] at their velocities, and back. And the mass is a greater
-    one, because each of the own steps would take back a part k_des dt/m of the speed that the one
-    before has gained (``pack``). So two steps of 0.05 s and one of 0.1 s differ less by half.
+    The forces of a long step are those at the mean instant of the steps that it replaces. For this,
+    people are moved on by ``lead`` [s] at their velocities, and back afterwards. The mass is
+    larger, because each of the replaced steps would reduce the gain of speed of the one before by a
+    share k_des dt/m (``pack``). This halves the difference between one step of 0.1 s and two of
+    0.05 s.
 
     Args:
-        ahead: changed.
-        scene: what the crowd walks among.
-        vehicles: (m, 7) at that mean instant.
-        scratch: memory.
+        ahead: Predicted state, changed.
+        scene: Surroundings and routes of the crowd.
+        vehicles: Vehicles (m, 7) at the mean instant.
+        scratch: Memory of a step.
         law: ``law`` of :func:`step_n`, and the lead [s].
 
     Returns:
-        ``FINE`` or the first bad index.
+        ``FINE``, or the first pedestrian whose state is not finite.
     """
     (x, v, at), before = ahead
     constants, dt, substeps, cell_list_from, lead = law
@@ -85,11 +83,17 @@ def roll_out(
     law: tuple[NDArray[Any], float, int, int, float],
     out: NDArray[np.float64],
 ) -> int:
-    """Fill ``out`` (N, n, 2) with the positions of the next N steps.
+    """Fill ``out`` (N, n, 2) [m] with the positions of the next N steps.
 
-    As :func:`rollout_step`, with ``vehicles`` (N, m, 7). The state stays as
-    it is, unless it is its own memory for the rollout. ``out`` may have room for fewer pedestrians
-    than there are, or for none.
+    Args:
+        arrays: Arrays of :meth:`Predictor.arrays`. The state is not changed, unless it is its own
+            memory for the rollout.
+        vehicles: Vehicles (N, m, 7).
+        law: Constants, as for :func:`rollout_step`.
+        out: Positions, filled; it may have room for fewer pedestrians than there are.
+
+    Returns:
+        ``FINE``, or the first pedestrian whose state is not finite.
     """
     ahead, scene, scratch = start(arrays)
     x = ahead.state.position

@@ -1,4 +1,4 @@
-"""One step of the crowd: all forces from the old state, then all states at once."""
+"""One step of the crowd: all forces from the old state, then all states are updated at once."""
 
 import math
 from typing import Any, NamedTuple
@@ -43,20 +43,20 @@ from pedestrian_model.vci.wall_force import add_walls
 class State(NamedTuple):
     """The arrays that a step changes, as in ``Crowd``."""
 
-    position: NDArray[np.float64]  # (n, 2) [m]
-    velocity: NDArray[np.float64]  # (n, 2) [m/s]
-    waypoint_index: NDArray[np.int64]  # (n,)
+    position: NDArray[np.float64]  # positions (n, 2) [m]
+    velocity: NDArray[np.float64]  # velocities (n, 2) [m/s]
+    waypoint_index: NDArray[np.int64]  # indices (n,) of the next way-points
 
 
 class Scene(NamedTuple):
-    """The surroundings and wishes of a crowd, which no step changes."""
+    """The surroundings, routes and desired speeds of a crowd, which no step changes."""
 
-    desired_speed: NDArray[np.float64]  # (n,) [m/s]
-    priority: NDArray[np.float64]  # (n,) 0 to 1
+    desired_speed: NDArray[np.float64]  # desired speeds (n,) [m/s]
+    priority: NDArray[np.float64]  # priorities (n,), 0 to 1
     routes: Routes
-    closed: NDArray[np.bool_]  # (signals,)
-    walls: NDArray[np.float64]  # the lines of ``Walls``
-    wall_cells: NDArray[np.int64]  # and their cells
+    closed: NDArray[np.bool_]  # marks (signals,) of closed signals
+    walls: NDArray[np.float64]  # lines of ``Walls``
+    wall_cells: NDArray[np.int64]  # cells of ``Walls``
 
 
 @inlined
@@ -72,7 +72,7 @@ def any_priority(priority: NDArray[np.float64]) -> bool:
 def _fill_priority(
     rows: NDArray[np.float64], order: NDArray[np.int64], priority: NDArray[np.float64]
 ) -> None:
-    """Copy everybody's priority into the rows in ``order``."""
+    """Copy the priorities into the rows, in the given order."""
     for k in range(priority.shape[0]):
         rows[PRIORITY, k] = priority[order[k]]
 
@@ -104,9 +104,9 @@ def gather_forces(
 
 @inlined
 def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
-    """The next state of the first n rows: total force, limits, synchronous update.
+    """Compute the next state of the first n rows: total force, limits, synchronous update.
 
-    With whole blocks no row is left to a scalar loop; what comes of dummies is never read.
+    n is a multiple of the block. Results of dummies are never read.
     """
     m, k_des, F_2, inverse_F = c.m, c.k_des, c.F_2, c.inverse_F
     most, v_max = c.m * c.a_max, c.v_max
@@ -124,11 +124,11 @@ def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
         drive = beta * k_des
         F_x = fx[k] + vfx[k] + drive * fma(pace, dx, -vx[k])
         F_y = fy[k] + vfy[k] + drive * fma(pace, dy, -vy[k])
-        # at most m a_max
+        # The force is limited to m a_max.
         F = math.sqrt(fma(F_x, F_x, F_y * F_y))
         scale = most / F if most < F else 1.0
         a_x, a_y = F_x * scale / m, F_y * scale / m
-        # at most v_max at the end of the step
+        # The speed at the end of the step is limited to v_max.
         end_x, end_y = fma(a_x, dt, vx[k]), fma(a_y, dt, vy[k])
         speed = math.sqrt(fma(end_x, end_x, end_y * end_y))
         slower = v_max / speed if speed > v_max else 1.0
@@ -148,11 +148,11 @@ def step_n(
     scratch: Scratch,
     law: tuple[NDArray[Any], float, int, int],
 ) -> int:
-    """Advance the state in place by some steps; ``FINE`` or the first bad index.
+    """Advance the state in place by some steps, and return ``FINE`` or the first bad index.
 
     Args:
         state: State of the crowd, which is changed.
-        scene: Surroundings and wishes of the crowd.
+        scene: Surroundings, routes and desired speeds of the crowd.
         vehicles: Vehicles (m, 7).
         scratch: Memory of a step.
         law: Constants of the model, length dt [s] of a step, number of steps, and the crowd size
@@ -184,7 +184,7 @@ def step_n(
 
 @inlined
 def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
-    """Return by name the arrays that Python has handed over as one plain tuple."""
+    """Return by name the arrays that Python passes as one plain tuple."""
     a = borrowed(arrays)
     routes = Routes(a[5], a[6], a[7], a[8])
     scene = Scene(a[3], a[4], routes, a[9], a[10], a[11])

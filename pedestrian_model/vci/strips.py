@@ -1,15 +1,16 @@
-"""A step of a large crowd in domains: threads walk bands of strips at once, to the same bits.
+"""A step of a large crowd in domains, one per thread, with results equal to the last bit.
 
-Each domain owns the pedestrians of some strips of the cell list and has a workspace of its own. The
-force on a pedestrian is a sum in the order of the tiles (``cell_list.py``), each summand a function
-of the old state alone. A tile adds to its own strip and to those within reach above it. So a domain
-visits, in the order of the sequential pass, the tiles of its own strips and of the *ghost* strips
-within reach below: whatever is added to its own pedestrians is added there, in the same order.
-From a ghost tile only the candidates that the domain owns are met: a candidate's sum over the tile
-does not depend on the other candidates. What a domain adds to pedestrians of the domain above stays
-in its own workspace and is not used. All else (vehicles, walls, targets, integration) is done for
-each pedestrian by itself. Thus the bits do not depend on the number of domains, and the domains
-never wait for each other.
+Each domain owns the pedestrians of some strips of the cell list, and has its own workspace. The
+force on a pedestrian is a sum in the order of the tiles (``cell_list.py``). Each summand depends on
+the old state alone. A tile adds forces to its own strip and to the strips within reach above it. A
+domain therefore visits the tiles of its own strips, and of the *ghost* strips within reach below,
+in the order of a sequential step. All forces on its own pedestrians are added there, in the same
+order.
+
+For a ghost tile only candidates of the domain are evaluated, because the sum of a candidate does
+not depend on the other candidates. Forces on pedestrians of the domain above stay in the workspace
+and are not used. Vehicles, walls, targets and the integration concern each pedestrian alone. Thus
+the result does not depend on the number of domains, and no domain waits for another one.
 """
 
 from typing import Any
@@ -50,17 +51,17 @@ from pedestrian_model.vci.step import _integrate, any_priority, parts
 from pedestrian_model.vci.vehicle_force import Traffic, add_vehicles_to_strips
 from pedestrian_model.vci.wall_force import add_walls
 
-#: Where ``lay_out`` leaves the grid and the strips at which domains begin.
+#: Index in the layout at which the strips follow the grid.
 _GRID = len(Grid._fields)
-_GHOST = 0.25  # the work of a ghost, relative to a pedestrian's (benchmarks/speed/bench_crowd.py)
+_GHOST = 0.25  # work of a ghost relative to a pedestrian (benchmarks/speed/bench_crowd.py)
 
 
 class DomainMemory:
-    """The memory of one domain, which no other one uses.
+    """The memory of one domain.
 
     Attributes:
-        arrays: the rows (ROWS + 1, capacity): one more, so that they can be seen shifted; the
-            buffer of the pair loops; the segments (4, 16).
+        arrays: Rows (ROWS + 1, capacity), with one more row for shifted views; buffer of the pair
+            loops; segments (4, 16).
     """
 
     arrays: Arrays
@@ -71,7 +72,7 @@ class DomainMemory:
         self._capacity = -1
 
     def reserve(self, workspace: Workspace) -> None:
-        """Have room for as many pedestrians as the workspace."""
+        """Make room for as many pedestrians as the workspace has."""
         if workspace.capacity > self._capacity:
             self._capacity = workspace.capacity
             columns = workspace.arrays[0].shape[1]
@@ -80,13 +81,13 @@ class DomainMemory:
 
 
 def layout_memory(threads: int) -> NDArray[np.float64]:
-    """The layout that ``lay_out`` fills: the grid, the first strip of each domain, the end."""
+    """Return the layout that ``lay_out`` fills: grid, first strip of each domain, end."""
     return np.zeros(_GRID + threads + 1)
 
 
 @inlined
 def _halo(grid: Grid) -> int:
-    """Return the number of strips above its own that a tile may reach."""
+    """Return the number of strips above its own that a tile reaches."""
     return int(grid.reach * grid.per_y) + 1
 
 
@@ -98,11 +99,11 @@ def lay_out(
     layout: NDArray[np.float64],
     constants: NDArray[Any],
 ) -> int:
-    """Sort the crowd into cells and divide the strips; ``FINE`` or the first bad index.
+    """Sort the crowd into cells and divide the strips; return ``FINE`` or the first bad index.
 
-    The domains own about equally many pedestrians each, ghosts counted a quarter: of their tiles
-    few candidates are met, and fewer in the uppermost strips. There are fewer domains (the last
-    ones own nothing) where they would consist of ghosts mostly.
+    All domains have about the same number of pedestrians. A ghost counts as a quarter, because few
+    candidates of its tile belong to the domain. There are fewer domains, of which the last own
+    nothing, if they would consist mostly of ghosts.
     """
     n = position.shape[0]
     insane = first_insane(position, velocity)
@@ -116,7 +117,7 @@ def lay_out(
     most = layout.shape[0] - _GRID - 1
     domains = max(1, min(most, strips // (2 * halo)))
     strip, work = 0, 0.0
-    ghosts = n * _GHOST * halo / strips  # the work of a domain's ghosts, in pedestrians
+    ghosts = n * _GHOST * halo / strips  # work of a domain's ghosts, in pedestrians
     whole = n + ghosts * (domains - 1)
     for domain in range(most + 1):
         layout[_GRID + domain] = strips
@@ -138,16 +139,14 @@ def _add_pairs(
     filled: int,
     constants: NDArray[Any],
 ) -> None:
-    """The forces of all pairs on the rows of the domain's strips.
-
-    A function of its own in machine code, as ``add_near_pairs``.
+    """Add the forces of all pairs to the rows of the domain's strips.
 
     Args:
         rows: Rows of the domain, filled as far as its tiles and those of its ghosts reach.
-        index: order and cells.
+        index: Order of the pedestrians, and cells.
         memory: Buffer and segments of the domain.
         strips: Strips of the domain.
-        filled: the last row that is filled, plus one.
+        filled: Index of the last filled row, plus one.
         constants: Constants of the model.
     """
     c = pair_constants(constants[0])
@@ -170,7 +169,7 @@ def _add_pairs(
 
 @inlined
 def _keep_own(segments: NDArray[np.int64], count: int, own: int) -> int:
-    """Leave out the segments before row ``own``; how many are left."""
+    """Remove the segments before row ``own``, and return the number of those that are left."""
     kept = 0
     for k in range(count):
         if segments[0, k] >= own:
@@ -181,7 +180,7 @@ def _keep_own(segments: NDArray[np.int64], count: int, own: int) -> int:
 
 @inlined
 def _shifted(rows: NDArray[np.float64], by: int) -> NDArray[np.float64]:
-    """The rows seen from column ``by`` on, contiguous: (ROWS, columns), the last ones nonsense."""
+    """Return a contiguous view (ROWS, columns) from column ``by`` on, with invalid last columns."""
     columns = rows.shape[1]
     return rows.reshape(-1)[by : by + ROWS * columns].reshape(ROWS, columns)
 
@@ -196,15 +195,15 @@ def step_domain(
     traffic: tuple[NDArray[np.float64], float],
     law: tuple[NDArray[Any], float],
 ) -> None:
-    """The next state of one domain's pedestrians, and the way-points that they have passed.
+    """Compute the next state of one domain's pedestrians, and pass their way-points.
 
     Args:
-        arrays: those of State, Scene and Scratch, one after the other; of the scratch only the
-            sorted index is read, of the state only the way-points' index is changed.
+        arrays: Arrays of State, Scene and Scratch, one after the other. Only the sorting of the
+            scratch is read, and only the way-point index of the state is changed.
         memory: Arrays of ``DomainMemory``.
         layout: Layout, filled by ``lay_out``.
-        domain: which.
-        after: (n, 4) the next positions and velocities; filled.
+        domain: Number of the domain.
+        after: Next positions and velocities (n, 4), filled.
         traffic: Vehicles (m, 7), and the time [s] for which they have driven straight on.
         law: Constants of the model, and the length dt [s] of the step.
     """
@@ -254,7 +253,7 @@ def step_domain(
 def write_back(
     position: NDArray[np.float64], velocity: NDArray[np.float64], after: NDArray[np.float64]
 ) -> int:
-    """Copy the next state into the present one; ``FINE`` or the first bad index."""
+    """Copy the next state into the present one, and return ``FINE`` or the first bad index."""
     for i in range(position.shape[0]):
         position[i, 0], position[i, 1] = after[i, 0], after[i, 1]
         velocity[i, 0], velocity[i, 1] = after[i, 2], after[i, 3]

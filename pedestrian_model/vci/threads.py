@@ -1,4 +1,4 @@
-"""Threads that step one crowd together: one domain each, the caller's thread the first."""
+"""The threads that step one crowd together, one domain each; the caller's thread is the first."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 
 class CrowdThreads:
-    """The threads of one model and what they work in.
+    """The threads of one model, and their memory.
 
-    The other threads are started by the first step. They end when the team is no longer
-    referred to; a copy (by pickle, or in a forked process) starts its own.
+    The first step starts the other threads. They end when this object is no longer referenced. A
+    copy, by pickle or in a forked process, starts its own threads.
 
     Args:
-        threads: how many, the caller's included; at least 2.
+        threads: Number of threads with the caller's, at least 2.
     """
 
     def __init__(self, threads: int) -> None:
@@ -54,15 +54,15 @@ class CrowdThreads:
         dt: float,
         substeps: int,
     ) -> int:
-        """Advance the state in place; ``FINE`` or the first bad index, as the sequential kernel.
+        """Advance the state in place, and return ``FINE`` or the first bad index.
 
         Args:
-            arrays: those of State, Scene and Scratch, one after the other; somebody is there.
-            workspace: that the scratch is of.
-            vehicles: (m, 7).
+            arrays: Arrays of State, Scene and Scratch, one after the other, of at least one person.
+            workspace: Workspace that the scratch belongs to.
+            vehicles: Vehicles (m, 7).
             constants: Constants of the model.
-            dt: [s].
-            substeps: how many steps.
+            dt: Length [s] of a step.
+            substeps: Number of steps.
         """
         position, velocity, sorting = arrays[0], arrays[1], workspace.arrays[1]
         n = position.shape[0]
@@ -87,7 +87,7 @@ class CrowdThreads:
         constants: NDArray[Any],
         dt: float,
     ) -> None:
-        """All domains, each in its thread; returns or raises only when every one has ended."""
+        """Step all domains, each in its thread, and wait for all of them."""
         rest = (self._after, (vehicles, travelled), (constants, dt))
         futures: list[Future[None]] = []
         pool = self._pool()
@@ -103,7 +103,7 @@ class CrowdThreads:
             future.result()
 
     def _pool(self) -> ThreadPoolExecutor:
-        """The other threads, of this process."""
+        """Return the pool of the other threads, made anew in a forked process."""
         if self._others is None or self._process != os.getpid():
             self._others = ThreadPoolExecutor(self.threads - 1, "giveway-crowd")
             self._process = os.getpid()

@@ -1,9 +1,9 @@
-"""The influence of vehicles on pedestrians: distance to a contour that grows with speed.
+"""The force of vehicles on pedestrians, by the distance to a contour that grows with speed.
 
-Contour, in the vehicle's frame (X forward): a rear face, two sides, and a nose of two slanted
+The contour in the vehicle's frame (X forward) has a rear face, two sides, and a nose of two slanted
 edges from the shoulders (X_s, +-h) to the tip (X_s + alpha_x |u|, 0). Below ``static_speed`` the
-nose is flat and the contour a rectangle. TSAS 2020 for the form, Yang & Özgüner 2019 for the
-rectangle and the vehicle's role as a potential field that changes with its speed.
+nose is flat and the contour is a rectangle. The form is that of TSAS 2020. The rectangle, and the
+vehicle as a potential field that changes with its speed, are those of Yang & Özgüner 2019.
 """
 
 import math
@@ -19,29 +19,29 @@ from pedestrian_model.vci.buffers import BLOCK, PRIORITY, PX, PY, VFX, VFY, VX, 
 from pedestrian_model.vci.pairs.cell_list import Grid, Strips
 from pedestrian_model.vci.priority import felt, place_of_full_force
 
-#: A vehicle's force is left out where it is less than this, if there are many vehicles.
-LEAST_FORCE = 1e-9  # [N]
-_MANY = 5  # vehicles: to look for whom fewer can reach costs more than it saves
+#: Force [N] of a vehicle below which it is left out, if there are many vehicles.
+LEAST_FORCE = 1e-9
+_MANY = 5  # number of vehicles from which on small forces are left out
 
-_ABSURD = 1e15  # cells: no vehicle is so large
-_LEAST_EXPONENT = -700.0  # exp underflows below; nothing is felt long before
+_ABSURD = 1e15  # extent [cells] that only a vehicle with values that are not finite has
+_LEAST_EXPONENT = -700.0  # least exponent without underflow
 
 
 class Contour(NamedTuple):
     """A contour in the vehicle's frame, X along the direction in which the nose points."""
 
-    X_r: float  # [m] the rear face
-    X_s: float  # [m] the shoulders
-    tip: float  # [m] the tip of the nose
-    h: float  # [m] half the width
-    edge: float  # [m] length of a slanted edge, from shoulder to tip
-    N_x: float  # its outward normal, on the left
+    X_r: float  # X [m] of the rear face
+    X_s: float  # X [m] of the shoulders
+    tip: float  # X [m] of the tip of the nose
+    h: float  # half width [m]
+    edge: float  # length [m] of a slanted edge, from shoulder to tip
+    N_x: float  # outward normal of the left slanted edge
     N_y: float
 
 
 @inlined
 def _contour(vehicle: NDArray[np.float64], c: Any) -> Contour:
-    """The contour of a vehicle; below the static speed its nose is the front face."""
+    """Return the contour of a vehicle. Below the static speed it is a rectangle."""
     u, front, rear = vehicle[SPEED], vehicle[FRONT], vehicle[REAR]
     if u < 0.0:
         front, rear = rear, front
@@ -55,10 +55,16 @@ def _contour(vehicle: NDArray[np.float64], c: Any) -> Contour:
 
 @inlined
 def _influence(X: float, lateral: float, q: Contour) -> tuple[float, float, float]:
-    """The signed distance from the influence point and the outward unit vector, seen at (X, |Y|).
+    """Return the signed distance [m] to the contour's influence point, and the outward unit vector.
 
-    Where the influence point is a corner or lies on the rear face, the unit vector points from it;
-    within an edge it is the edge's normal, which also serves inside and for a distance of zero.
+    If the influence point is a corner or on the rear face, the unit vector points from it to the
+    person. Otherwise it is the normal of the edge, which is also used inside of the contour and at
+    a distance of zero.
+
+    Args:
+        X: Coordinate [m] of the person along the nose.
+        lateral: Absolute lateral coordinate [m] of the person.
+        q: Contour of the vehicle.
     """
     behind = q.X_r > X
     beyond = q.X_s <= X
@@ -81,25 +87,25 @@ def _influence(X: float, lateral: float, q: Contour) -> tuple[float, float, floa
 
 
 class _Vehicle(NamedTuple):
-    """A vehicle at an instant, as it acts on people: scalars, so that no loop reads them again."""
+    """A vehicle at an instant, as its force needs it."""
 
-    place: tuple[float, float]  # [m] the reference point
-    heading: tuple[float, float]  # cosine and sine
-    nose: tuple[float, float]  # the direction of the nose: in reverse it points backwards
-    velocity: tuple[float, float]  # [m/s] that the angle of its force takes it to have
+    place: tuple[float, float]  # reference point [m]
+    heading: tuple[float, float]  # cosine and sine of the heading
+    nose: tuple[float, float]  # direction of the nose, which points backwards in reverse
+    velocity: tuple[float, float]  # velocity [m/s] for the angle of its force
     contour: Contour
 
 
 class Traffic(NamedTuple):
     """The vehicles among the people in one step."""
 
-    vehicles: NDArray[np.float64]  # (m, 7)
-    travelled: float  # [s] for which they have driven straight on since
-    relied_on: bool  # whether anybody has priority; else the row of it need not be filled
+    vehicles: NDArray[np.float64]  # vehicles (m, 7)
+    travelled: float  # time [s] for which they have driven straight on since
+    relied_on: bool  # whether anybody has priority; if not, its row is not filled
 
 
 class _Law(NamedTuple):
-    """fexp(s - R; A, b) As(phi_v; l_v): its numbers."""
+    """The constants of fexp(s - R; A, b) As(phi_v; l_v)."""
 
     R: float
     A: float
@@ -113,7 +119,10 @@ class _Law(NamedTuple):
 def _force(
     x: float, y: float, vx: float, vy: float, v: _Vehicle, law: _Law
 ) -> tuple[float, float, float, float]:
-    """f_v [N] on one person, the signed distance to the contour, and X along the nose [m]."""
+    """Return f_v [N] on one person, the signed distance [m] to the contour, and X [m].
+
+    X is the coordinate of the person along the nose.
+    """
     (x_v, y_v), (cos, sin), (nose_x, nose_y), (u_x, u_y) = v.place, v.heading, v.nose, v.velocity
     dx, dy = x - x_v, y - y_v
     across = fma(cos, dy, -(sin * dx))
@@ -124,7 +133,7 @@ def _force(
     w_x, w_y = vx - u_x, vy - u_y
     lengths = math.sqrt(fma(dx, dx, dy * dy) * fma(w_x, w_x, w_y * w_y))
     cosine = -fma(dx, w_x, dy * w_y) / lengths
-    cosine = min(1.0, max(-1.0, cosine)) if lengths > 0.0 else 1.0  # at rest: seen
+    cosine = min(1.0, max(-1.0, cosine)) if lengths > 0.0 else 1.0  # 1 without relative motion
     anisotropy = 1.0 if s < law.R else fma(law.b_v, cosine, law.a_v)
     # fexp(s - R; A, b) As(phi_v; l_v) e
     exponent = max(min(-law.b * (s - law.R), law.cap), _LEAST_EXPONENT)
@@ -143,16 +152,16 @@ def add_vehicle(
     relied_on: bool,
     c: Any,
 ) -> None:
-    """Add one vehicle's force f_v to the rows start ... stop - 1, lower their signed distance.
+    """Add one vehicle's force f_v to the rows start ... stop - 1, and update their distances.
 
     Args:
-        rows: the workspace.
-        start: first row.
-        stop: last row plus one, dummies included.
-        vehicle: (7,) its columns.
-        travelled: [s] for which the vehicle has driven straight on since.
-        relied_on: whether anybody has priority; else the row of it need not be filled.
-        c: the constants.
+        rows: Rows of the workspace, changed.
+        start: First row.
+        stop: Last row plus one, dummies included.
+        vehicle: Columns (7,) of the vehicle.
+        travelled: Time [s] for which the vehicle has driven straight on since.
+        relied_on: Whether anybody has priority. If not, the row of priorities is not read.
+        c: Constants of the model.
     """
     cos, sin = cosine_sine(vehicle[HEADING])
     u = vehicle[SPEED]
@@ -160,11 +169,10 @@ def add_vehicle(
     x_v, y_v = vehicle[X] + travelled * u_x, vehicle[Y] + travelled * u_y
     if abs(u) < c.u_angle:
         u_x, u_y = 0.0, 0.0
-    # In reverse the contour is mirrored: its nose points backwards.
+    # The contour is mirrored in reverse, with its nose backwards.
     nose = (-cos, -sin) if u < 0.0 else (cos, sin)
     v = _Vehicle((x_v, y_v), (cos, sin), nose, (u_x, u_y), _contour(vehicle, c))
     law = _Law(c.R, c.A, c.b, c.a_v, c.b_v, c.cap)
-    # Sliced and counted from 0: of an index that could be negative no vector loop is made.
     x, y, vx, vy = (
         rows[PX, start:stop],
         rows[PY, start:stop],
@@ -191,7 +199,7 @@ def add_vehicle(
 
 @inlined
 def add_vehicles(rows: NDArray[np.float64], n: int, traffic: Traffic, c: Any) -> None:
-    """Add the forces of all vehicles to the first n rows, padded to whole blocks."""
+    """Add the forces of all vehicles to the first n rows, up to whole blocks."""
     vehicles, travelled, relied_on = traffic
     padded = (n + BLOCK - 1) // BLOCK * BLOCK
     for v in range(vehicles.shape[0]):
@@ -207,10 +215,11 @@ def add_near_vehicles(
     traffic: Traffic,
     constants: NDArray[Any],
 ) -> None:
-    """Add the forces of vehicles to rows sorted by the cells of ``grid``, where a vehicle reaches.
+    """Add the forces of vehicles to the rows within their reach, sorted by the cells of ``grid``.
 
-    Whom it does not reach is left out strip by strip, by a box round its contour; with few
-    vehicles nobody is, so that a crowd's size does not show in the last bits of their force.
+    People out of a vehicle's reach are left out strip by strip, by a box around its contour. With
+    few vehicles nobody is left out, so that the size of a crowd does not change the last bits of
+    the forces.
     """
     if traffic.vehicles.shape[0] < _MANY:
         add_vehicles(rows, n, traffic, constants[0])
@@ -226,7 +235,7 @@ def add_vehicles_to_strips(
     traffic: Traffic,
     constants: NDArray[Any],
 ) -> None:
-    """Add them as ``add_near_vehicles`` does, to some strips only."""
+    """Add the forces of vehicles as ``add_near_vehicles`` does, to some strips only."""
     vehicles, travelled, relied_on = traffic
     if vehicles.shape[0] < _MANY:
         columns = strips.grid.columns
@@ -245,7 +254,7 @@ def _add_to_strips(
     traffic: Traffic,
     constants: NDArray[Any],
 ) -> None:
-    """Add the forces of vehicles to those rows of some strips that they reach."""
+    """Add the forces of vehicles to the rows of some strips that are within their reach."""
     c = constants[0]
     grid, begin_strip, end_strip = strips
     vehicles, travelled, relied_on = traffic
@@ -263,7 +272,7 @@ def _add_to_strips(
         low, high = (y - half_y) * grid.per_y, (y + half_y) * grid.per_y
         if right < 0.0 or left >= grid.columns or high < 0.0 or low >= grid.strips:
             continue
-        if not right - left + high - low < _ABSURD:  # a vehicle that is not finite spoils all
+        if not right - left + high - low < _ABSURD:  # a vehicle that is not finite reaches all
             all_from, all_to = first[begin_strip * grid.columns], first[end_strip * grid.columns]
             add_vehicle(rows, all_from, all_to, vehicles[v], travelled, relied_on, c)
             continue

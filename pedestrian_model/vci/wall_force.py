@@ -10,7 +10,7 @@ from pedestrian_model._mathematics import exponential
 from pedestrian_model.vci.buffers import PX, PY, WS, WX, WY
 from pedestrian_model.walls import DEPTH, REACH, find_walls
 
-_LEAST_EXPONENT = -700.0  # exp underflows below
+_LEAST_EXPONENT = -700.0  # least exponent without underflow
 
 
 @inlined
@@ -25,9 +25,9 @@ def add_walls(
 ) -> None:
     """Add the force f_w of the nearest wall to ``row_x`` and ``row_y`` of the first n pedestrians.
 
-    f_w = (A_w exp(-b_w (s - R)) + k_col max(0, R - s)) n, the form of Helbing, Farkas & Vicsek
-    (Nature 2000) without friction; the exponent is capped as that of f_v. Behind the wall, down
-    to ``DEPTH``, the second term alone pushes back.
+    f_w = (A_w exp(-b_w (s - R)) + k_col max(0, R - s)) n, as by Helbing, Farkas & Vicsek (Nature
+    2000), without friction. The exponent is capped as that of f_v. Behind the wall, down to
+    ``DEPTH``, only the second term acts.
     """
     if walls.shape[0] == 1:
         return

@@ -1,1 +1,1 @@
-"""The forces between pedestrians: of one pair, of all pairs of a small crowd, by a cell list."""
+"""The forces between pedestrians: one pair, all pairs of a small crowd, and by a cell list."""

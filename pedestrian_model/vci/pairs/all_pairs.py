@@ -1,10 +1,8 @@
-"""Everyone against everyone, for a small crowd: the ring.
+"""The forces of all pairs of a small crowd.
 
-The crowd stands in a ring; at shift m each pedestrian meets the m-th next, for m = 1 ... n/2, so
-that each pair is met once. For one m the loop over the pedestrians is contiguous on both sides and
-adds to two different rows: long vector loops without any reduction. It reads and writes one buffer
-at fixed places only: else the processor would have to make sure before each loop, for a small crowd
-for as long as the loop takes, that none of the places overlap.
+The pedestrians are numbered in a ring. At shift m each pedestrian is paired with the m-th next, for
+m = 1 ... n/2, so that each pair occurs once. For one m the loop over the pedestrians is contiguous
+for both of a pair, and adds to two different rows of a buffer with fixed offsets.
 """
 
 import math
@@ -46,7 +44,7 @@ from pedestrian_model.vci.pairs.pair_force import (
 
 @inlined
 def _lay_out(rows: NDArray[np.float64], n: int, buffer: NDArray[np.float64]) -> None:
-    """Copy the rows into the buffer twice, one round after the other, and clear the forces."""
+    """Copy the rows into the buffer twice, one copy after the other, and clear the forces."""
     for row in range(6):
         at = row * STRIDE
         for k in range(n):
@@ -63,10 +61,10 @@ def _lay_out(rows: NDArray[np.float64], n: int, buffer: NDArray[np.float64]) -> 
 
 @inlined
 def _shift(buffer: NDArray[np.float64], m: int, count: int, c: PairConstants) -> int:
-    """The forces between the first ``count`` of the ring and their m-th next.
+    """Add the forces between the first ``count`` pedestrians of the ring and their m-th next.
 
     Returns:
-        How many of these pairs coincide and were left out.
+        Number of pairs that coincide and were left out.
     """
     padded = (count + BLOCK - 1) // BLOCK * BLOCK
     for row in range(0, 6 * STRIDE, STRIDE):
@@ -120,7 +118,7 @@ def add_all_pairs(
     _lay_out(rows, n, buffer)
     coincident = 0
     for m in range(1, n // 2 + 1):
-        # halfway round, the second half would meet the first half again
+        # At m = n/2 the second half of the ring would repeat the pairs of the first half.
         coincident += _shift(buffer, m, n if 2 * m < n else n // 2, c)
     for k in range(n):
         rows[FX, k] = buffer[ON_X + k] + (buffer[SUM_X + k] + buffer[SUM_X + n + k])

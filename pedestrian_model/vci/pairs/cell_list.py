@@ -1,11 +1,11 @@
-"""A cell list, for a large crowd: nobody looks further than the interaction radius.
+"""The forces of the pairs of a large crowd within the interaction radius, by a cell list.
 
-The plane is cut into strips along x, each strip into columns, and the crowd is sorted by strip and
-column, so that the neighbours in one strip are contiguous. The pedestrians of a *tile* (some
-columns of a strip) share one list of candidates: the columns to the right in their own strip and
-those within reach in the strips above, so that each pair is met once. The candidates are copied
-into the buffer, met by each pedestrian of the tile in a vector loop, and the forces on them
-copied back.
+The plane is divided into strips along x, and each strip into columns. The crowd is sorted by strip
+and column, so that the neighbours in one strip are contiguous. The pedestrians of a *tile* (some
+columns of a strip) share one list of candidates: those to the right in their own strip, and those
+within reach in the strips above. Thus each pair occurs once. The candidates are copied into the
+buffer. Their forces with each pedestrian of the tile are computed in one loop, and the forces on
+the candidates are copied back.
 """
 
 import math
@@ -47,36 +47,36 @@ from pedestrian_model.vci.pairs.pair_force import (
 )
 
 # Sizes relative to the interaction radius, found by benchmarks/speed/bench_crowd.py.
-_STRIPS = 4.0  # strips per interaction radius
-_COLUMNS = 16.0  # columns per interaction radius
-_TILE = 6  # columns per tile
-_ROOM = STRIDE - 2 * BLOCK  # candidates the buffer holds
+_STRIPS = 4.0  # number of strips per interaction radius
+_COLUMNS = 16.0  # number of columns per interaction radius
+_TILE = 6  # number of columns per tile
+_ROOM = STRIDE - 2 * BLOCK  # number of candidates that the buffer holds
 
 
 class Grid(NamedTuple):
-    """The place and size of the cells."""
+    """The position and size of the cells."""
 
-    x_0: float  # [m] the lower left corner
+    x_0: float  # coordinates [m] of the lower left corner
     y_0: float
-    per_x: float  # [1/m] columns
-    per_y: float  # [1/m] strips
-    columns: int
-    strips: int
-    reach: float  # [m] the interaction radius
-    slack: float  # [m] so that rounding loses nobody
+    per_x: float  # columns per metre [1/m]
+    per_y: float  # strips per metre [1/m]
+    columns: int  # number of columns
+    strips: int  # number of strips
+    reach: float  # interaction radius [m]
+    slack: float  # tolerance [m] against rounding errors
 
 
 class Strips(NamedTuple):
-    """Some strips of a grid, one above the other."""
+    """Some adjacent strips of a grid."""
 
     grid: Grid
-    begin: int  # the first strip
-    end: int  # the last one plus one
+    begin: int  # first strip
+    end: int  # last strip plus one
 
 
 @inlined
 def _lay_grid(position: NDArray[np.float64], reach: float, most: int) -> Grid:
-    """The grid over a crowd, coarser than planned where it would have more than ``most`` cells."""
+    """Return the grid over a crowd, with larger cells if there would be more than ``most``."""
     x_0, x_1, y_0, y_1 = position[0, 0], position[0, 0], position[0, 1], position[0, 1]
     for i in range(position.shape[0]):
         x_0, x_1 = min(x_0, position[i, 0]), max(x_1, position[i, 0])
@@ -93,9 +93,10 @@ def _lay_grid(position: NDArray[np.float64], reach: float, most: int) -> Grid:
 
 @inlined
 def _sort(index: NDArray[np.int64], position: NDArray[np.float64], grid: Grid) -> None:
-    """Counting sort: index[0] the order, index[2] the first of each cell. Stable: deterministic.
+    """Sort the crowd into cells by a counting sort, which is stable.
 
-    A cell's place in index[2] lags one behind, so that it is right when everybody is sorted in.
+    index[0] becomes the order, and index[2] the first pedestrian of each cell. During the sort the
+    entries of index[2] are shifted by one, so that they are correct at its end.
     """
     order, cell, first = index[0], index[1], index[2]
     cells = grid.columns * grid.strips
@@ -115,7 +116,7 @@ def _sort(index: NDArray[np.int64], position: NDArray[np.float64], grid: Grid) -
 
 @inlined
 def _sum(buffer: NDArray[np.float64], at: int, blocks: int) -> float:
-    """The sum of whole blocks of the buffer in one fixed order: by lanes, then pairwise."""
+    """Return the sum of whole blocks of the buffer in a fixed order: by columns, then pairwise."""
     for k in range(1, blocks):
         add_block(buffer, at, buffer, at + k * BLOCK)
     even = (buffer[at] + buffer[at + 4]) + (buffer[at + 2] + buffer[at + 6])
@@ -132,10 +133,10 @@ def _meet(
     stop: int,
     c: PairConstants,
 ) -> int:
-    """The forces between row i and the candidates start ... stop - 1 of the buffer.
+    """Add the forces between row i and the candidates start ... stop - 1 of the buffer.
 
     Returns:
-        How many of these pairs coincide and were left out.
+        Number of pairs that coincide and were left out.
     """
     x, y, vx, vy = rows[PX, i], rows[PY, i], rows[VX, i], rows[VY, i]
     ux, uy = rows[UX, i], rows[UY, i]
@@ -169,7 +170,7 @@ def _meet(
 
 @inlined
 def _bounds(rows: NDArray[np.float64], begin: int, end: int) -> tuple[float, float, float, float]:
-    """The box round the rows begin ... end - 1: x from, x to, y from, y to."""
+    """Return the box around the rows begin ... end - 1: least x, largest x, least y, largest y."""
     x_0, x_1, y_0, y_1 = rows[PX, begin], rows[PX, begin], rows[PY, begin], rows[PY, begin]
     for i in range(begin + 1, end):
         x_0, x_1 = min(x_0, rows[PX, i]), max(x_1, rows[PX, i])
@@ -181,9 +182,9 @@ def _bounds(rows: NDArray[np.float64], begin: int, end: int) -> tuple[float, flo
 def _borrow(
     rows: NDArray[np.float64], buffer: NDArray[np.float64], at: int, start: int, count: int
 ) -> None:
-    """Copy ``count`` rows from ``start`` on to place ``at`` of the buffer, in whole blocks.
+    """Copy ``count`` rows from ``start`` on to index ``at`` of the buffer, in whole blocks.
 
-    What is copied too much is overwritten by the next to be borrowed, or left out by ``_meet``.
+    Excess rows are overwritten by the next copy, or left out by ``_meet``.
     """
     for k in range(0, count, BLOCK):
         copy_block(buffer, BX + at + k, rows[PX], start + k)
@@ -198,7 +199,7 @@ def _borrow(
 def _give_back(
     rows: NDArray[np.float64], buffer: NDArray[np.float64], at: int, start: int, count: int
 ) -> None:
-    """Add the forces at place ``at`` of the buffer to ``count`` rows from ``start`` on."""
+    """Add the forces at index ``at`` of the buffer to ``count`` rows from ``start`` on."""
     whole = count // BLOCK * BLOCK
     for k in range(0, whole, BLOCK):
         add_block(rows[FX], start + k, buffer, BACK_X + at + k)
@@ -218,19 +219,19 @@ def _meet_candidates(
     buffer: NDArray[np.float64],
     c: PairConstants,
 ) -> int:
-    """The forces between the rows begin ... end - 1 and the later ones in the ``segments``.
+    """Add the forces between the rows begin ... end - 1 and later rows in the ``segments``.
 
     Args:
-        rows: the workspace, sorted by cell.
-        begin: first row of the tile, and of the first segment.
-        end: last row of the tile, plus one.
-        segments: (4, more than count) first row, last row plus one, and two rows of scratch.
-        count: how many segments.
-        buffer: what does not fit into it is met in several goes.
-        c: the constants.
+        rows: Rows of the workspace, sorted by cell.
+        begin: First row of the tile, and of the first segment.
+        end: Last row of the tile, plus one.
+        segments: First row, last row plus one, and scratch, (4, more than count).
+        count: Number of segments.
+        buffer: Buffer of the candidates. More candidates than it holds are handled in parts.
+        c: Constants of the pair loops.
 
     Returns:
-        How many pairs coincide and were left out.
+        Number of pairs that coincide and were left out.
     """
     coincident, segment = 0, 0
     while segment < count:
@@ -247,7 +248,7 @@ def _meet_candidates(
             buffer[BACK_X + k] = 0.0
             buffer[BACK_Y + k] = 0.0
         for i in range(begin, end):
-            start = max(0, i + 1 - first)  # in the own strip only those after i
+            start = max(0, i + 1 - first)  # in the own strip only rows after i
             if start < used:
                 coincident += _meet(rows, i, buffer, start, used, c)
         at = 0
@@ -267,10 +268,10 @@ def _find_segments(
     strip: int,
     grid: Grid,
 ) -> int:
-    """The rows within reach of the box round the rows of a tile, strip by strip upwards.
+    """Find the rows within reach of the box around a tile's rows, strip by strip upwards.
 
     Returns:
-        How many segments they make.
+        Number of segments that they form.
     """
     x_low, x_high, y_high = rows[PX, begin], rows[PX, begin], rows[PY, begin]
     for i in range(begin + 1, end):
@@ -302,18 +303,16 @@ def add_near_pairs(
     velocity: NDArray[np.float64],
     constants: NDArray[Any],
 ) -> Grid:
-    """Fill the rows sorted by cell and add the forces of the pairs within reach.
-
-    A function of its own in machine code: inlined into the step, its loops lose their registers.
+    """Fill the rows sorted by cell, and add the forces of the pairs within reach.
 
     Returns:
-        The grid; ``index[2]`` holds the first row of each of its cells.
+        Grid of the cells; ``index[2]`` holds the first row of each cell.
     """
     c = pair_constants(constants[0])
     grid = _lay_grid(position, constants[0].r_max, index.shape[1] - 2)
     _sort(index, position, grid)
     order, first = index[0], index[2]
-    segments = index[1, :64].reshape(4, 16)  # free now: the cell of each was for the sort only
+    segments = index[1, :64].reshape(4, 16)  # memory that only the sort needed
     fill(rows, order, position, velocity)
     for strip in range(grid.strips):
         for left in range(0, grid.columns, _TILE):

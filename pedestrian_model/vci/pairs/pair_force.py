@@ -1,9 +1,9 @@
-"""Forces between two pedestrians: repulsion, collision and navigation, evaluated once per pair.
+"""The forces between two pedestrians: repulsion, collision and navigation.
 
-Distance, direction and the navigational force are shared by the two of a pair; only the
-anisotropy of the repulsion differs. ``pair`` has no branch, no call and no libm function, so that
-the loops round it (``all_pairs.py`` for a small crowd, ``cell_list.py`` for a large one) become
-vector instructions under strict IEEE arithmetic.
+Each pair is evaluated once. Distance, direction and the navigational force are the same for both.
+Only the anisotropy of the repulsion differs. ``pair`` has no branch, no call and no libm function,
+so that the loops around it (``all_pairs.py`` for a small crowd, ``cell_list.py`` for a large one)
+can be vectorised with strict IEEE arithmetic.
 """
 
 import math
@@ -16,8 +16,8 @@ from pedestrian_model._jit import fma, inlined
 from pedestrian_model._mathematics import angle_polynomial, cosine_sine
 from pedestrian_model.vci.buffers import FX, FY, PX, PY, UX, UY, VX, VY
 
-COINCIDENT_2 = 1e-6**2  # [m^2] closer centres have no direction of their own (ours)
-_STANDSTILL_2 = 1e-3**2  # [m^2/s^2] slower relative motion is not navigated round (ours)
+COINCIDENT_2 = 1e-6**2  # squared distance [m^2] below which centres have no direction (ours)
+_STANDSTILL_2 = 1e-3**2  # squared relative speed [m^2/s^2] below which f_n is 0 (ours)
 
 
 class Repulsion(NamedTuple):
@@ -26,8 +26,8 @@ class Repulsion(NamedTuple):
     flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2)).
     """
 
-    d: float  # [m] d0
-    s_2: float  # [m^2] s^2
+    d: float  # d0 [m]
+    s_2: float  # s^2 [m^2]
     a: float  # As(phi; l) M/(2 d0) = a + b cos phi
     b: float
 
@@ -35,16 +35,16 @@ class Repulsion(NamedTuple):
 class Navigation(NamedTuple):
     """The navigational force flm(d; d0, M, s) Ae(phi; l)."""
 
-    d: float  # [m] d0
-    s_2: float  # [m^2] s^2
+    d: float  # d0 [m]
+    s_2: float  # s^2 [m^2]
     decay: tuple[float, float, float, float]  # M/(2 d0) Ae at pi/8, 3 pi/8, 5 pi/8, 7 pi/8
     cos_pi_8: float
     sin_pi_8: float
-    g: tuple[float, ...]  # the polynomial for Ae around these angles
+    g: tuple[float, ...]  # coefficients of the polynomial for Ae around these angles
 
 
 class PairConstants(NamedTuple):
-    """The constants of the pair loops, held in registers: loads could alias the loops' stores."""
+    """The constants of the pair loops."""
 
     two_R: float  # noqa: N815
     r_max_2: float
@@ -55,7 +55,7 @@ class PairConstants(NamedTuple):
 
 @inlined
 def pair_constants(c: Any) -> PairConstants:
-    """The constants of the pair loops out of the record of all constants."""
+    """Return the constants of the pair loops from the record of all constants."""
     g = c.g
     # fmt: off
     polynomial = (
@@ -83,20 +83,20 @@ def pair(
     counts: bool,
     c: PairConstants,
 ) -> tuple[float, float, float, float]:
-    """The forces of a pair (i, j) on each other: x, y on i, then x, y on j [N].
+    """Return the forces [N] of a pair (i, j) on each other: x, y on i, then x, y on j.
 
     Args:
         offset: Vector [m] from i to j; its direction is n.
-        distances: Length of that vector, and distance from skin to skin [m].
+        distances: Length of that vector, and distance between the bodies [m].
         relative_velocity: v_i - v_j [m/s].
         direction_i: Direction of v_i; zero if i stands.
         direction_j: Direction of v_j; zero if j stands.
-        counts: False makes all forces zero.
+        counts: Whether the pair counts. If not, all forces are zero.
         c: Constants of the pair loops.
 
-    The angle phi of Ae = exp(-l phi) is never formed: with the cross and dot products of w and n,
-    phi is folded into [0, pi/4] and turned by pi/8; exp(-l atan t) is then a polynomial in
-    |t| <= tan(pi/8), times a constant of the quarter.
+    The angle phi of Ae = exp(-l phi) is not computed. With the cross and dot products of w and n,
+    phi is folded into [0, pi/4] and turned by pi/8. Then exp(-l atan t) is a polynomial in
+    |t| <= tan(pi/8), times a constant that depends on the quarter of phi.
     """
     (dx, dy), (length, d), (wx, wy) = offset, distances, relative_velocity
     (ux_i, uy_i), (ux_j, uy_j) = direction_i, direction_j
@@ -117,7 +117,7 @@ def pair(
     below = fma(a, cos_pi_8, -(b * sin_pi_8))
     above = fma(b, cos_pi_8, a * sin_pi_8)
     above = above if moving else 1.0
-    inverse = 1.0 / (length * above)  # one division serves both quotients
+    inverse = 1.0 / (length * above)  # used for both quotients
     t = below * (inverse * length)
     t = -t if steep != obtuse else t
     inverse = inverse * above if counts else 0.0
@@ -125,7 +125,7 @@ def pair(
     decay_steep = decay_2 if obtuse else decay_1
     decay_flat = decay_3 if obtuse else decay_0
     decay = decay_steep if steep else decay_flat
-    decay = -decay if across < 0.0 else decay  # sgn(0) = +1: keep right
+    decay = -decay if across < 0.0 else decay  # sgn(0) = +1, to keep right
     f_n = f_n * (decay * angle_polynomial(t, navigation.g))
     f_n = f_n if moving & counts else 0.0
     n_x, n_y = dx * inverse, dy * inverse
@@ -150,7 +150,7 @@ def add_coincident(
     stop: int,
     c: PairConstants,
 ) -> None:
-    """The rare pairs of row i with later rows whose centres coincide: a direction by indices."""
+    """Add the forces of row i and later rows with the same centre, in a direction by indices."""
     for j in range(i + 1, stop):
         dx, dy = rows[PX, j] - rows[PX, i], rows[PY, j] - rows[PY, i]
         r_2 = fma(dx, dx, dy * dy)
