@@ -227,7 +227,7 @@ def _solve_without_solution() -> None:
 def _branch_off() -> None:
     """Let a manoeuvre brake later, as if it were uncertain whether a person yields."""
     distance, speed, acceleration = np.zeros((3, 4))
-    branch_off(distance, speed, acceleration, 1, -1.0, 4.0, 0.05)
+    branch_off((distance, speed, acceleration), 1, -1.0, 4.0, 0.05)
 
 
 def _come_and_go() -> None:

@@ -118,8 +118,8 @@ class Judge:
         found = []
         for i, row in enumerate(rows.tolist()):
             kerb = float(ways[i, 0]), float(ways[i, 1]), float(to[i, 2]) - 0.05
-            (x, y), (w_x, w_y) = there[i].tolist(), walks[i].tolist()
-            if is_threat(x, y, w_x, w_y, stop, self._half_width, self._dt, alarm, kerb):
+            place, walk = tuple(there[i].tolist()), tuple(walks[i].tolist())
+            if is_threat(place, walk, stop, self._half_width, self._dt, alarm, kerb):
                 found.append((row, bool(to[i, 2] > 0.0)))
         return found
 

@@ -127,9 +127,7 @@ class Mpc:
         speeds = self._solver.solution.copy()
         forces = np.empty(len(speeds))
         residual = check_plan(
-            position,
-            speed,
-            previous_force,
+            (position, speed, previous_force),
             obstacle_positions,
             speeds,
             forces,
@@ -149,9 +147,7 @@ def _no_plan(status: str, iterations: int) -> MpcSolution:
 
 @kernel
 def check_plan(
-    position: float,
-    speed: float,
-    previous_force: float,
+    state: tuple[float, float, float],
     obstacle_positions: Array,
     speeds: Array,
     forces: Array,
@@ -163,6 +159,7 @@ def check_plan(
     Returns:
         Largest violation of c1 to c6, divided by its tolerance; inf if the plan is not finite.
     """
+    position, speed, previous_force = state
     dt, decay, per_force, safe_distance = limits[0], limits[1], limits[2], limits[3]
     v_min, v_max, u_max, du_max = limits[4], limits[5], limits[6], limits[7]
     of_position, of_speed, of_force = tolerances[0], tolerances[1], tolerances[2]

@@ -6,7 +6,7 @@ from controller.planning.parameters import (
     PlannerParameters,
     StyleName,
 )
-from controller.planning.planner import Plan, Planner, PlanningController
+from controller.planning.planner import Plan, Planner, PlanningController, Road
 
 __all__ = [
     "STYLES",
@@ -15,5 +15,6 @@ __all__ = [
     "Planner",
     "PlannerParameters",
     "PlanningController",
+    "Road",
     "StyleName",
 ]

@@ -47,12 +47,11 @@ def cost(
     (distance, speeds, accelerations), (gap, conflicts, calm, crossers) = manoeuvre, prospect
     own = own_cost(speeds, accelerations, wanted, time_step, weights)
     own += later_cost(crossers, distance[-1], speeds[-1], wanted, allowed, time_step, weights)
-    others, missing = 0.0, 0.0
+    so_far = 0.0, 0.0
     for i in range(len(gap)):
-        beyond = distance[i + 1] - allowed[i]
-        others, missing = add_cost_of_others(
-            others, missing, speeds[i + 1], gap[i], conflicts[i], calm[i], beyond, weights
-        )
+        beyond, people = distance[i + 1] - allowed[i], (gap[i], conflicts[i], calm[i])
+        so_far = add_cost_of_others(so_far, speeds[i + 1], people, beyond, weights)
+    others, missing = so_far
     return own + time_step * others, time_step * others, missing
 
 
@@ -137,31 +136,27 @@ def cost_of_blocking(
 
 @inner
 def add_cost_of_others(
-    others: float,
-    missing: float,
+    so_far: tuple[float, float],
     speed: float,
-    gap: float,
-    conflicts: float,
-    calm: float,
+    people: tuple[float, float, float],
     beyond: float,
     weights: tuple[Any, ...],
 ) -> tuple[float, float]:
     """Add the cost of people and vehicles at one step to that of the steps before.
 
     Args:
-        others: Sum of the cost rate over the steps before.
-        missing: Largest missing stopping distance [m] of the steps before.
+        so_far: Sum of the cost rate over the steps before, and their largest missing stopping
+            distance [m].
         speed: Speed of the manoeuvre at this step [m/s].
-        gap: Gap to the closest person in front [m].
-        conflicts: Number of persons in conflict.
-        calm: Threat-free speed [m/s].
+        people: Gap [m] to the closest person in front, number of persons in conflict, and
+            threat-free speed [m/s].
         beyond: Distance [m] beyond what may be driven; negative if less is driven.
         weights: Fields of :class:`Weights`.
 
     Returns:
         Sum and largest missing stopping distance, both with this step.
     """
-    w = Weights(*weights)
+    (others, missing), (gap, conflicts, calm), w = so_far, people, Weights(*weights)
     share = speed / w.reference_speed
     counted = min(conflicts, 1.0) + w.growth * max(conflicts - 1.0, 0.0)
     others += w.conflict * counted * np.sqrt(share) * max(1.0, speed / _SHARED) ** 3

@@ -6,6 +6,7 @@ import numpy as np
 
 from controller._jit import Array, inner, kernel
 from controller.planning.costs import add_cost_of_others, corridor, stopping_need
+from controller.planning.motions import Motion
 from controller.planning.parameters import Weights
 from controller.planning.smoothing import fill, set_target, unfold
 from controller.qp.exact_solver import solve_verified
@@ -14,50 +15,45 @@ UNSOLVED = -1  # result if the exact methods found no solution, so that OSQP has
 _WORSE = 1e-6  # distance [m] by which a smoothed plan may come closer than its manoeuvre
 _APPROACH = 0.8  # share of the gentle braking with which threat-free speeds are approached
 
-Motion = tuple[Array, Array, Array]  # distance, speed, acceleration
+Chosen = tuple[Motion, tuple[Array, Array, Array], float]
+"""A manoeuvre, arrays of its predicted outcome, and the stopping distance [m] that it lacks."""
 
 
 @kernel
 def follow(
     state: tuple[float, float, float, float],
-    best: Motion,
-    prospect: tuple[Array, Array, Array],
-    missing: float,
+    chosen: Chosen,
     bounds: tuple[Array, Array, Array],
     problem: tuple[Any, ...],
     solver: tuple[Array, Array],
     plan: Motion,
-    calmly: tuple[int, float],
-    weights: tuple[Any, ...],
+    rules: tuple[int, float, tuple[Any, ...]],
 ) -> tuple[int, bool, bool]:
     """Set the QP of the smooth plan, solve it exactly, and fill the plan.
 
     Args:
         state: Speed [m/s], acceleration before [m/s^2], force before [N] and wanted speed [m/s].
-        best: Chosen manoeuvre.
-        prospect: Arrays of its predicted outcome. The threat-free speeds are replaced by the speed
-            limits of the plan.
-        missing: Stopping distance [m] that the manoeuvre lacks.
+        chosen: Chosen manoeuvre, its predicted outcome and what it lacks. The threat-free speeds
+            of the outcome are replaced by the speed limits of the plan.
         bounds: Distances [m] that may be driven, speed limits [m/s] of the lanes (inf without),
             and the corridor [m], which is filled; (N,) each.
         problem: Arrays of `SmoothingProblem`: nodes, intervals, limits, rows, lower, upper,
             target, speeds_of, gradients.
         solver: Multipliers and solution of the solver.
         plan: Plan, filled unless the QP is unsolved.
-        calmly: Number of steps in which the plan keeps threat-free speeds, and the largest
-            deceleration [m/s^2] that it spends on this.
-        weights: Weights of the cost.
+        rules: Number of steps in which the plan keeps threat-free speeds, the largest
+            deceleration [m/s^2] that it spends on this, and the weights of the cost.
 
     Returns:
         Number of corrections of the active set, or ``UNSOLVED``; whether the manoeuvre itself is
         the plan; whether a stop stays possible if the last speed is kept beyond the plan.
     """
     speed, before, force, fastest = state
-    gap, _, calm = prospect
+    best, (gap, _, calm), _ = chosen
+    soon, gentle, weights = rules
     allowed, lane_speeds, room = bounds
     nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
     corridor(best[0], best[1], gap, allowed, weights, room)
-    soon, gentle = calmly
     if gentle < np.inf:
         approach_calmly(best[0], _APPROACH * gentle, calm)
     for i in range(len(calm)):
@@ -67,13 +63,11 @@ def follow(
     for i in range(len(nodes)):
         wanted[i] = best[1][nodes[i]]
     set_target(wanted, speed, before, gradients, target)
-    fill(speed, force, fastest, room, calm, nodes, intervals, limits, lower, upper)
+    fill((speed, force, fastest), room, calm, nodes, intervals, limits, (lower, upper))
     corrections = solve_verified(rows, lower, upper, target, *solver)
     if corrections < 0:
         return UNSOLVED, False, False
-    itself, holds = unfold_and_judge(
-        speed, best, prospect, missing, allowed, problem, solver[1], plan, weights
-    )
+    itself, holds = unfold_and_judge(speed, chosen, allowed, problem, solver[1], plan, weights)
     return corrections, itself, holds
 
 
@@ -97,9 +91,7 @@ def approach_calmly(distance: Array, gentle: float, calm: Array) -> None:
 @kernel
 def unfold_and_judge(
     speed: float,
-    best: Motion,
-    prospect: tuple[Array, Array, Array],
-    missing: float,
+    chosen: Chosen,
     allowed: Array,
     problem: tuple[Any, ...],
     solution: Array,
@@ -110,6 +102,7 @@ def unfold_and_judge(
 
     Arguments are as for :func:`follow`, and the results are its last two.
     """
+    best, prospect, missing = chosen
     nodes, limits, speeds_of = problem[0], problem[2], problem[7]
     n = len(solution)
     at_nodes = np.empty(n)
@@ -118,7 +111,7 @@ def unfold_and_judge(
         for j in range(n):
             value += speeds_of[i, j] * solution[j]
         at_nodes[i] = value
-    unfold(speed, at_nodes, nodes, limits[0], *plan)
+    unfold(speed, at_nodes, nodes, limits[0], plan)
     closer = missing_of(plan, best, prospect, allowed, weights) > missing + _WORSE
     if closer:
         return True, take_over(best, plan, prospect, limits[0], weights)
@@ -151,19 +144,12 @@ def missing_of(
 ) -> float:
     """The largest stopping distance [m] that a plan lacks if people move as for the manoeuvre."""
     gap, conflicts, calm = prospect
-    others, missing = 0.0, 0.0
+    so_far = 0.0, 0.0
     for i in range(len(gap)):
-        others, missing = add_cost_of_others(
-            others,
-            missing,
-            plan[1][i + 1],
-            gap[i] + best[0][i + 1] - plan[0][i + 1],
-            conflicts[i],
-            calm[i],
-            plan[0][i + 1] - allowed[i],
-            weights,
-        )
-    return missing
+        people = gap[i] + best[0][i + 1] - plan[0][i + 1], conflicts[i], calm[i]
+        beyond = plan[0][i + 1] - allowed[i]
+        so_far = add_cost_of_others(so_far, plan[1][i + 1], people, beyond, weights)
+    return so_far[1]
 
 
 @inner

@@ -12,6 +12,9 @@ _JERK = 8.0  # jerk [m/s^3] of a branch
 # (ISO 15622: 3.5 m/s^2 at speed). Manoeuvres for obstacles brake harder.
 _SLOWING = 3.0
 
+Motion = tuple[Array, Array, Array]
+"""Distances [m], speeds [m/s] and accelerations [m/s^2] of a manoeuvre, or of k of them."""
+
 
 @inner
 def aim(
@@ -21,9 +24,7 @@ def aim(
     fastest: float,
     jerk: float,
     time_step: float,
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
+    motions: Motion,
 ) -> None:
     """Fill manoeuvres that change to a wanted acceleration and end at rest or at ``fastest``.
 
@@ -34,10 +35,9 @@ def aim(
         fastest: Speed [m/s] at which speeding up ends.
         jerk: Jerk [m/s^3] with which accelerations change.
         time_step: Control step [s].
-        distance: Distances (k or more, N + 1) [m], filled.
-        speeds: Speeds (k or more, N + 1) [m/s], filled.
-        accelerations: Accelerations (k or more, N + 1) [m/s^2], filled.
+        motions: Motions (k or more, N + 1), filled.
     """
+    distance, speeds, accelerations = motions
     most, count, last = jerk * time_step, goals.shape[0], speeds.shape[1] - 1
     asked_for = np.full(count, before)
     for k in range(count):
@@ -62,29 +62,23 @@ def aim(
 def approach(
     speed: float,
     before: float,
-    wanted: float,
     end: float,
-    fastest: float,
-    jerk: float,
+    limits: tuple[float, float, float],
     time_step: float,
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
+    motion: Motion,
 ) -> None:
     """Fill a manoeuvre that drives up to the end of the way and stops there comfortably.
 
     Args:
         speed: Speed now [m/s].
         before: Acceleration before [m/s^2].
-        wanted: Largest acceleration [m/s^2].
         end: Distance [m] to the place of the stop.
-        fastest: Highest speed [m/s].
-        jerk: Jerk [m/s^3] with which accelerations change.
+        limits: Largest acceleration [m/s^2], highest speed [m/s], and jerk [m/s^3] with which
+            accelerations change.
         time_step: Control step [s].
-        distance: Distances (N + 1,) [m], filled.
-        speeds: Speeds (N + 1,) [m/s], filled.
-        accelerations: Accelerations (N + 1,) [m/s^2], filled.
+        motion: Motion (N + 1,), filled.
     """
+    (wanted, fastest, jerk), (distance, speeds, accelerations) = limits, motion
     s, v, a = 0.0, speed, before
     most = jerk * time_step
     for i in range(len(speeds)):
@@ -102,44 +96,29 @@ def approach(
 
 @kernel
 def branch_off(
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
-    first: int,
-    braking: float,
-    fastest: float,
-    time_step: float,
+    motion: Motion, first: int, braking: float, fastest: float, time_step: float
 ) -> None:
     """Let a manoeuvre brake from a step on, in place.
 
     Args:
-        distance: Distances (N + 1,) [m] of the manoeuvre, changed.
-        speeds: Speeds (N + 1,) [m/s], changed.
-        accelerations: Accelerations (N + 1,) [m/s^2], changed.
+        motion: Motion (N + 1,) of the manoeuvre, changed.
         first: Step from which on it brakes, > 0.
         braking: Acceleration [m/s^2] of the braking, < 0, down to rest.
         fastest: Highest speed [m/s].
         time_step: Control step [s].
     """
+    distance, speeds, accelerations = motion
     driven, before = distance[first], accelerations[first - 1]
     goals, alone = np.array([[braking, 0.0]]), (1, len(distance) - first)
     x, v, a = distance[first:], speeds[first:], accelerations[first:]
     tail = x.reshape(alone), v.reshape(alone), a.reshape(alone)
-    aim(speeds[first], before, goals, fastest, _JERK, time_step, *tail)
+    aim(speeds[first], before, goals, fastest, _JERK, time_step, tail)
     for i in range(first, len(distance)):
         distance[i] += driven
 
 
 @inner
-def shift(
-    speed: float,
-    holds: bool,
-    deceleration: float,
-    time_step: float,
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
-) -> None:
+def shift(speed: float, holds: bool, deceleration: float, time_step: float, motion: Motion) -> None:
     """Shift a plan by one step, in place: its step 1 becomes step 0.
 
     Args:
@@ -147,10 +126,9 @@ def shift(
         holds: Whether the last speed is kept in the added step. If not, the ego brakes in it.
         deceleration: Deceleration b [m/s^2] of this braking.
         time_step: Control step [s].
-        distance: Distances (N + 1,) [m] of the plan, changed.
-        speeds: Speeds (N + 1,) [m/s] of the plan, changed.
-        accelerations: Accelerations (N + 1,) [m/s^2] of the plan, changed.
+        motion: Motion (N + 1,) of the plan, changed.
     """
+    distance, speeds, accelerations = motion
     N = len(speeds) - 1
     for i in range(N):
         speeds[i] = speeds[i + 1]

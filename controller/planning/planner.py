@@ -37,6 +37,25 @@ class Plan(NamedTuple):
     tried: int  # number of manoeuvres that were compared
 
 
+class Road(NamedTuple):
+    """What the road allows over the horizon.
+
+    Attributes:
+        allowed: Distances (N,) [m] that may be driven until steps 1 ... N, by vehicles and
+            lights; inf without a bound.
+        lane_speeds: Speed limits (N,) [m/s] at steps 1 ... N, kept as far as braking allows, or
+            None.
+        gap: Distance [m] to the closest person in front now. At standstill this person bounds the
+            way: a trial manoeuvre may drive up to d_safe before them.
+        to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
+    """
+
+    allowed: Array
+    lane_speeds: Array | None = None
+    gap: float = inf
+    to_clear: float = 0.0
+
+
 class Planner:
     """Plans speeds over some seconds, and remembers its last plan.
 
@@ -72,7 +91,7 @@ class Planner:
             problem.gradients,
         )
         soon = round(parameters.calm_time / model.time_step)
-        self._calmly = soon, parameters.calm_braking
+        self._rules = soon, parameters.calm_braking, self._search.weights
         self._plan = plan = Manoeuvre.empty(N)
         self._to = (plan.distance, plan.speed, plan.acceleration)
         self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
@@ -87,11 +106,8 @@ class Planner:
         speed: float,
         previous_force: float,
         fastest: float,
-        allowed: Array,
+        road: Road,
         foresight: Foresight | None,
-        lane_speeds: Array | None = None,
-        gap: float = inf,
-        to_clear: float = 0.0,
     ) -> Plan:
         """Plan from the state at t_k, and return the force.
 
@@ -99,14 +115,8 @@ class Planner:
             speed: Speed x_2(k) [m/s].
             previous_force: Force u(k-1) [N]; 0 at standstill, where the brake holds without work.
             fastest: Speed [m/s] with nobody in the way.
-            allowed: Distances (N,) [m] that may be driven until steps 1 ... N, by vehicles and
-                lights; inf without a bound.
+            road: Distances and speeds that the road allows.
             foresight: Foresight of the crowd, or None if nobody can get in the way.
-            lane_speeds: Speed limits (N,) [m/s] at steps 1 ... N, kept as far as braking allows,
-                or None.
-            gap: Distance [m] to the closest person in front now. At standstill this person bounds
-                the way: a trial manoeuvre may drive up to d_safe before them.
-            to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
 
         Raises:
             ParameterError: a value is not a number.
@@ -117,11 +127,12 @@ class Planner:
                 "m/s: expected numbers"
             )
         before = self._acceleration(speed, previous_force)
-        search, end = self._search, float(allowed[-1])
+        search, allowed = self._search, road.allowed
+        end = float(allowed[-1])
         if speed <= STANDSTILL:
-            end = min(end, gap - self.parameters.safe_distance)
-        chosen = search.choose(speed, before, fastest, allowed, foresight, end, to_clear)
-        return self._smooth(speed, previous_force, before, fastest, allowed, chosen, lane_speeds)
+            end = min(end, road.gap - self.parameters.safe_distance)
+        name = search.choose(speed, before, fastest, allowed, foresight, end, road.to_clear)
+        return self._smooth((speed, before, previous_force, fastest), road, name)
 
     def _acceleration(self, speed: float, force: float) -> float:
         """The acceleration [m/s^2] that ``force`` [N] causes at this speed; 0 at standstill."""
@@ -129,33 +140,21 @@ class Planner:
             return 0.0
         return (force - self.model.friction * speed) / self.model.mass
 
-    def _smooth(
-        self,
-        speed: float,
-        previous_force: float,
-        before: float,
-        fastest: float,
-        allowed: Array,
-        chosen: str,
-        lane_speeds: Array | None,
-    ) -> Plan:
-        """Smooth the chosen manoeuvre by the QP, or keep the manoeuvre if that is better."""
-        search, plan = self._search, self._plan
-        best = search.best
-        to = self._to
+    def _smooth(self, state: tuple[float, float, float, float], road: Road, name: str) -> Plan:
+        """Smooth the chosen manoeuvre by the QP, or keep the manoeuvre if that is better.
+
+        Args:
+            state: Speed [m/s], acceleration before [m/s^2], force before [N], wanted speed [m/s].
+            road: Distances and speeds that the road allows.
+            name: Name of the chosen manoeuvre.
+        """
+        search, plan, to = self._search, self._plan, self._to
         prospect = (search.gap, search.conflicts, search.calm)
-        judged = (search.missing, allowed)
+        chosen = search.best, prospect, search.missing
+        lane_speeds = self._any_speed if road.lane_speeds is None else road.lane_speeds
+        bounds = road.allowed, lane_speeds, self._corridor
         corrections, itself, holds = follow(
-            (speed, before, previous_force, fastest),
-            best,
-            prospect,
-            search.missing,
-            (allowed, self._any_speed if lane_speeds is None else lane_speeds, self._corridor),
-            self._arrays,
-            self._solver.memory,
-            to,
-            self._calmly,
-            search.weights,
+            state, chosen, bounds, self._arrays, self._solver.memory, to, self._rules
         )
         outcome = _SOLVED
         if corrections == UNSOLVED:
@@ -163,23 +162,16 @@ class Planner:
             if outcome is _SOLVED:
                 solution = self._solver.solution
                 itself, holds = unfold_and_judge(
-                    speed,
-                    best,
-                    prospect,
-                    *judged,
-                    self._arrays,
-                    solution,
-                    to,
-                    search.weights,
+                    state[0], chosen, road.allowed, self._arrays, solution, to, search.weights
                 )
             else:
-                holds = take_over(best, to, prospect, self.model.time_step, search.weights)
+                holds = take_over(search.best, to, prospect, self.model.time_step, search.weights)
         status = "manoeuvre" if itself else str(outcome)
         if outcome is not _SOLVED:
             status = "manoeuvre: no QP solution"
         search.keep(plan, holds)
-        force = self._force(speed, previous_force)
-        return Plan(force, status, corrections, chosen, search.tried)
+        force = self._force(state[0], state[2])
+        return Plan(force, status, corrections, name, search.tried)
 
     def _force(self, speed: float, previous_force: float) -> float:
         """Return the force [N] for the plan's next speed, within the actuator's limits."""
@@ -221,15 +213,9 @@ class PlanningController:
         previous = 0.0 if speed <= STANDSTILL else self._previous_force
         reference = min(self.planner.parameters.reference_speed, limits.speed_limit)
         allowed = ahead.obstacle_positions - (ego.position + limits.safe_distance)
+        road = Road(allowed, limits.lane_speeds, ahead.gap, ahead.to_clear)
         plan = self.planner.plan(
-            speed,
-            previous,
-            reference,
-            allowed,
-            observation.pedestrians.foresight,
-            limits.lane_speeds,
-            ahead.gap,
-            ahead.to_clear,
+            speed, previous, reference, road, observation.pedestrians.foresight
         )
         force = plan.force
         if speed <= STANDSTILL and force < 0.0:

@@ -261,16 +261,16 @@ def lay_out(
     speed, before, fastest, end, jerk, b, time_step = state
     distance, speeds, accelerations = motions
     k = goals.shape[0]
-    aim(speed, before, goals, fastest, jerk, time_step, distance, speeds, accelerations)
+    aim(speed, before, goals, fastest, jerk, time_step, motions)
     if np.isfinite(end):
         to = (distance[k], speeds[k], accelerations[k])
-        approach(speed, before, goals[0, 0], end, fastest, jerk, time_step, *to)
+        approach(speed, before, end, (goals[0, 0], fastest, jerk), time_step, to)
     k += 1
     to = (distance[k], speeds[k], accelerations[k])
     if planned:
         for i in range(distance.shape[1]):
             distance[k, i], speeds[k, i] = last[0][i], last[1][i]
-        shift(speed, holds, b, time_step, *to)
+        shift(speed, holds, b, time_step, to)
     else:
         keeping = distance[k:], speeds[k:], accelerations[k:]
-        aim(speed, before, np.zeros((1, 2)), fastest, jerk, time_step, *keeping)
+        aim(speed, before, np.zeros((1, 2)), fastest, jerk, time_step, keeping)

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from controller._jit import Array, inner, kernel
 from controller.model import LongitudinalModel
+from controller.planning.motions import Motion
 from controller.planning.parameters import PlannerParameters
 
 Indices = NDArray[np.int64]
@@ -148,33 +149,40 @@ class SmoothingProblem:
             calm: Speed limits (N,) [m/s], kept as far as braking allows.
         """
         fill(
-            speed,
-            previous_force,
-            fastest,
+            (speed, previous_force, fastest),
             corridor,
             calm,
             self.nodes,
             self.intervals,
             self.limits,
-            self.lower,
-            self.upper,
+            (self.lower, self.upper),
         )
 
 
 @kernel
 def fill(
-    speed: float,
-    previous_force: float,
-    fastest: float,
+    state: tuple[float, float, float],
     corridor: Array,
     calm: Array,
     nodes: Indices,
     intervals: Array,
     limits: tuple[float, ...],
-    lower: Array,
-    upper: Array,
+    bounds: tuple[Array, Array],
 ) -> None:
-    """Fill the bounds of all rows. The corridor is widened where braking cannot keep it."""
+    """Fill the bounds of all rows as :meth:`SmoothingProblem.bound` does.
+
+    The corridor is widened where braking cannot keep it.
+
+    Args:
+        state: Speed now [m/s], force u(k-1) [N], and highest speed [m/s].
+        corridor: Distances (N,) [m] that the plan may have driven at steps 1 ... N.
+        calm: Speed limits (N,) [m/s].
+        nodes: Steps (n,) of the nodes.
+        intervals: Intervals (n,) [s] between the nodes.
+        limits: Fields of :class:`Limits`.
+        bounds: Lower and upper bounds (3 n - 2,), filled.
+    """
+    (speed, previous_force, fastest), (lower, upper) = state, bounds
     c, n = Limits(*limits), len(nodes)
     dt = c.time_step
     weakest = max(-c.force, previous_force - c.force_rate)
@@ -231,11 +239,10 @@ def unfold(
     at_nodes: Array,
     nodes: Indices,
     time_step: float,
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
+    plan: Motion,
 ) -> None:
     """Fill the plan of every step from the speeds at the nodes."""
+    distance, speeds, accelerations = plan
     before, at = speed, 0
     speeds[0] = speed
     for i in range(len(nodes)):

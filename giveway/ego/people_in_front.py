@@ -111,4 +111,5 @@ class PeopleInFront:
             return
         kerbs = self._kerbs.kept(people, seen.kerbs, relevant) if self._kerbs else seen.kerbs
         off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
-        foresight.look(people, surroundings, seen.poses, own.row, front, off, kerbs, numbers)
+        there = seen.poses, own.row, front
+        foresight.look(people, surroundings, there, off, kerbs, numbers)

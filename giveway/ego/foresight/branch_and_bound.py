@@ -31,9 +31,7 @@ def branch_and_bound(
     law: tuple[Any, ...],
     ego: tuple[Array, int, float],
     sight: tuple[tuple[float, ...], tuple[Any, ...]],
-    trials: Arrays,
-    memory: Arrays,
-    candidates: tuple[NDArray[np.int64], bool],
+    search: tuple[Arrays, Arrays, NDArray[np.int64], bool],
     judged: tuple[Array, float, tuple[Any, ...]],
 ) -> tuple[int, bool, int]:
     """Find the cheapest candidate by branch and bound.
@@ -45,11 +43,10 @@ def branch_and_bound(
         ego: Poses of all vehicles, (M, m, 7), in which the ego's row is changed; index of that
             row; station of the ego's front bumper [m].
         sight: Fields of a ``View`` and of an ``Alarm``.
-        trials: Arrays of ``Trials``.
-        memory: Arrays of :class:`giveway.ego.foresight.workspace.Workspace`.
-        candidates: Rows to evaluate, see :meth:`giveway.ego.foresight.workspace.Workspace.rows_of`;
-            and whether to probe, that is, to evaluate the first candidate alone until a person or
-            vehicle is in its way, and to accept it at once if none is.
+        search: Arrays of ``Trials``; arrays of a
+            :class:`giveway.ego.foresight.workspace.Workspace`; rows to evaluate, as its ``rows_of``
+            returns them; and whether to probe, that is, to evaluate the first candidate alone until
+            a person or vehicle is in its way, and to accept it at once if none is.
         judged: Distances [m] that may be driven, (N,); speed [m/s] that lost time refers to;
             weights of the cost.
 
@@ -58,7 +55,7 @@ def branch_and_bound(
         accepted at once; number of candidates that were compared.
     """
     (poses, row, front), (view, alarm) = ego, sight
-    (rows, probe), (allowed, wanted, weights) = candidates, judged
+    (trials, memory, rows, probe), (allowed, wanted, weights) = search, judged
     path, people, trials, memory = borrowed((path, people, trials, memory))
     poses, alarm, rows, allowed = borrowed((poses, alarm, rows, allowed))
     distance, speed, acceleration, penalty = trials
@@ -107,13 +104,11 @@ def branch_and_bound(
             bad[0] = advance(
                 best,
                 path,
-                (people, ahead, scene, scratch),
-                law,
+                (people, ahead, scene, scratch, law),
                 (poses, row, front),
                 (view, alarm),
-                (distance, speed),
                 memory,
-                (allowed, weights),
+                (distance, speed, allowed, weights),
             )
             if bad[0] != _FINE:
                 return -1, False, tried
@@ -174,13 +169,11 @@ def enter(
 def advance(
     k: int,
     path: Arrays,
-    crowd: tuple[Arrays, Any, Any, Any],
-    law: tuple[Any, ...],
+    crowd: tuple[Arrays, Any, Any, Any, tuple[Any, ...]],
     ego: tuple[Array, int, float],
     sight: tuple[tuple[float, ...], tuple[Any, ...]],
-    manoeuvres: tuple[Array, Array],
     memory: Arrays,
-    bounds: tuple[Array, tuple[Any, ...]],
+    judged: tuple[Array, Array, Array, tuple[Any, ...]],
 ) -> int:
     """Advance manoeuvre k by one prediction step.
 
@@ -188,8 +181,8 @@ def advance(
         -1, or the index of a pedestrian whose predicted state is not finite.
     """
     vertices, stations, headings = path
-    people, ahead, scene, scratch = crowd
-    (poses, row, front), (distance, speed), (allowed, weights) = ego, manoeuvres, bounds
+    people, ahead, scene, scratch, law = crowd
+    (poses, row, front), (distance, speed, allowed, weights) = ego, judged
     view = sight[0]
     state, index, prospects, sums, steps, alike, between = memory[:7]
     x, v, at = ahead.state
@@ -252,15 +245,8 @@ def advance(
             (prospects[0, k], prospects[1, k], prospects[2, k]),
         )
     for i in range(begin, end):
-        sums[1, k], sums[2, k] = add_cost_of_others(
-            sums[1, k],
-            sums[2, k],
-            speed[k, i + 1],
-            prospects[0, k, i],
-            prospects[1, k, i],
-            prospects[2, k, i],
-            distance[k, i + 1] - allowed[i],
-            weights,
-        )
+        so_far, beyond = (sums[1, k], sums[2, k]), distance[k, i + 1] - allowed[i]
+        met = prospects[0, k, i], prospects[1, k, i], prospects[2, k, i]
+        sums[1, k], sums[2, k] = add_cost_of_others(so_far, speed[k, i + 1], met, beyond, weights)
     steps[1, k] = j + 1
     return _FINE

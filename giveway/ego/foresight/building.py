@@ -1,7 +1,7 @@
 """Makes the foresight of an ego from its options, before it departs."""
 
 from giveway.ego.foresight.contingency import load
-from giveway.ego.foresight.crowd_foresight import CrowdForesight
+from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions
 from giveway.ego.foresight.intent import Beliefs
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
@@ -29,15 +29,13 @@ def foresight_of(
         assert isinstance(predictor, Predictor)
         load()
         beliefs = Beliefs(path, half_width, predictor, time_step)
-    return CrowdForesight(
-        predictor,
-        path,
+    ego = EgoAssumptions(
         shape,
-        horizon=waiting.horizon,
-        time_step=time_step,
-        half_width=half_width,
-        clearance=waiting.clearance,
-        braking=config.vehicle.acceleration_limit,
-        worst=None if waiting.safety is None else waiting.safety.worst,
-        beliefs=beliefs,
+        half_width,
+        waiting.clearance,
+        config.vehicle.acceleration_limit,
+        None if waiting.safety is None else waiting.safety.worst,
+    )
+    return CrowdForesight(
+        predictor, path, ego, horizon=waiting.horizon, time_step=time_step, beliefs=beliefs
     )

@@ -26,7 +26,7 @@ Cost = Callable[[Trials, list[int], bool], float]
 def load() -> None:
     """Load the kernel of the branches before the drive, so that no control step waits for it."""
     distance, speed, acceleration = np.zeros((3, 4))
-    branch_off(distance, speed, acceleration, 1, -1.0, 4.0, 0.05)
+    branch_off((distance, speed, acceleration), 1, -1.0, 4.0, 0.05)
 
 
 def hedged(
@@ -54,7 +54,7 @@ def hedged(
         for array, given in zip(branches, trials, strict=True):
             array[:] = given[row]
         for k, braking in enumerate(_BRAKING, start=1):
-            branch_off(*branches.of(k), first, braking, wanted, time_step)
+            branch_off(branches.of(k), first, braking, wanted, time_step)
         other = cost(branches, every, True)
         whole = likely * costs[row] + (1.0 - likely) * other
         if whole < least:

@@ -1,7 +1,7 @@
 """Predicts the outcome of a manoeuvre: the crowd's motion under it, as seen from the ego."""
 
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +65,18 @@ def plan_predictor(
     return Predictor(parameters, step, horizon // every, longest_step=longest, **readings)
 
 
+class EgoAssumptions(NamedTuple):
+    """The ego's body and brakes, and the motions of people that it prepares for."""
+
+    shape: VehicleShape  # of the body
+    half_width: float  # of the corridor [m]
+    clearance: float  # distance [m] that the safety layer keeps to pedestrians' bodies
+    braking: float  # largest deceleration [m/s^2]
+    worst: WorstMotion | None  # motion that the safety layer assumes; None without such a layer
+    # Time to collision [s] below which a person is in conflict with the ego (FHWA-HRT-08-051)
+    conflict_time: float = CRITICAL_TTC
+
+
 class CrowdForesight:
     """Predicts the crowd under one manoeuvre after the other.
 
@@ -73,15 +85,9 @@ class CrowdForesight:
     Args:
         predictor: Predictor of M steps. Each covers a whole number of a manoeuvre's steps.
         path: Path of the ego.
-        shape: Shape of its body.
+        ego: Body and brakes of the ego, and the motions of people that it prepares for.
         horizon: Number N of a manoeuvre's steps.
         time_step: Time step of a manoeuvre [s].
-        half_width: Half width of the corridor [m].
-        clearance: Distance [m] that the safety layer keeps to pedestrians' bodies.
-        braking: Largest deceleration [m/s^2] of the ego.
-        worst: Worst motion of people that the safety layer assumes, or None without such a layer.
-        conflict_time: Time to collision [s] below which a person is in conflict with the ego
-            (FHWA-HRT-08-051).
         beliefs: Intent estimator, or None to assume that all people walk on.
     """
 
@@ -89,21 +95,17 @@ class CrowdForesight:
         self,
         predictor: CrowdPredictor,
         path: EgoPath,
-        shape: VehicleShape,
+        ego: EgoAssumptions,
         *,
         horizon: int,
         time_step: float,
-        half_width: float,
-        clearance: float,
-        braking: float,
-        worst: WorstMotion | None,
-        conflict_time: float = CRITICAL_TTC,
         beliefs: Beliefs | None = None,
     ) -> None:
         N, M = horizon, predictor.horizon
         every = round(predictor.time_step / time_step)
         self._predictor, self._every = predictor, every
         self._way = path.vertices, path.stations, path.headings
+        shape, half_width, clearance, braking, worst, conflict_time = ego
         self._view = tuple(
             View(shape.length, shape.width, half_width, conflict_time, time_step, every)
         )
@@ -139,9 +141,7 @@ class CrowdForesight:
         self,
         pedestrians: Crowd,
         surroundings: Surroundings,
-        poses: Array,
-        row: int,
-        front: float,
+        ego: tuple[Array, int, float],
         off: float = 0.0,
         kerbs: Array = NO_KERBS,
         numbers: NDArray[np.int64] | None = None,
@@ -151,9 +151,8 @@ class CrowdForesight:
         Args:
             pedestrians: Pedestrians to be predicted. The routes of those who yield are changed.
             surroundings: Walls and lights that the pedestrians heed.
-            poses: Poses (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
-            row: Row of the ego in ``poses``.
-            front: Station of the front bumper [m].
+            ego: Poses (N, m, 7) of all vehicles at steps 0 ... N-1, not changed; row of the ego
+                in them; station of its front bumper [m].
             off: Largest error [m] of people's positions that the clearance does not cover.
             kerbs: Kerbs (n, 3) of people on sidewalks, as
                 :meth:`giveway.ego.perception.kerbs.Kerbs.of` returns them.
@@ -165,13 +164,13 @@ class CrowdForesight:
             self._limits = self._limits._replace(clearance=self._clearance + off)
         self._alarm = (*self._limits[:-1], kerb_lines(pedestrians.position, kerbs))
         if self._beliefs is not None and numbers is not None:
-            self._otherwise = self._beliefs.weigh(pedestrians, numbers, front, self._soon)
+            self._otherwise = self._beliefs.weigh(pedestrians, numbers, ego[2], self._soon)
             self._halting, self._soon = self._beliefs.halting, self._soon[:0]
         else:
             self._otherwise = None
             self._halting = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
         self._pedestrians, self._surroundings = pedestrians, surroundings
-        self._given, self._row, self._front = poses, row, front
+        self._given, self._row, self._front = ego
         self._copied, self._preferred = False, False
         self._winner = -1
 
@@ -265,9 +264,7 @@ class CrowdForesight:
             (*vci.law, halting),
             (self._poses, self._row, self._front),
             (self._view, self._alarm),
-            tuple(trials),
-            workspace.arrays,
-            (workspace.rows_of(batches), probe),
+            (tuple(trials), workspace.arrays, workspace.rows_of(batches), probe),
             judged,
         )
         if workspace.bad >= 0:

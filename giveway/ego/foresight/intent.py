@@ -108,9 +108,9 @@ class Beliefs:
         odds, yields = self._odds.copy(), np.zeros(len(numbers), dtype=np.bool_)
         odds[numbers[intent]] *= -1.0
         seen = (*other.state, other.desired_speed, *other.routes)
-        none = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_), np.zeros(0)
+        none = _NEVER, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_), np.zeros(0)
         memory = odds, self._told, self._expected
-        _update(*self._way, front, seen, numbers, _NEVER, none, memory, yields, self._law)
+        _update(self._way, front, seen, (numbers, yields), none, memory, self._law)
         differ = yields != self._yield
         if not differ.any():
             return None
@@ -132,12 +132,10 @@ class Beliefs:
         """
         yields = np.zeros(len(numbers), dtype=np.bool_)
         seen = (*people.state, people.desired_speed, *people.routes)
-        latest = (self._numbers, self._yield, expected)
+        latest = (self._look, self._numbers, self._yield, expected)
         while True:
             memory = (self._odds, self._told, self._expected)
-            new = _update(
-                *self._way, front, seen, numbers, self._look, latest, memory, yields, self._law
-            )
+            new = _update(self._way, front, seen, (numbers, yields), latest, memory, self._law)
             if new < 0:
                 break
             self._grow(2 * (new + 1) - len(self._odds))
@@ -154,42 +152,38 @@ class Beliefs:
 
 @kernel
 def _update(
-    vertices: Array,
-    stations: Array,
+    path: tuple[Array, Array],
     front: float,
     people: tuple[Any, ...],
-    numbers: NDArray[np.int64],
-    look: int,
-    latest: tuple[NDArray[np.int64], NDArray[np.bool_], Array],
+    marked: tuple[NDArray[np.int64], NDArray[np.bool_]],
+    latest: tuple[int, NDArray[np.int64], NDArray[np.bool_], Array],
     memory: tuple[Array, NDArray[np.int64], Array],
-    yields: NDArray[np.bool_],
     law: tuple[float, float, float],
 ) -> int:
     """Update as :meth:`Beliefs.update` does; return -1, or a number that needs longer arrays.
 
     Args:
-        vertices: Vertices of the path.
-        stations: Stations [m] of the vertices.
+        path: Vertices of the path, and their stations [m].
         front: Station of the front bumper [m].
         people: State, desired speeds and routes of the n people.
-        numbers: Numbers (n,) that identify the people.
-        look: Number of this look.
-        latest: Data of the latest look: numbers of the people, marks of those who yielded by the
-            estimate, and predicted states.
+        marked: Numbers (n,) that identify the people, and marks (n,) of those who yield by the
+            estimate, filled.
+        latest: Number of this look. Of the latest look: numbers of the people, marks of those who
+            yielded by the estimate, and predicted states.
         memory: Log odds by number. By number and look: the look in which velocities were
             predicted, these velocities [m/s], and 1 if the person was predicted to yield.
-        yields: Marks (n,) of people who yield by the estimate, filled.
         law: Half width of the corridor [m], share of a desired change of velocity in one step,
             s_des [m].
     """
     position, velocity, index, desired_speed, waypoints, passage, signal, start = people
+    (vertices, stations), (numbers, yields) = path, marked
     odds, told, expected = memory
     half_width, taken_up, smoothing = law
     for i in range(len(numbers)):
         if numbers[i] >= len(odds):
             return int(numbers[i])
     every = told.shape[1]
-    before, yielded, outcome = latest
+    look, before, yielded, outcome = latest
     if len(outcome) > 0:
         slot = (look - 1) % every
         for i in range(len(before)):

@@ -107,12 +107,9 @@ class Nearby:
         margin = max(MARGIN, self._body + self._lunge / 2.0 * stop * stop)
         mask = np.empty(len(crowd), dtype=np.bool_)
         come_near(
-            path.vertices,
-            path.stations,
-            front - self._behind,
-            front + reach + self._ahead,
-            crowd.position,
-            crowd.velocity,
+            (path.vertices, path.stations),
+            (front - self._behind, front + reach + self._ahead),
+            (crowd.position, crowd.velocity),
             span,
             self._half_width + margin,
             mask,
@@ -122,12 +119,9 @@ class Nearby:
 
 @kernel
 def come_near(
-    vertices: Array,
-    stations: Array,
-    begin: float,
-    end: float,
-    position: Array,
-    velocity: Array,
+    path: tuple[Array, Array],
+    part: tuple[float, float],
+    people: tuple[Array, Array],
     span: float,
     margin: float,
     mask: Mask,
@@ -135,16 +129,15 @@ def come_near(
     """Fill ``mask`` (n,): whether a person who walks straight on comes close to a part of a path.
 
     Args:
-        vertices: Vertices of the path, which goes on straight beyond its ends.
-        stations: Stations [m] of the vertices.
-        begin: Station [m] at which the part begins.
-        end: Station [m] at which the part ends, > ``begin``.
-        position: Positions (n, 2) [m] of people.
-        velocity: Velocities (n, 2) [m/s] of people, constant over the ``span``.
+        path: Vertices of the path, which goes on straight beyond its ends, and their stations [m].
+        part: Stations [m] at which the part begins and ends.
+        people: Positions (n, 2) [m] of people, and velocities (n, 2) [m/s], constant over the
+            ``span``.
         span: Time [s] that is looked ahead.
         margin: Distance [m] that counts as close.
         mask: Marks (n,), filled.
     """
+    (vertices, stations), (begin, end), (position, velocity) = path, part, people
     mask[:] = False
     last = len(stations) - 2
     for i in range(last + 1):

@@ -93,19 +93,19 @@ def conflicts_and_calm(
         if turn != 0.0:
             x, y = to_frame(x, y, c_b, s_b)
             w_x, w_y = to_frame(w_x, w_y, c_b, s_b)
-        kerb = 0.0, 0.0, 0.0
+        place, walk, kerb = (x, y), (w_x, w_y), (0.0, 0.0, 0.0)
         if j < alarm.kerbs.shape[0]:
             a, b = alarm.kerbs[j, 0], alarm.kerbs[j, 1]
             depth = alarm.kerbs[j, 2] - a * here[j, 0] - b * here[j, 1] - _SPARE
             a, b = to_frame(a, b, c, s)
             a, b = to_frame(a, b, c_b, s_b)
             kerb = a, b, depth
-        if is_threat(x, y, w_x, w_y, braking, half_width, time_step, alarm, kerb):
+        if is_threat(place, walk, braking, half_width, time_step, alarm, kerb):
             low, high = 0.0, calm
             for _ in range(_HALVINGS):
                 middle = 0.5 * (low + high)
                 slower = outline(middle, time_step, alarm)
-                if is_threat(x, y, w_x, w_y, slower, half_width, time_step, alarm, kerb):
+                if is_threat(place, walk, slower, half_width, time_step, alarm, kerb):
                     high = middle
                 else:
                     low = middle
@@ -146,10 +146,8 @@ def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
 
 @inner
 def is_threat(
-    x: float,
-    y: float,
-    w_x: float,
-    w_y: float,
+    place: tuple[float, float],
+    walk: tuple[float, float],
     o: Outline,
     half_width: float,
     time_step: float,
@@ -161,10 +159,8 @@ def is_threat(
     The safety layer would act then. This is an approximation of controller/safety/layer.py.
 
     Args:
-        x: Distance [m] of the pedestrian ahead of the middle of the front.
-        y: Distance [m] of the pedestrian to the left of this point.
-        w_x: Velocity [m/s] of the pedestrian along the ego's heading.
-        w_y: Velocity [m/s] of the pedestrian to the left of it.
+        place: Distances [m] of the pedestrian ahead of the middle of the front, and to the left.
+        walk: Velocities [m/s] of the pedestrian along the ego's heading, and to the left of it.
         o: Outline of the braking.
         half_width: Half width of the ego [m].
         time_step: Time [s] until the brake acts.
@@ -172,7 +168,7 @@ def is_threat(
         kerb: Unit vector to the kerb, and the distance [m] to it, of a person on a sidewalk; 0
             for others.
     """
-    to_x, to_y, depth = kerb
+    (x, y), (w_x, w_y), (to_x, to_y, depth) = place, walk, kerb
     last = o.stop * time_step
     if max(x - o.farthest, -x) - abs(w_x) * last > o.most:
         return False

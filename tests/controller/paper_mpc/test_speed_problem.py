@@ -96,7 +96,7 @@ def test_a_plan_is_judged_by_its_worst_violation_over_tolerance(counted, rate):
         excess = np.maximum(qp.lower - qp.G @ U, qp.G @ U - qp.upper)
         expected = (excess / np.repeat(tolerances[[2, 2, 1, 0]], 5)).max()
         forces = np.empty(5)
-        residual = check_plan(0.0, speed, previous, x_p, V, forces, limits, tolerances)
+        residual = check_plan((0.0, speed, previous), x_p, V, forces, limits, tolerances)
         np.testing.assert_allclose(forces, U, rtol=1e-9, atol=1e-6)
         assert residual == pytest.approx(max(0.0, expected), rel=1e-6, abs=1e-3)
         violated += residual > 1.0
@@ -107,4 +107,4 @@ def test_a_plan_is_judged_by_its_worst_violation_over_tolerance(counted, rate):
 def test_a_plan_that_is_no_number_is_never_accepted(value):
     limits = SpeedProblem(LongitudinalModel(), MpcParameters(horizon=2)).limits
     x_p, V = np.full(2, np.inf), np.array([4.0, value])
-    assert check_plan(0.0, 4.0, 400.0, x_p, V, np.empty(2), limits, np.ones(3)) == np.inf
+    assert check_plan((0.0, 4.0, 400.0), x_p, V, np.empty(2), limits, np.ones(3)) == np.inf

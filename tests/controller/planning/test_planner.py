@@ -21,6 +21,7 @@ from smoothing_cases import (
 
 from controller import Planner, PlannerParameters, Prospect
 from controller._jit import kernel
+from controller.planning import Road
 from controller.planning.smoothing import SmoothingProblem
 from controller.qp.active_set import solve_exactly
 
@@ -55,7 +56,7 @@ def test_the_corridor_always_leaves_a_plan(speed, force, room, calm):
     reached = problem.rows @ z
     assert (reached >= problem.lower - 1e-9).all()
     assert (reached <= problem.upper + 1e-9).all()
-    plan = Planner(MODEL, FOLLOWING).plan(speed, force, 4.0, FREE, Fixed(corridor))
+    plan = Planner(MODEL, FOLLOWING).plan(speed, force, 4.0, Road(FREE), Fixed(corridor))
     assert "no QP solution" not in plan.status
     assert abs(plan.force) <= 8000.0
     # the bounds as they round: the difference of two forces may round to more than 1,000 N
@@ -80,7 +81,7 @@ def test_lanes_speeds_are_kept_to_whatever_the_manoeuvre(crowd):
     for k in range(60):
         falling = np.maximum(11.0 - 2.0 * (k * dt + times), 6.0)
         fastest = min(10.0, max(11.0 - 2.0 * k * dt, 6.0))
-        force = planner.plan(speed, force, fastest, FREE, crowd, falling).force
+        force = planner.plan(speed, force, fastest, Road(FREE, falling), crowd).force
         speed = MODEL.decay * speed + MODEL.speed_per_force * force
         assert speed <= falling[0] + 1e-3
     assert speed > 5.5
@@ -108,7 +109,8 @@ def test_on_faster_roads_calm_speeds_are_kept_earlier(speed, heeds):
     parameters = replace(parameters, manoeuvres=replace(parameters.manoeuvres, threat_weight=0.0))
     horizon = parameters.horizon
     planner, freely = Planner(MODEL, parameters), MODEL.friction * speed
-    planner.plan(speed, freely, speed, np.full(horizon, np.inf), StepsOut(horizon, speed / 2))
+    free = Road(np.full(horizon, np.inf))
+    planner.plan(speed, freely, speed, free, StepsOut(horizon, speed / 2))
     slowest = planner._plan.speed[24:31].min()
     gently = speed - 3.0 * 30 * MODEL.time_step
     assert slowest == pytest.approx(max(speed / 2, gently) if heeds else speed, rel=0.05)
@@ -142,7 +144,7 @@ def test_what_could_happen_ahead_is_approached_gently():
     """At 50 km/h: to be calm there without ever braking as hard as the calm speeds fall."""
     parameters = PlannerParameters(reference_speed=13.9)
     planner, beside = Planner(MODEL, parameters), BesideTheWay(parameters.horizon)
-    anywhere, speed, force, hardest = np.full(parameters.horizon, np.inf), 13.9, 0.0, 0.0
+    anywhere, speed, force, hardest = Road(np.full(parameters.horizon, np.inf)), 13.9, 0.0, 0.0
     while beside.driven < beside.PLACE:
         force = planner.plan(speed, force, 13.9, anywhere, beside).force
         after = MODEL.decay * speed + MODEL.speed_per_force * force

@@ -36,7 +36,7 @@ def weights(**changes):
 def aimed(speed, before, wanted, slowest, fastest, *, jerk=8.0, horizon=60):
     m = Manoeuvre.empty(horizon)
     motion = (m.distance[None], m.speed[None], m.acceleration[None])
-    aim(speed, before, np.array([[wanted, slowest]]), fastest, jerk, DT, *motion)
+    aim(speed, before, np.array([[wanted, slowest]]), fastest, jerk, DT, motion)
     return m
 
 
@@ -108,7 +108,7 @@ def test_an_acceleration_is_reached_with_the_jerk_and_then_held():
 def test_a_shifted_plan_is_what_was_planned():
     m = aimed(4.0, 0.0, -2.5, 1.4, 4.0)
     later = deepcopy(m)
-    shift(m.speed[1], True, 6.0, DT, later.distance, later.speed, later.acceleration)
+    shift(m.speed[1], True, 6.0, DT, (later.distance, later.speed, later.acceleration))
     assert np.array_equal(later.speed[:-1], m.speed[1:])
     assert later.speed[-1] == m.speed[-1]  # held
     assert later.distance[:-1] == pytest.approx(m.distance[1:] - m.distance[1], abs=1e-12)
@@ -117,7 +117,7 @@ def test_a_shifted_plan_is_what_was_planned():
 
 def test_a_shifted_plan_begins_at_the_speed_that_is():
     m = steady(4.0, 60)
-    shift(3.5, False, 6.0, DT, m.distance, m.speed, m.acceleration)
+    shift(3.5, False, 6.0, DT, (m.distance, m.speed, m.acceleration))
     assert (m.speed[0], m.speed[1], m.speed[-1]) == (3.5, 4.0, pytest.approx(4.0 - 6.0 * DT))
     assert m.distance[1] == pytest.approx(3.5 * DT)
 
@@ -301,7 +301,7 @@ def test_a_speed_above_the_wanted_one_is_lost_by_gentle_braking(wanted):
 def test_at_the_end_of_the_way_the_stop_is_comfortable(speed, room, fastest):
     assume(speed**2 / 3.0 + 0.7 * speed <= room)  # such a stop is possible
     m = Manoeuvre.empty(400)
-    approach(speed, 0.0, 2.5, room, fastest, 8.0, DT, m.distance, m.speed, m.acceleration)
+    approach(speed, 0.0, room, (2.5, fastest, 8.0), DT, (m.distance, m.speed, m.acceleration))
     assert np.allclose(np.diff(m.distance), DT * m.speed[:-1])
     assert m.distance[-1] <= room + 0.05
     assert m.speed.max() <= max(speed, fastest) + 0.05

@@ -12,7 +12,8 @@ from controller import (
     PlannerParameters,
     SafetyParameters,
 )
-from giveway.ego.foresight.crowd_foresight import CrowdForesight, plan_predictor
+from controller.planning import Road
+from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions, plan_predictor
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import (
@@ -38,17 +39,10 @@ class OneByOne:
 
 
 def foresight(**changes):
-    settings = {
-        "horizon": N,
-        "time_step": DT,
-        "half_width": 1.25,
-        "clearance": 0.05,
-        "braking": 8.0,
-        "worst": SafetyParameters().worst,
-    }
-    return CrowdForesight(
-        plan_predictor(SIM, DT, N), BEND, VehicleShape(LENGTH, WIDTH), **(settings | changes)
-    )
+    worst = SafetyParameters().worst
+    ego = EgoAssumptions(VehicleShape(LENGTH, WIDTH), 1.25, 0.05, 8.0, worst)
+    predictor = plan_predictor(SIM, DT, N)
+    return CrowdForesight(predictor, BEND, ego._replace(**changes), horizon=N, time_step=DT)
 
 
 def people(seed, count=12):
@@ -76,8 +70,8 @@ def drive(seed, searching, steps=25):
     walk = CrowdModel(SIM, DT)
     speed, force, front, told = 4.0, 0.0, FRONT, []
     for _ in range(steps):
-        ahead.look(crowd, OPEN_GROUND, poses(), 0, front, speed)
-        plan = planner.plan(speed, force, 4.0, np.full(N, 30.0), asked)
+        ahead.look(crowd, OPEN_GROUND, (poses(), 0, front), speed)
+        plan = planner.plan(speed, force, 4.0, Road(np.full(N, 30.0)), asked)
         search, expected = planner._search, ahead.best
         told.append((plan, *(a.copy() for a in (search.gap, search.conflicts, search.calm))))
         told[-1] += (None if expected is None else expected.copy(),)
@@ -101,8 +95,8 @@ def test_branch_and_bound_finds_the_same_manoeuvres_and_plans(seed):
 def test_who_has_lost_is_not_rolled_out_any_farther():
     ahead, crowd = foresight(), people(6)
     planner = Planner(MODEL, PlannerParameters(horizon=N))
-    ahead.look(crowd, OPEN_GROUND, poses(), 0, FRONT, 4.0)
-    planner.plan(4.0, 0.0, 4.0, np.full(N, 30.0), ahead)
+    ahead.look(crowd, OPEN_GROUND, (poses(), 0, FRONT), 4.0)
+    planner.plan(4.0, 0.0, 4.0, Road(np.full(N, 30.0)), ahead)
     predicted = ahead._workspace.arrays[4][0]
     assert predicted.max() == N // 2
     assert (predicted[predicted >= 0] < N // 4).any()
@@ -111,7 +105,7 @@ def test_who_has_lost_is_not_rolled_out_any_farther():
 def test_a_crowd_without_a_finite_future_is_named():
     ahead, crowd = foresight(), people(0)
     crowd.position[4] = np.nan
-    ahead.look(crowd, OPEN_GROUND, poses(), 0, FRONT, 4.0)
+    ahead.look(crowd, OPEN_GROUND, (poses(), 0, FRONT), 4.0)
     planner = Planner(MODEL, PlannerParameters(horizon=N))
     with pytest.raises(DivergenceError, match="pedestrian 4"):
-        planner.plan(4.0, 0.0, 4.0, np.full(N, 30.0), ahead)
+        planner.plan(4.0, 0.0, 4.0, Road(np.full(N, 30.0)), ahead)

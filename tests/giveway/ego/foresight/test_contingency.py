@@ -23,7 +23,7 @@ def steady(*speeds):
 @pytest.mark.parametrize("braking", [-2.5, -5.0])
 def test_a_branch_starts_as_its_manoeuvre_and_keeps_the_limits(braking):
     trials, branch = steady(4.0), steady(4.0)
-    branch_off(*branch.of(0), 10, braking, 4.0, DT)
+    branch_off(branch.of(0), 10, braking, 4.0, DT)
     distance, speed, acceleration = branch.of(0)
     assert np.array_equal(speed[:11], trials.speed[0, :11])
     assert np.array_equal(distance[:11], trials.distance[0, :11])

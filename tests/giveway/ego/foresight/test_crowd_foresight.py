@@ -18,7 +18,7 @@ from controller import (
     WorstMotion,
 )
 from giveway.ego.foresight.assessment import PASSED, View, assess
-from giveway.ego.foresight.crowd_foresight import CrowdForesight, plan_predictor
+from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions, plan_predictor
 from giveway.ego.foresight.threats import Alarm, is_threat, outline
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import kernel
@@ -166,9 +166,8 @@ def test_a_person_is_a_threat_only_above_the_threat_free_speed(seed):
     def threatened(i, speed):
         return any(
             is_threat(
-                x - FRONT - m.distance[i + 1],
-                y,
-                *w,
+                (x - FRONT - m.distance[i + 1], y),
+                tuple(w),
                 outline(speed, DT, ALARM),
                 WIDTH / 2,
                 DT,
@@ -203,7 +202,10 @@ def test_threats_outline_when_the_safety_layer_would_act():
         layer.reset()
         way, here = np.array([[0.0, 0.0, 1.0, 0.0]]), np.array([[x, y]])
         acted = layer.filter(100.0 * v, v, way, 0.1, here, w[None]).acted
-        seen[int(acted), int(is_threat(x, y, *w, outline(v, DT, ALARM), WIDTH / 2, DT, ALARM))] += 1
+        seen[
+            int(acted),
+            int(is_threat((x, y), tuple(w), outline(v, DT, ALARM), WIDTH / 2, DT, ALARM)),
+        ] += 1
     assert seen[1].sum() > 300
     assert seen[1, 1] / seen[1].sum() > 0.995  # of the acts
     assert seen[0, 1] / seen[0].sum() < 0.06  # false alarms
@@ -223,7 +225,7 @@ def test_threats_show_when_the_layer_would_act_beside_a_sidewalk():
         kerbs = np.array([[0.0, 1.0, depth]])
         acted = layer.filter(100.0 * v, v, way, 0.1, here, w[None], kerbs=kerbs).acted
         behind = 0.0, 1.0, depth - 0.05
-        threat = is_threat(x, y, *w, outline(v, DT, alarm), WIDTH / 2, DT, alarm, behind)
+        threat = is_threat((x, y), tuple(w), outline(v, DT, alarm), WIDTH / 2, DT, alarm, behind)
         seen[int(acted), int(threat)] += 1
     assert seen[1].sum() > 300
     assert seen[1, 1] / seen[1].sum() > 0.995  # of the acts
@@ -253,17 +255,10 @@ def test_a_person_for_whom_the_layer_would_act_is_a_threat(name):
 
 
 def foresight(**changes):
-    settings = {
-        "horizon": N,
-        "time_step": DT,
-        "half_width": HALF_WIDTH,
-        "conflict_time": CONFLICT_TIME,
-        "clearance": 0.05,
-        "braking": 8.0,
-        "worst": WORST,
-    }
     shape = VehicleShape(LENGTH, WIDTH)
-    return CrowdForesight(plan_predictor(SIM, DT, N), STRAIGHT, shape, **(settings | changes))
+    ego = EgoAssumptions(shape, HALF_WIDTH, 0.05, 8.0, WORST, CONFLICT_TIME)
+    predictor = plan_predictor(SIM, DT, N)
+    return CrowdForesight(predictor, STRAIGHT, ego._replace(**changes), horizon=N, time_step=DT)
 
 
 def look(ahead, *, speed=4.0, off=6.0):
@@ -271,7 +266,7 @@ def look(ahead, *, speed=4.0, off=6.0):
     crowd = Crowd.create([(FRONT + off, -2.0)], [(0.0, 1.3)], 1.3, [[(FRONT + off, 10.0)]])
     poses = np.zeros((N, 1, 7))
     poses[:, :, 4:] = LENGTH / 2, LENGTH / 2, WIDTH
-    ahead.look(crowd, OPEN_GROUND, poses, 0, FRONT)
+    ahead.look(crowd, OPEN_GROUND, (poses, 0, FRONT))
 
 
 def test_calm_speeds_are_those_of_what_the_layer_below_assumes():

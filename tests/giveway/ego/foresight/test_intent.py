@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from controller import LongitudinalModel, Planner, PlannerParameters
-from giveway.ego.foresight.crowd_foresight import CrowdForesight, plan_predictor
+from controller.planning import Road
+from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions, plan_predictor
 from giveway.ego.foresight.intent import Beliefs, shifted
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
@@ -101,20 +102,17 @@ def test_a_person_who_waits_at_the_edge_is_expected_to_stay():
         ahead = CrowdForesight(
             plan_predictor(SIM, DT, N),
             STRAIGHT,
-            VehicleShape(5.0, 1.8),
+            EgoAssumptions(VehicleShape(5.0, 1.8), HALF, 0.05, 8.0, None),
             horizon=N,
             time_step=DT,
-            half_width=HALF,
-            clearance=0.05,
-            braking=8.0,
-            worst=None,
             beliefs=believed,
         )
         poses = np.zeros((N, 1, 7))
         poses[:, :, 4:] = 2.5, 2.5, 1.8
         for _ in range(8):
-            ahead.look(walker(y, 0.0, x=14.0), OPEN_GROUND, poses, 0, FRONT, numbers=np.array([0]))
-            planner.plan(3.0, 0.0, 3.0, np.full(N, np.inf), ahead)
+            ego = (poses, 0, FRONT)
+            ahead.look(walker(y, 0.0, x=14.0), OPEN_GROUND, ego, numbers=np.array([0]))
+            planner.plan(3.0, 0.0, 3.0, Road(np.full(N, np.inf)), ahead)
         expected.append(ahead.best[:, 0, 1])
     assert y <= expected[0].min()
     assert expected[0].max() <= y + 0.1

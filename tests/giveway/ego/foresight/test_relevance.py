@@ -27,8 +27,8 @@ SPAN, EDGE = 3.0, 1e-6  # [s], [m]
 
 def near(path, begin, end, position, velocity, margin):
     mask = np.empty(len(position), dtype=np.bool_)
-    args = (begin, end, position, velocity, SPAN, margin, mask)
-    come_near(path.vertices, path.stations, *args)
+    way, people = (path.vertices, path.stations), (position, velocity)
+    come_near(way, (begin, end), people, SPAN, margin, mask)
     return mask
 
 
