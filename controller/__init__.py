@@ -37,9 +37,7 @@ from controller.planning import (
     PlanningController,
     StyleName,
 )
-from controller.plug_ins.conformance import Finding, check_controller
-from controller.plug_ins.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
-from controller.plug_ins.plugged_in import PluggedIn
+from controller.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
 from controller.protocol import Controller, Decision
 from controller.qp.least_squares import Outcome
 from controller.safety.layer import SafeForce, SafetyLayer, SafetyParameters
@@ -57,7 +55,6 @@ __all__ = [
     "Decision",
     "Defaults",
     "EgoState",
-    "Finding",
     "Force",
     "Foresight",
     "Limits",
@@ -80,7 +77,6 @@ __all__ = [
     "PlanningController",
     "PlugIn",
     "PlugInError",
-    "PluggedIn",
     "Prospect",
     "ReferenceParameters",
     "RoadAhead",
@@ -98,6 +94,5 @@ __all__ = [
     "TunedPid",
     "TunedPidParameters",
     "WorstMotion",
-    "check_controller",
     "worst_motion",
 ]

@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import Final
 
 from controller.defaults import REFERENCE_SPEED
-from controller.plug_ins.plug_in import Defaults
+from controller.plug_in import Defaults
 
 # Yang & Özgüner 2019: one speed, an open space without rules, exact positions, no safety layer.
 _PAPER: Final = Defaults(REFERENCE_SPEED, False, False, False, buffered=True)

@@ -14,15 +14,13 @@ from pedestrian_model.other_models.jupedsim import JUPEDSIM_MODELS, JuPedSimName
 from pedestrian_model.other_models.simple import PLAIN_MODELS, PlainModel, PlainName, unmoved
 from pedestrian_model.other_models.stepwise_prediction import StepwisePredictor
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
-from pedestrian_model.plug_ins.conformance import Finding, check_model
-from pedestrian_model.plug_ins.plug_in import (
+from pedestrian_model.plug_in import (
     Accelerations,
     ModelPlugIn,
     ModelSetup,
     Velocities,
     Walkers,
 )
-from pedestrian_model.plug_ins.plugged_in import PluggedInModel
 from pedestrian_model.protocol import CrowdPredictor, PedestrianModel
 from pedestrian_model.stepping import LONGEST_STEP
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
@@ -46,7 +44,6 @@ __all__ = [
     "CrowdModel",
     "CrowdPredictor",
     "DivergenceError",
-    "Finding",
     "JuPedSimName",
     "JuPedSimPeople",
     "ModelPlugIn",
@@ -57,7 +54,6 @@ __all__ = [
     "PlainModel",
     "PlainName",
     "PlugInError",
-    "PluggedInModel",
     "Predictor",
     "StepwisePredictor",
     "Surroundings",
@@ -70,7 +66,6 @@ __all__ = [
     "Walls",
     "any_arrived",
     "arrived",
-    "check_model",
     "remaining_distance",
     "require_steady",
     "targets",

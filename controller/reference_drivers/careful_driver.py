@@ -9,7 +9,7 @@ all other people, for stop lines and for leaders the driver brakes comfortably, 
 regulation's headway of 2 s to a leader. Numbers are cited from memory.
 
 The driver does not look for gaps and does not expect anybody to step onto its way. It is an example
-of a controller that uses the plug-in protocol, :mod:`controller.plug_ins.plug_in`.
+of a controller that uses the plug-in protocol, :mod:`controller.plug_in`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 
 from controller.observation import Observation
 from controller.parameters import require_not_negative, require_positive
-from controller.plug_ins.plug_in import Acceleration, Setup
+from controller.plug_in import Acceleration, Setup
 from controller.reference_drivers.people_ahead import people_ahead
 
 _G = 9.81  # acceleration of gravity [m/s^2]

@@ -9,7 +9,7 @@ left before the driver arrives does not count, nor does one who arrives after th
 Both need a margin of time.
 
 The driver is an example of a controller that uses the plug-in protocol,
-:mod:`controller.plug_ins.plug_in`.
+:mod:`controller.plug_in`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from controller._jit import Array
 from controller.observation import Observation
 from controller.parameters import require_not_negative, require_positive
-from controller.plug_ins.plug_in import Acceleration, Setup
+from controller.plug_in import Acceleration, Setup
 from controller.reference_drivers.people_ahead import people_ahead
 
 _AT_LINE = 0.5  # distance [m] to a stop line at standstill

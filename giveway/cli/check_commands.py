@@ -28,11 +28,8 @@ _Step = Annotated[
 def build_check() -> Commands:
     """Return the group of commands."""
     check = Commands("Check code of other packages.")
-    check.add("controller", _controller)
-    check.add("model", _model)
-    check.add("rule", _rule)
-
-    check.add("sensor", _sensor)
+    for command in (_controller, _model, _rule, _sensor, _metric):
+        check.add(command.__name__.removeprefix("_"), command)
     check.callback()(_check)
     return check
 
@@ -48,33 +45,35 @@ def _controller(
     time_step: _Step = None,
 ) -> None:
     """Check that a controller obeys the rules: it drives through made-up scenes, without SUMO."""
-    from giveway.cli.commands.check_command import check_command
-    from giveway.plug_ins.sockets import CONTROLLER
-
-    raise typer.Exit(
-        check_command(name, set_ or (), CONTROLLER, time_step=time_step, profile=controller_profile)
-    )
+    _run("controller", name, set_, time_step, controller_profile)
 
 
 def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Check that a pedestrian model obeys the rules: it moves people in made-up scenes."""
-    from giveway.cli.commands.check_command import check_command
-    from giveway.plug_ins.sockets import MODEL
-
-    raise typer.Exit(check_command(name, set_ or (), MODEL, time_step=time_step))
+    _run("pedestrian model", name, set_, time_step)
 
 
 def _rule(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Check that a rule of the road obeys the rules: an ego drives along a made-up road."""
-    from giveway.cli.commands.check_command import check_command
-    from giveway.plug_ins.sockets import RULE
-
-    raise typer.Exit(check_command(name, set_ or (), RULE, time_step=time_step))
+    _run("rule", name, set_, time_step)
 
 
 def _sensor(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Check that a sensor obeys the rules: it is shown people in made-up scenes."""
-    from giveway.cli.commands.check_command import check_command
-    from giveway.plug_ins.sockets import SENSOR
+    _run("sensor", name, set_, time_step)
 
-    raise typer.Exit(check_command(name, set_ or (), SENSOR, time_step=time_step))
+
+def _metric(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
+    """Check that a metric obeys the rules: it measures made-up drives past people."""
+    _run("metric", name, set_, time_step)
+
+
+def _run(
+    what: str, name: str, words: list[str] | None, time_step: float | None, profile: str = ""
+) -> None:
+    """Check a plug-in for the socket of these words, and end with the command's exit code."""
+    from giveway.cli.commands.check_command import check_command
+    from giveway.plug_ins.sockets import SOCKETS, TABLES
+
+    (socket,) = (one for one in (*SOCKETS, *TABLES) if one.what == what)
+    raise typer.Exit(check_command(name, words or (), socket, time_step=time_step, profile=profile))

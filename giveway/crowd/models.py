@@ -15,7 +15,8 @@ from giveway.crowd.motion.attention import Inattentive
 from giveway.crowd.motion.cohesion import BY_FORCES, Cohesive
 from giveway.crowd.roster import Roster
 from giveway.errors import CrowdError
-from giveway.plug_ins.finding import load_class
+from giveway.plug_ins.finding import load_maker
+from giveway.plug_ins.plugged_in_model import PluggedInModel
 from giveway.plug_ins.sockets import MODEL
 from pedestrian_model import (
     JUPEDSIM_MODELS,
@@ -25,7 +26,6 @@ from pedestrian_model import (
     PedestrianModel,
     PlainModel,
     PlainName,
-    PluggedInModel,
     PlugInError,
     VciParameters,
 )
@@ -121,8 +121,7 @@ def maker(name: str, config: RunConfig) -> Callable[[ModelSetup], object]:
     if name in JUPEDSIM_MODELS:
         require_jupedsim(name)
         return lambda setup: JuPedSimPeople(name, setup)
-    kind, options = load_class(name, MODEL, config.model_options)
-    return lambda setup: kind(setup) if options is None else kind(setup, options)
+    return load_maker(name, MODEL, config.model_options)
 
 
 def require_jupedsim(name: str) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from controller import PluggedIn, Setup
+from controller import Setup
 from giveway.config import EgoRunConfig
 from giveway.config.files.controller_fmu import prepared, setup_of
 from giveway.ego.fmu_plug_in import FmuPlugIn
-from giveway.plug_ins.finding import is_fmu, load_class, shown
+from giveway.plug_ins.finding import is_fmu, load_maker, shown
+from giveway.plug_ins.plugged_in_controller import PluggedIn
 from giveway.plug_ins.sockets import CONTROLLER
 
 
@@ -41,5 +42,4 @@ def maker(config: EgoRunConfig) -> Callable[[Setup], object]:
     """
     if is_fmu(config.controller):
         return lambda setup: FmuPlugIn(prepared(config, setup.time_step))
-    kind, options = load_class(config.controller, CONTROLLER, config.controller_options)
-    return lambda setup: kind(setup) if options is None else kind(setup, options)
+    return load_maker(config.controller, CONTROLLER, config.controller_options)

@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 
-from controller import Controller, PluggedIn, SafetyParameters, WorstMotion
+from controller import Controller, SafetyParameters, WorstMotion
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
 from giveway.ego.people_assumed import people_at_worst
 from giveway.ego.recorded_ego import RecordedVehicle
 from giveway.errors import VehicleError
+from giveway.plug_ins.plugged_in_controller import PluggedIn
 from pedestrian_model import CrowdPredictor
 
 

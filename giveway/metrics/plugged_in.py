@@ -16,7 +16,7 @@ from giveway.metrics.delays import DELAY_SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.metrics.pedestrians import WALK_SUMMARY_FIELDS
 from giveway.metrics.summary import SUMMARY_FIELDS
-from giveway.plug_ins.faults import described, shown
+from giveway.plug_ins.faults import blamed, described, shown
 from giveway.plug_ins.finding import load_class
 from giveway.plug_ins.sockets import METRIC
 from giveway.run_data.columns import SUMMARY_HEAD, Column, columns_of
@@ -65,31 +65,41 @@ class Measured:
     faults: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class _Declared:
-    """A metric as its package declares it, with the options of the run."""
+@dataclass
+class DeclaredMetric:
+    """A metric as its package declares it, with the options of the run.
+
+    Attributes:
+        name: Name of the metric, as the user wrote it.
+        kind: Class of the metric.
+        options: Instance of its ``Options``, or None if it has none.
+        columns: Columns that it declares.
+    """
 
     name: str
     kind: Any
     options: Any
     columns: tuple[Column, ...]
 
-    def values(self, drive: Any) -> dict[str, float]:
+    def measure(self, drive: Any) -> dict[str, float]:
         """Return the value of each column.
+
+        Args:
+            drive: :class:`~giveway.results.ego_result.EgoResult` of one ego.
 
         Raises:
             MetricError: the metric raised, or its answer cannot be used.
         """
-        try:
+        whose = f"metric '{self.name}' of '{drive.id}'"
+        with blamed(whose, MetricError):
             metric = self.kind() if self.options is None else self.kind(self.options)
             answer = metric.measure(drive)
-        except (Exception, SystemExit) as error:
-            raise MetricError(f"raised {described(error)}") from error
         if not isinstance(answer, self.kind.Columns):
-            raise MetricError(f"returned {shown(answer)}: expected an instance of its Columns")
+            msg = f"{whose} returned {shown(answer)}: expected an instance of its Columns"
+            raise MetricError(msg)
         attributes = dataclasses.fields(self.kind.Columns)
         return {
-            column.name: _checked(column, getattr(answer, attribute.name))
+            column.name: _checked(whose, column, getattr(answer, attribute.name))
             for column, attribute in zip(self.columns, attributes, strict=True)
         }
 
@@ -105,11 +115,9 @@ def metric_columns(config: RunConfig) -> tuple[Column, ...]:
         config: Configuration of the run.
 
     Raises:
-        ConfigError: the options of a metric cannot be used.
-        ControlError: a metric is not installed, or cannot be imported.
-        MetricError: a metric declares no columns, or one that another metric or giveway has.
+        GivewayError: a metric cannot be used, as :func:`declared` tells it.
     """
-    return tuple(column for metric in _declared(config) for column in metric.columns)
+    return tuple(column for metric in declared(config) for column in metric.columns)
 
 
 def measured(config: RunConfig, drive: Any) -> Measured:
@@ -125,19 +133,28 @@ def measured(config: RunConfig, drive: Any) -> Measured:
     columns: list[Column] = []
     values: dict[str, float] = {}
     faults: list[str] = []
-    for metric in _declared(config):
+    for metric in declared(config):
         columns += metric.columns
         try:
-            values |= metric.values(drive)
+            values |= metric.measure(drive)
         except MetricError as error:
             values |= dict.fromkeys((column.name for column in metric.columns), math.nan)
-            faults.append(f"metric '{metric.name}' of '{drive.id}' {error}; its columns are empty")
+            faults.append(f"{error}; its columns are empty")
     return Measured(tuple(columns), values, tuple(faults))
 
 
-def _declared(config: RunConfig) -> list[_Declared]:
-    """Return the metrics of a run, each with its columns, in the order of the configuration."""
-    found: list[_Declared] = []
+def declared(config: RunConfig) -> list[DeclaredMetric]:
+    """Return the metrics of a run, each with its columns, in the order of the configuration.
+
+    Args:
+        config: Configuration of the run.
+
+    Raises:
+        ConfigError: the options of a metric cannot be used.
+        ControlError: a metric is not installed, or cannot be imported.
+        MetricError: a metric declares no columns, or one that another metric or giveway has.
+    """
+    found: list[DeclaredMetric] = []
     owners = dict(_TAKEN)
     for name, settings in config.metrics.plugged_in.items():
         kind, options = load_class(name, METRIC, settings)
@@ -146,7 +163,7 @@ def _declared(config: RunConfig) -> list[_Declared]:
                 f"{METRIC.setting} = '{name}': {shown(kind)} has no method {METRIC.method}; "
                 "expected a class with one (docs/plugins.md)"
             )
-        metric = _Declared(name, kind, options, _columns(name, kind))
+        metric = DeclaredMetric(name, kind, options, _columns(name, kind))
         for column in metric.columns:
             if column.name in owners:
                 raise MetricError(
@@ -176,7 +193,7 @@ def _columns(name: str, kind: Any) -> tuple[Column, ...]:
     return columns
 
 
-def _checked(column: Column, value: Any) -> float:
+def _checked(whose: str, column: Column, value: Any) -> float:
     """Return the value of a column in Python's own type."""
     is_truth = isinstance(value, bool | np.bool_)
     if column.type == "boolean" and is_truth:
@@ -186,4 +203,6 @@ def _checked(column: Column, value: Any) -> float:
     is_number = column.type == "number" and isinstance(value, Real) and not is_truth
     if is_number and not math.isinf(number := float(value)):
         return number
-    raise MetricError(f"returned {column.name} = {shown(value)}: expected {_EXPECTED[column.type]}")
+    raise MetricError(
+        f"{whose} returned {column.name} = {shown(value)}: expected {_EXPECTED[column.type]}"
+    )

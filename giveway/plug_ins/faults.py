@@ -3,7 +3,15 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Entry = TypeVar("_Entry", bound=np.generic)
 
 _SHOWN = 80  # Number of characters of a value in a message
 
@@ -34,3 +42,27 @@ def shown(value: object) -> str:
     except Exception:
         text = f"a {type(value).__name__}"
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
+
+
+@contextmanager
+def blamed(name: str, kind: type[Exception], when: str = "") -> Iterator[None]:
+    """Turn whatever is raised in this context into an error that names the plug-in.
+
+    Args:
+        name: Name of the plug-in, for the message.
+        kind: Kind of the error; one of this kind keeps its own words.
+        when: Words for the occasion, like " when it was made".
+    """
+    try:
+        yield
+    except kind as error:
+        raise kind(f"{name}: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise kind(f"{name} raised {described(error)}{when}") from error
+
+
+def read_only(array: NDArray[_Entry]) -> NDArray[_Entry]:
+    """Return a view of an array that cannot be written."""
+    view = array.view()
+    view.flags.writeable = False
+    return view

@@ -16,7 +16,7 @@ import json
 import os
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from importlib import metadata
 from pathlib import Path
@@ -134,6 +134,31 @@ def load_class(name: str, socket: Socket, settings: Mapping[str, Any]) -> tuple[
             f"{socket.method} (docs/plugins.md)"
         )
     return kind, read_options(name, getattr(kind, "Options", None), settings, socket)
+
+
+def maker_of(make: Any, options: Any) -> Callable[[Any], object]:
+    """Return the function that makes a plug-in for a setup, its options filled in.
+
+    Args:
+        make: Class of the plug-in, or another factory.
+        options: Instance of its ``Options``, or None if it has none.
+    """
+    return lambda setup: make(setup) if options is None else make(setup, options)
+
+
+def load_maker(name: str, socket: Socket, settings: Mapping[str, Any]) -> Callable[[Any], object]:
+    """Return the function that makes the plug-in of a name, as :func:`load_class` finds it.
+
+    Args:
+        name: Name of the plug-in.
+        socket: Socket that it is for.
+        settings: Settings of its options, as the user has set them.
+
+    Raises:
+        ConfigError: its options cannot be used.
+        ControlError: it is not installed, cannot be imported, or is no class.
+    """
+    return maker_of(*load_class(name, socket, settings))
 
 
 def _declared(name: str, socket: Socket) -> str:

@@ -6,55 +6,40 @@ and list the rules that a controller or a pedestrian model breaks (docs/plugins.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from collections.abc import Callable
+from typing import Any
 
 import pytest
-
-
-class _Finding(Protocol):
-    @property
-    def rule(self) -> str: ...
-
-    @property
-    def problem(self) -> str: ...
 
 
 @pytest.fixture
 def require_sound_controller() -> Callable[..., None]:
     """Return a check that fails unless a controller (with its ``Options``) obeys all rules."""
-    from controller import Setup, check_controller
+    from controller import Setup
+    from giveway.plug_ins.conformance import check_controller
 
-    setup = Setup(0.05, 1000.0, 100.0, 4.0, 2.0, 5000.0, 2.0)
-
-    def require(kind: Any, **options: Any) -> None:
-        _require(check_controller(_maker(kind, options), setup), kind)
-
-    return require
+    return _check(check_controller, Setup(0.05, 1000.0, 100.0, 4.0, 2.0, 5000.0, 2.0))
 
 
 @pytest.fixture
 def require_sound_model() -> Callable[..., None]:
     """Return a check that fails unless a pedestrian model obeys all rules."""
-    from pedestrian_model import ModelSetup, check_model
+    from giveway.plug_ins.conformance import check_model
+    from pedestrian_model import ModelSetup
 
-    setup = ModelSetup(0.05, 0.27, 5.0, 2.5, 1)
-
-    def require(kind: Any, **options: Any) -> None:
-        _require(check_model(_maker(kind, options), setup), kind)
-
-    return require
+    return _check(check_model, ModelSetup(0.05, 0.27, 5.0, 2.5, 1))
 
 
-def _maker(kind: Any, options: dict[str, Any]) -> Callable[[Any], object]:
-    """Return a function that makes the plug-in as giveway does."""
+def _check(findings_of: Callable[..., Any], setup: Any) -> Callable[..., None]:
+    """Return the check of one socket, which makes plug-ins in the way giveway does."""
+    from giveway.plug_ins.finding import maker_of
     from giveway.plug_ins.options import read_options
 
-    own = read_options(kind.__name__, getattr(kind, "Options", None), options)
-    return lambda setup: kind(setup) if own is None else kind(setup, own)
+    def require(kind: Any, **options: Any) -> None:
+        own = read_options(kind.__name__, getattr(kind, "Options", None), options)
+        findings = findings_of(maker_of(kind, own), setup)
+        broken = [f"{finding.rule}: {finding.problem}" for finding in findings if finding.problem]
+        if broken:
+            pytest.fail("\n".join([f"{kind.__name__} breaks rules:", *broken]), pytrace=False)
 
-
-def _require(findings: Sequence[_Finding], kind: Any) -> None:
-    broken = [f"{finding.rule}: {finding.problem}" for finding in findings if finding.problem]
-    if broken:
-        pytest.fail("\n".join([f"{kind.__name__} breaks rules:", *broken]), pytrace=False)
+    return require

@@ -23,7 +23,7 @@ from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 from pedestrian_model.errors import PlugInError
 from pedestrian_model.other_models.simple import speed_before
 from pedestrian_model.other_models.social_force import RELAXATION
-from pedestrian_model.plug_ins.plug_in import Array, ModelSetup, Velocities, Walkers
+from pedestrian_model.plug_in import Array, ModelSetup, Velocities, Walkers
 
 JuPedSimName = Literal["jupedsim:CollisionFreeSpeedModel", "jupedsim:SocialForceModel"]
 JUPEDSIM_MODELS: Final[tuple[JuPedSimName, ...]] = get_args(JuPedSimName)

@@ -280,3 +280,19 @@ def test_a_results_folder_alone_imports_no_metric(near: None, tmp_path: Path) ->
     giveway.run(settings, results=tmp_path / "run", pictures=False)
     with pytest.raises(ConfigError, match="--metric fast_and_near:FastAndNear"):
         giveway.run(str(tmp_path / "run" / "config.toml"))
+
+
+def test_check_says_whether_a_metric_keeps_to_the_rules(
+    near: None,
+    installed: Callable[..., Path],  # noqa: F811
+    type_here: Callable[..., Any],
+) -> None:
+    words = printed("metric check").split()[1:]
+    typed = type_here(*words)
+    assert typed.returncode == 0, typed.stdout
+    assert "fast-and-near: sound" in typed.stdout
+    installed("own", own(body="return Columns(1 // len(drive.crowd.ids))"))
+    typed = type_here("check", "metric", "own:Own")
+    assert typed.returncode == 1
+    assert "broken  answers in corner cases" in typed.stdout
+    assert "nobody: metric 'own:Own' of 'ego' raised ZeroDivisionError" in typed.stdout

@@ -15,7 +15,8 @@ from giveway.config.files.foreign_code import foreign_code, require_code
 from giveway.config.files.layers import Layer, build_config
 from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
-from giveway.plug_ins.sockets import CONTROLLER, RULE, SENSOR, Socket
+from giveway.plug_ins.conformance.battery import Begins, Finding
+from giveway.plug_ins.sockets import CONTROLLER, METRIC, MODEL, RULE, SENSOR, TABLES, Socket
 from pedestrian_model import JUPEDSIM_MODELS
 
 LIMIT = 60.0  # Time limit [s] of a rule; most take a tenth of a second
@@ -66,13 +67,13 @@ def _configured(
     name: str, words: Sequence[str], socket: Socket, time_step: float | None, profile: str
 ) -> RunConfig:
     settings: dict[str, Any] = {socket.options: set_options(words)}
-    if socket is RULE:
-        settings = {RULE.options: {name: settings[RULE.options] or True}}
+    if socket in TABLES:  # whose keys are the names
+        settings = {socket.options: {name: settings[socket.options] or True}}
     if time_step is not None:
         settings["time_step"] = time_step
     if profile:
         settings["controller_profile"] = profile
-    if socket is not RULE:  # the name of a rule is a key
+    if socket not in TABLES:
         node = settings
         for table in socket.location[:-1]:
             node = node.setdefault(table, {})
@@ -93,14 +94,13 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
     )
     process.start()
     theirs.close()
-    begun, rule = list[str](), "can be made"
+    begun: list[str] = []
     try:
         while ours.poll(limit if begun else limit + _START):
             message = ours.recv()
             if not isinstance(message, str):
                 return list(message)
-            begun.append(rule)
-            rule = message
+            begun.append(message)
         problem = f"does not come back: ended after {limit:g} s"
     except EOFError:
         process.join(_END)
@@ -108,49 +108,68 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
     finally:
         process.kill()
         process.join()
-    return [*((one, "") for one in begun), (rule, problem)]
+    *kept, broken = begun or ["can be made"]
+    return [*((rule, "") for rule in kept), (broken, problem)]
 
 
 def _battery(connection: Connection, config: str, what: str) -> None:
-    """Print each rule's name before it is tried, and the findings after it.
+    """Send each rule's name before it is tried, then all findings.
 
     This function runs in the other process.
     """
     effective = RunConfig.model_validate_json(config)
-    step = effective.time_step or PAPER_STEP
-    if what == CONTROLLER.what:
-        from controller import check_controller
-        from fmus import processes_reused
-        from giveway.config.files.controller_fmu import setup_of
-        from giveway.ego import plug_in
+    found = _KITS[what](effective, effective.time_step or PAPER_STEP, connection.send)
+    connection.send([(finding.rule, finding.problem) for finding in found])
 
-        (own,) = effective.each_ego()
-        with processes_reused():
-            found = check_controller(
-                plug_in.maker(own), setup_of(own, step), begins=connection.send
-            )
-        connection.send([(finding.rule, finding.problem) for finding in found])
-    elif what == RULE.what:
-        from giveway.ego.rules.plug_ins.conformance import check_rule, made_up_route
-        from giveway.ego.rules.plug_ins.plug_in import maker
 
-        (own,) = effective.each_ego()
-        ((name, settings),) = own.rules.plugged_in.items()
-        ruled = check_rule(maker(name, settings), made_up_route(own, step), connection.send)
-        connection.send([(finding.rule, finding.problem) for finding in ruled])
-    elif what == SENSOR.what:
-        from giveway.ego.perception import plugged_in_sensor as sensors
-        from giveway.ego.perception.conformance import check_sensor
+def _controller(config: RunConfig, step: float, begins: Begins) -> list[Finding]:
+    from fmus import processes_reused
+    from giveway.config.files.controller_fmu import setup_of
+    from giveway.ego import plug_in
+    from giveway.plug_ins.conformance.controllers import check_controller
 
-        (own,) = effective.each_ego()
-        told = check_sensor(sensors.maker(own), sensors.setup_of(own, step), connection.send)
-        connection.send([(finding.rule, finding.problem) for finding in told])
-    else:
-        from giveway.crowd import models
-        from pedestrian_model import check_model
+    (own,) = config.each_ego()
+    with processes_reused():
+        return check_controller(plug_in.maker(own), setup_of(own, step), begins)
 
-        setup = models.setup_of(effective, step)
-        said = check_model(
-            models.maker(effective.crowd.model, effective), setup, begins=connection.send
-        )
-        connection.send([(finding.rule, finding.problem) for finding in said])
+
+def _model(config: RunConfig, step: float, begins: Begins) -> list[Finding]:
+    from giveway.crowd import models
+    from giveway.plug_ins.conformance.models import check_model
+
+    make = models.maker(config.crowd.model, config)
+    return check_model(make, models.setup_of(config, step), begins=begins)
+
+
+def _rule(config: RunConfig, step: float, begins: Begins) -> list[Finding]:
+    from giveway.ego.rules.plug_ins.conformance import check_rule, made_up_route
+    from giveway.ego.rules.plug_ins.plug_in import maker
+
+    (own,) = config.each_ego()
+    ((name, settings),) = own.rules.plugged_in.items()
+    return check_rule(maker(name, settings), made_up_route(own, step), begins)
+
+
+def _sensor(config: RunConfig, step: float, begins: Begins) -> list[Finding]:
+    from giveway.ego.perception import plugged_in_sensor as sensors
+    from giveway.ego.perception.conformance import check_sensor
+
+    (own,) = config.each_ego()
+    return check_sensor(sensors.maker(own), sensors.setup_of(own, step), begins)
+
+
+def _metric(config: RunConfig, step: float, begins: Begins) -> list[Finding]:
+    from giveway.metrics.plugged_in import declared
+    from giveway.results.metric_conformance import check_metric
+
+    return check_metric(lambda: declared(config)[0], config.each_ego()[0], step, begins)
+
+
+_KITS = {
+    CONTROLLER.what: _controller,
+    MODEL.what: _model,
+    RULE.what: _rule,
+    SENSOR.what: _sensor,
+    METRIC.what: _metric,
+}
+"""The kit of each socket: it takes configuration, control step [s] and the listener to rules."""

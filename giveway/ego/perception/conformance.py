@@ -1,14 +1,12 @@
-"""Checks that a sensor keeps to the protocol, by made-up scenes that need no SUMO.
+"""The conformance kit of sensors: a battery of made-up scenes that need no SUMO.
 
 A dozen people walk past a car that drives by a parked car and a wall.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from dataclasses import dataclass
-from math import cos, sin
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -19,28 +17,14 @@ from giveway.errors import SensorError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import Pose
+from giveway.plug_ins.conformance.battery import TURN, Battery, Begins, Finding, moved, turned
 from pedestrian_model import Crowd
 
-_STEPS = 60  # number of observations in each scene
+_STEPS = 60  # Observations in each scene
 _PEOPLE = 12
-_SLOW = 5e-3  # longest permitted time [s] of an observation: a tenth of the control step
-_SAME = 1e-9  # tolerance [m] of equal positions
-_TURN, _SHIFT = 0.9, np.array([120.0, -45.0])  # [rad], [m]
+_SAME = 1e-9  # Rounding [m]
 _SHAPE = VehicleShape(4.5, 1.8)
 _PARKED = 8.0, 4.0, 0.0, 0.0, 2.25, 2.25, 1.8  # x, y [m], heading, speed, front, rear, width
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One rule, and what breaks it.
-
-    Attributes:
-        rule: Rule in a few words.
-        problem: Observation that breaks the rule; empty if the rule is kept.
-    """
-
-    rule: str
-    problem: str = ""
 
 
 class _Scene:
@@ -48,79 +32,45 @@ class _Scene:
 
     def __init__(self, time_step: float, *, turned: bool = False, order: int = 1) -> None:
         random = np.random.default_rng(1)
-        self._time_step, self._turn = time_step, _TURN if turned else 0.0
-        self._shift = _SHIFT if turned else np.zeros(2)
+        self._time_step, self._is_turned = time_step, turned
         self._start = random.uniform((0.0, -9.0), (40.0, 9.0), (_PEOPLE, 2))[::order]
         self._velocity = random.uniform(-1.5, 1.5, (_PEOPLE, 2))[::order]
         self.ids = np.ascontiguousarray(3 + 2 * np.arange(_PEOPLE)[::order])
 
     def _placed(self, points: Array) -> Array:
-        """The points [m] of the scene, turned and shifted."""
-        return np.asarray(self._turned(points) + self._shift)
-
-    def _turned(self, vectors: Array) -> Array:
-        c, s = cos(self._turn), sin(self._turn)
-        return np.asarray(vectors @ np.array([[c, s], [-s, c]]))
+        """Points [m] of the scene where they lie."""
+        return moved(points) if self._is_turned else points
 
     def at(self, step: int) -> tuple[Truth, OwnState]:
         """The truth and the own state at a control step."""
         clock = step * self._time_step
         here = self._start + clock * self._velocity
         goals = list(self._placed(here + 20.0 * self._velocity)[:, None])
-        people = Crowd.create(self._placed(here), self._turned(self._velocity), 1.3, goals)
+        velocity = turned(self._velocity) if self._is_turned else self._velocity
+        people = Crowd.create(self._placed(here), velocity, 1.3, goals)
         front = np.array([[4.0 * clock, 0.0]])
         middle = front - [[_SHAPE.length / 2.0, 0.0]]
         vehicles = np.array([(*middle[0], 0.0, 4.0, 2.25, 2.25, _SHAPE.width), _PARKED])
         vehicles[:, :2] = self._placed(vehicles[:, :2])
-        vehicles[:, 2] += self._turn
+        heading = TURN if self._is_turned else 0.0
+        vehicles[:, 2] += heading
         wall = self._placed(np.array([[15.0, 5.0], [25.0, 5.0]])).reshape(1, 4)
         x, y = self._placed(front)[0].tolist()
-        pose = Pose(x, y, self._turn)
+        pose = Pose(x, y, heading)
         return Truth(people, vehicles, wall, clock), OwnState(pose, 4.0, 0, _SHAPE)
 
 
 def check_sensor(
-    make: Callable[[SensorSetup], object],
-    setup: SensorSetup,
-    begins: Callable[[str], None] | None = None,
+    make: Callable[[SensorSetup], object], setup: SensorSetup, begins: Begins | None = None
 ) -> list[Finding]:
-    """The battery.
+    """Return a finding for each rule of sensors, kept or broken.
 
     Args:
         make: Function that makes the sensor for a setup.
         setup: Setup of the scenes.
-        begins: Function that is told each rule before it is checked; None if nobody listens.
-
-    Returns:
-        A finding for each rule, kept or broken.
+        begins: Function that is told each rule before it is checked, or None.
     """
-    battery = _Battery(make, setup)
-    try:
-        battery.fresh()
-    except SensorError as error:
-        return [Finding("can be made", str(error))]
-    rules: dict[str, Callable[[], str]] = {
-        "answers with a percept": battery.usual,
-        "answers in corner cases": battery.corner_cases,
-        "keeps to the bounds that it claims": battery.bounds,
-        "perceives the same when it is made again": battery.deterministic,
-        "is independent of others of its kind": battery.independent,
-        "does not depend on the order of people": battery.order,
-        "does not depend on where and how the ground lies": battery.frame,
-        "keeps no array that is not its own": battery.aliasing,
-        "is quick": battery.quick,
-    }
-    findings = [Finding("can be made")]
-    for rule, check in rules.items():
-        if begins is not None:
-            begins(rule)
-        try:
-            findings.append(Finding(rule, check()))
-        except SensorError as error:
-            findings.append(Finding(rule, str(error)))
-        if findings[-1].problem and rule == "answers with a percept":
-            return findings  # nothing else can be asked
-    return findings
+    return _Battery(make, setup).findings(begins)
 
 
 class _Copied:
@@ -139,68 +89,85 @@ class _Copied:
 _Perceived = list[tuple[Ids, Array]]  # by step: person ids in ascending order, positions [m]
 
 
-class _Battery:
-    """The checks; each returns what is wrong, or nothing."""
+class _Battery(Battery[PluggedInSensor, _Perceived]):
+    faults = (SensorError,)
+    method = "observe"
 
     def __init__(self, make: Callable[[SensorSetup], object], setup: SensorSetup) -> None:
         self._make, self._setup = make, setup
 
+    def rules(self) -> dict[str, Callable[[], str]]:
+        return {
+            "can be made": self.can_be_made,
+            "answers with a percept": self.usual,
+            "answers in corner cases": self.in_corner_cases,
+            "keeps to the bounds that it claims": self.bounds,
+            "perceives the same when it is made again": self.deterministic,
+            "is independent of others of its kind": self.independent,
+            "does not depend on the order of people": self.unordered,
+            "does not depend on where and how the ground lies": self.unturned,
+            "keeps no array that is not its own": self.aliasing,
+            "is quick": self.quick,
+        }
+
     def fresh(self) -> PluggedInSensor:
-        """A new sensor."""
         return PluggedInSensor("it", lambda: self._make(self._setup))
 
-    def _watch(
+    def answers(
         self,
-        sensor: PluggedInSensor,
+        hosted: PluggedInSensor,
         *,
-        turned: bool = False,
-        order: int = 1,
         other: PluggedInSensor | None = None,
+        order: int = 1,
+        turned: bool = False,
     ) -> _Perceived:
         scene = _Scene(self._setup.time_step, turned=turned, order=order)
         perceived = []
         for step in range(_STEPS):
             truth, own = scene.at(step)
-            people, ids, _, _ = sensor.observe(truth, scene.ids, own)
+            people, ids, _, _ = hosted.observe(truth, scene.ids, own)
             rows = np.argsort(ids)
             perceived.append((ids[rows], people.position[rows]))
             if other is not None:
                 other.observe(truth, scene.ids, own)
         return perceived
 
-    def _difference(self, perceived: _Perceived, what: str, *, ids_only: bool = False) -> str:
-        for step, (usual, now) in enumerate(zip(self._watch(self.fresh()), perceived, strict=True)):
-            others = set(usual[0].tolist()) ^ set(now[0].tolist())
+    def difference(self, found: _Perceived, usual: _Perceived) -> str:
+        for step, (before, now) in enumerate(zip(usual, found, strict=True)):
+            others = set(before[0].tolist()) ^ set(now[0].tolist())
             if others:
-                return f"{what}: at step {step} person {min(others)} is perceived once only"
-            if not ids_only and len(now[0]) and np.abs(usual[1] - now[1]).max() > _SAME:
-                return f"{what}: at step {step} somebody is perceived elsewhere"
+                return f"at step {step} person {min(others)} is perceived once only"
+            if len(now[0]) and np.abs(before[1] - now[1]).max() > _SAME:
+                return f"at step {step} somebody is perceived elsewhere"
         return ""
 
-    def usual(self) -> str:
-        self._watch(self.fresh())
-        return ""
+    def unturned(self) -> str:
+        """Compare the people who are perceived, wherever, with everything turned and shifted."""
+        usual = self.answers(self.fresh())
+        found = self.answers(self.fresh(), turned=True)
+        ids_only = [
+            [(ids, np.zeros((len(ids), 2))) for ids, _ in perceived] for perceived in (found, usual)
+        ]
+        difference = self.difference(*ids_only)
+        return f"with everything turned and shifted: {difference}" if difference else ""
 
-    def corner_cases(self) -> str:
-        truth, own = _Scene(self._setup.time_step).at(0)
-        alone = truth.vehicles[:1]
-        nobody, one = Crowd.empty(), truth.people.select(np.arange(_PEOPLE) == 0)
+    def corner_cases(self) -> Iterator[tuple[str, Callable[[PluggedInSensor], object]]]:
+        truth, _ = _Scene(self._setup.time_step).at(0)
         both = Crowd.create(np.full((2, 2), 4.0), np.zeros((2, 2)), 1.3, [[[9.0, 0.0]]] * 2)
         inside = Crowd.create([[-1.0, 0.0]], [[0.0, 0.0]], 1.3, [[[9.0, 0.0]]])
-        for name, people in (
-            ("nobody", nobody),
-            ("somebody alone", one),
-            ("two people in the same place", both),
-            ("somebody in the midst of the ego", inside),
-        ):
-            sensor, bare = self.fresh(), Truth(people, alone, np.empty((0, 4)), 0.0)
-            try:
-                for _ in range(3):
-                    sensor.observe(bare, np.arange(len(people)), own)
-                    sensor.observe(Truth(nobody, alone, bare.outlines, 1.0), np.arange(0), own)
-            except SensorError as error:
-                return f"{name}: {error}"
-        return ""
+        yield "nobody", partial(self._look_at, people=Crowd.empty())
+        alone = truth.people.select(np.arange(_PEOPLE) == 0)
+        yield "somebody alone", partial(self._look_at, people=alone)
+        yield "two people in the same place", partial(self._look_at, people=both)
+        yield "somebody in the midst of the ego", partial(self._look_at, people=inside)
+
+    def _look_at(self, sensor: PluggedInSensor, people: Crowd) -> None:
+        """Show these people, then nobody, three times."""
+        truth, own = _Scene(self._setup.time_step).at(0)
+        alone, no_walls = truth.vehicles[:1], np.empty((0, 4))
+        for _ in range(3):
+            sensor.observe(Truth(people, alone, no_walls, 0.0), np.arange(len(people)), own)
+            sensor.observe(Truth(Crowd.empty(), alone, no_walls, 1.0), np.arange(0), own)
 
     def bounds(self) -> str:
         scene, sensor = _Scene(self._setup.time_step), self.fresh()
@@ -216,33 +183,7 @@ class _Battery:
                 return f"person {who} at step {step}: {off.max():.3g} m farther off than its bound"
         return ""
 
-    def deterministic(self) -> str:
-        return self._difference(self._watch(self.fresh()), "made again, it answers otherwise")
-
-    def independent(self) -> str:
-        perceived = self._watch(self.fresh(), other=self.fresh())
-        return self._difference(perceived, "beside another one, it answers otherwise")
-
-    def order(self) -> str:
-        perceived = self._watch(self.fresh(), order=-1)
-        return self._difference(perceived, "with the people in another order, it answers otherwise")
-
-    def frame(self) -> str:
-        perceived = self._watch(self.fresh(), turned=True)
-        return self._difference(perceived, "with everything turned and shifted", ids_only=True)
-
     def aliasing(self) -> str:
         copied = PluggedInSensor("it", lambda: _Copied(self._make(self._setup)))
-        return self._difference(
-            self._watch(copied), "where arrays are overwritten after the call, it answers otherwise"
-        )
-
-    def quick(self) -> str:
-        scene, sensor, times = _Scene(self._setup.time_step), self.fresh(), []
-        for step in range(_STEPS):
-            truth, own = scene.at(step)
-            began = time.thread_time()
-            sensor.observe(truth, scene.ids, own)
-            times.append(time.thread_time() - began)
-        median = float(np.median(times))
-        return f"takes {1e3 * median:.1f} ms for an observation" if median > _SLOW else ""
+        what = "where arrays are overwritten after the call, it answers otherwise"
+        return self.unlike(self.answers(copied), what)

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from controller.plug_ins.plugged_in import described
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, Sensor, SensorSetup
 from giveway.ego.perception.truth import Truth
 from giveway.errors import SensorError
-from giveway.plug_ins.finding import load_class
+from giveway.plug_ins.faults import blamed, shown
+from giveway.plug_ins.finding import load_maker
 from giveway.plug_ins.sockets import SENSOR
 from pedestrian_model import Crowd
 
@@ -56,8 +56,7 @@ def maker(config: EgoRunConfig) -> Callable[[SensorSetup], object]:
         ConfigError: an option of the sensor cannot be used.
         ControlError: the sensor is not installed, or cannot be imported.
     """
-    kind, options = load_class(config.perception.sensor, SENSOR, config.sensor_options)
-    return lambda setup: kind(setup) if options is None else kind(setup, options)
+    return load_maker(config.perception.sensor, SENSOR, config.sensor_options)
 
 
 class PluggedInSensor:
@@ -75,10 +74,8 @@ class PluggedInSensor:
 
     def __init__(self, name: str, make: Callable[[], object]) -> None:
         self._name = name
-        try:
+        with blamed(name, SensorError, " when it was made"):
             sensor = make()
-        except (Exception, SystemExit) as error:
-            raise SensorError(f"{name} raised {described(error)} when it was made") from error
         if not isinstance(sensor, Sensor):
             raise self._unusable(sensor, "an object with a method observe", "made")
         self._sensor = sensor
@@ -98,16 +95,14 @@ class PluggedInSensor:
         """
         everybody = np.ones(len(person_ids), dtype=np.bool_)
         self._room = truth.people.select(everybody, self._room)
-        shown = Truth(self._room, truth.vehicles.copy(), truth.outlines.copy(), truth.time)
+        copied = Truth(self._room, truth.vehicles.copy(), truth.outlines.copy(), truth.time)
         own = OwnState(ego.pose, ego.speed, ego.row, ego.shape)
         most = int(person_ids.max(initial=-1)) + 1
         if most > len(self._known):
             self._known = np.concatenate([self._known, np.zeros(most, dtype=np.bool_)])
         self._known[person_ids] = True
-        try:
-            answer = self._sensor.observe(shown, person_ids.copy(), own)
-        except (Exception, SystemExit) as error:
-            raise SensorError(f"{self._name} raised {described(error)}") from error
+        with blamed(self._name, SensorError):
+            answer = self._sensor.observe(copied, person_ids.copy(), own)
         return self._checked(answer)
 
     def _checked(self, answer: Any) -> Percept:
@@ -141,5 +136,5 @@ class PluggedInSensor:
         return answer
 
     def _unusable(self, value: object, expected: str, verb: str = "returned") -> SensorError:
-        text = " ".join(repr(value).split())[:80]
-        return SensorError(f"{self._name} {verb} {text}: expected {expected} (docs/plugins.md)")
+        told = f"{self._name} {verb} {shown(value)}"
+        return SensorError(f"{told}: expected {expected} (docs/plugins.md)")

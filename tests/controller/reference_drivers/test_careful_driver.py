@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from controller import Observation, ParameterError, Setup, check_controller
+from controller import Observation, ParameterError, Setup
 from controller.reference_drivers.careful_driver import CarefulDriver, CarefulOptions
+from giveway.plug_ins.conformance import check_controller
 
 SETUP = Setup(0.05, 1000.0, 100.0, 13.9, 2.0, 8000.0, 2.0)
 

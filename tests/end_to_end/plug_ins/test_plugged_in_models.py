@@ -18,9 +18,10 @@ from giveway.config.files.loading import load
 from giveway.cosimulation.counterfactual import counterfactual
 from giveway.cosimulation.counterfactual.follow_up import Beginning
 from giveway.errors import ConfigError, ControlError, CrowdError
+from giveway.plug_ins.conformance import check_model
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.repeated_run import checked_run
-from pedestrian_model import Crowd, ModelSetup, check_model
+from pedestrian_model import Crowd, ModelSetup
 
 GROUP = "giveway.pedestrian_models"
 SHORT = {"controller": "pid-tuned", "time_limit": 2.0}

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from giveway.plug_ins.conformance import check_model
+from giveway.plug_ins.plugged_in_model import PluggedInModel
 from pedestrian_model import (
     JUPEDSIM_MODELS,
     SIM,
     Crowd,
     JuPedSimPeople,
     ModelSetup,
-    PluggedInModel,
     Surroundings,
     Vehicles,
     Walls,
-    check_model,
 )
 
 jupedsim = pytest.importorskip("jupedsim")

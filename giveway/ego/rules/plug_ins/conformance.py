@@ -1,4 +1,4 @@
-"""Checks that a rule of another package keeps to the protocol, by drives that need no SUMO.
+"""The conformance kit of rules of the road: a battery of drives that need no SUMO.
 
 An ego drives 300 m along a straight road of three edges, "first", "second" and "third", each 100 m
 long, among a dozen people and behind a vehicle. Each check describes in words what is wrong.
@@ -6,16 +6,15 @@ long, among a dozen people and behind a vehicle. Each check describes in words w
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from copy import copy
+from functools import partial
 from math import inf
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from controller import Finding
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.plug_ins.plug_in import Maker, made
@@ -25,13 +24,13 @@ from giveway.ego.rules.route import RouteContext
 from giveway.errors import RuleError
 from giveway.geometry.bodies import BODY
 from giveway.geometry.path import EgoPath
+from giveway.plug_ins.conformance.battery import Battery, Begins, Finding
 from giveway.sumo.network.lane_path import LanePath, Light, SpeedLimit
 from pedestrian_model import Crowd
 
 _STEPS = 250
 _STRIDE = 1.2  # distance [m] between two instants of the drive
 _PEOPLE = 12
-_SLOW = 5e-4  # longest permitted time [s] of a call: a hundredth of the control step
 _BEHIND = 1.0  # distance [m] by which a demanded stop may lie behind the front bumper
 _MORNING = 8.0 * 3600.0  # SUMO's clock [s] at the departure
 
@@ -98,103 +97,72 @@ def _corner_cases() -> Iterator[tuple[str, Situation]]:
     yield "a clock after midnight", Situation(90_000.0, 50.0, 8.0)
 
 
-def check_rule(
-    make: Maker, route: RouteContext, begins: Callable[[str], None] | None = None
-) -> list[Finding]:
-    """The battery.
+def check_rule(make: Maker, route: RouteContext, begins: Begins | None = None) -> list[Finding]:
+    """Return a finding for each check of rules of the road, kept or broken.
 
     Args:
-        make: What makes the rule for a route.
+        make: Function that makes the rule for a route.
         route: Route that it is made for, as `made_up_route` has it.
-        begins: Told each check before it is made.
-
-    Returns:
-        A finding for each check, kept or broken.
+        begins: Function that is told each check before it is made, or None.
     """
-    battery = _Battery(make, route)
-    checks: dict[str, Callable[[], str]] = {
-        "can be made, and has a say on the made-up road": battery.can_be_made,
-        "answers sound demands": battery.usual,
-        "answers in corner cases": battery.corner_cases,
-        "is the same when it is made again": battery.deterministic,
-        "is independent of others of its kind": battery.independent,
-        "does not depend on the order of people": battery.order,
-        "changes nothing of the situation": battery.situation_kept,
-        "demands no stop behind the ego": battery.stops_ahead,
-        "is quick": battery.quick,
-    }
-    findings: list[Finding] = []
-    for check, run in checks.items():
-        if begins is not None:
-            begins(check)
-        try:
-            findings.append(Finding(check, run()))
-        except RuleError as error:
-            findings.append(Finding(check, str(error)))
-        if findings[-1].problem and len(findings) <= 2:
-            break  # nothing else can be asked
-    return findings
+    return _Battery(make, route).findings(begins)
 
 
-class _Battery:
-    """The checks; each returns what is wrong, or nothing."""
+class _Battery(Battery[PluggedInRule, list[Demand]]):
+    faults = (RuleError,)
+    method = "demand"
+    longest = 5e-4  # A hundredth of the control step
 
     def __init__(self, make: Maker, route: RouteContext) -> None:
         self._make, self._route = make, route
 
-    def _fresh(self) -> PluggedInRule:
+    def rules(self) -> dict[str, Callable[[], str]]:
+        return {
+            "can be made, and has a say on the made-up road": self.can_be_made,
+            "answers sound demands": self.usual,
+            "answers in corner cases": self.in_corner_cases,
+            "is the same when it is made again": self.deterministic,
+            "is independent of others of its kind": self.independent,
+            "does not depend on the order of people": self.unordered,
+            "changes nothing of the situation": self.situation_kept,
+            "demands no stop behind the ego": self.stops_ahead,
+            "is quick": self.quick,
+        }
+
+    def fresh(self) -> PluggedInRule:
         rule = made("it", self._make, self._route)
         if rule is None:
             raise RuleError("it has nothing to say there: set its options so that it has (--set)")
         return rule
 
-    def _drive(
-        self, rule: PluggedInRule, *, other: PluggedInRule | None = None, order: int = 1
+    def answers(
+        self,
+        hosted: PluggedInRule,
+        *,
+        other: PluggedInRule | None = None,
+        order: int = 1,
+        turned: bool = False,  # noqa: ARG002 - the road has no other place
     ) -> list[Demand]:
         demands = []
         for step in range(_STEPS):
-            now = situation(step, order=order)
-            demands.append(_ask(rule, now))
+            demands.append(_ask(hosted, situation(step, order=order)))
             if other is not None:
                 _ask(other, situation(_STEPS - step, seed=7))
         return demands
 
-    def _difference(self, demands: list[Demand], what: str) -> str:
-        for step, pair in enumerate(zip(demands, self._drive(self._fresh()), strict=True)):
-            there, usual = map(_plain, pair)
-            if there != usual:
-                return f"{what}: {there} in place of {usual} at step {step}"
+    def difference(self, found: list[Demand], usual: list[Demand]) -> str:
+        for step, pair in enumerate(zip(found, usual, strict=True)):
+            there, before = map(_plain, pair)
+            if there != before:
+                return f"{there} in place of {before} at step {step}"
         return ""
 
-    def can_be_made(self) -> str:
-        self._fresh()
-        return ""
-
-    def usual(self) -> str:
-        self._drive(self._fresh())
-        return ""
-
-    def corner_cases(self) -> str:
+    def corner_cases(self) -> Iterator[tuple[str, Callable[[PluggedInRule], object]]]:
         for name, now in _corner_cases():
-            try:
-                _ask(self._fresh(), now)
-            except RuleError as error:
-                return f"{name}: {error}"
-        return ""
-
-    def deterministic(self) -> str:
-        return self._difference(self._drive(self._fresh()), "made again, it answers otherwise")
-
-    def independent(self) -> str:
-        demands = self._drive(self._fresh(), other=self._fresh())
-        return self._difference(demands, "beside another one, it answers otherwise")
-
-    def order(self) -> str:
-        demands = self._drive(self._fresh(), order=-1)
-        return self._difference(demands, "with the people in another order, it answers otherwise")
+            yield name, partial(_ask, now=now)
 
     def situation_kept(self) -> str:
-        rule = self._fresh()
+        rule = self.fresh()
         for step in range(_STEPS):
             now = situation(step)
             before = copy(now)
@@ -208,21 +176,11 @@ class _Battery:
         return ""
 
     def stops_ahead(self) -> str:
-        for step, demand in enumerate(self._drive(self._fresh())):
+        for step, demand in enumerate(self.answers(self.fresh())):
             station = situation(step).station
             if demand.stop < station - _BEHIND:
                 return f"at {station:g} m it demands a stop at {demand.stop:g} m"
         return ""
-
-    def quick(self) -> str:
-        rule, times = self._fresh(), []
-        for step in range(_STEPS):
-            now = situation(step)
-            began = time.thread_time()
-            rule.demand(now)
-            times.append(time.thread_time() - began)
-        median = float(np.median(times))
-        return f"takes {1e3 * median:.1f} ms for a call" if median > _SLOW else ""
 
 
 def _ask(rule: PluggedInRule, now: Situation) -> Demand:

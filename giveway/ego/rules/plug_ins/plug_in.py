@@ -9,8 +9,8 @@ from giveway.ego.rules.plug_ins.plugged_in import PluggedInRule
 from giveway.ego.rules.protocol import Rule
 from giveway.ego.rules.route import RouteContext
 from giveway.errors import RuleError
-from giveway.plug_ins.faults import described, shown
-from giveway.plug_ins.finding import load_class
+from giveway.plug_ins.faults import blamed, shown
+from giveway.plug_ins.finding import load_class, maker_of
 from giveway.plug_ins.sockets import RULE
 
 Maker = Callable[[Any], object]
@@ -37,7 +37,7 @@ def plugged_in_rules(route: RouteContext) -> list[Rule]:
 
 
 def maker(name: str, settings: Mapping[str, Any]) -> Maker:
-    """Return the function that makes the rule of a name for a route.
+    """Return the function that makes the rule of a name: its ``on`` if it has one, or its class.
 
     Args:
         name: Name of the rule, as in ``[rules]``.
@@ -48,18 +48,7 @@ def maker(name: str, settings: Mapping[str, Any]) -> Maker:
         ControlError: it is not installed, or cannot be imported.
     """
     kind, options = load_class(name, RULE, settings)
-    return maker_of(kind, options)
-
-
-def maker_of(kind: Any, options: Any) -> Maker:
-    """Return the factory of a rule: the class's ``on`` if it has one, or else the class.
-
-    Args:
-        kind: Class of the rule.
-        options: Instance of its ``Options``, or None if it has none.
-    """
-    factory = getattr(kind, "on", kind)
-    return lambda route: factory(route) if options is None else factory(route, options)
+    return maker_of(getattr(kind, "on", kind), options)
 
 
 def made(name: str, make: Maker, route: Any) -> PluggedInRule | None:
@@ -73,10 +62,8 @@ def made(name: str, make: Maker, route: Any) -> PluggedInRule | None:
     Raises:
         RuleError: it cannot be made, or is no rule.
     """
-    try:
+    with blamed(name, RuleError, " when it was made"):
         rule = make(route)
-    except (Exception, SystemExit) as error:
-        raise RuleError(f"{name} raised {described(error)} when it was made") from error
     if rule is None:
         return None
     if not isinstance(rule, Rule):

@@ -11,7 +11,7 @@ import numpy as np
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.protocol import NO_NEEDS, Demand, Needs, Rule, Situation
 from giveway.errors import RuleError
-from giveway.plug_ins.faults import described, shown
+from giveway.plug_ins.faults import blamed, shown
 
 _NUMBERS = ("stop", "latest", "speed", "advice")
 
@@ -53,10 +53,8 @@ class PluggedInRule:
         Raises:
             RuleError: it raises, or answers with no sound `Demand`.
         """
-        try:
+        with blamed(self._name, RuleError):
             answer = self._ask(situation)
-        except (Exception, SystemExit) as error:
-            raise RuleError(f"{self._name} raised {described(error)}") from error
         if answer is not None and (problem := problem_of(answer)):
             raise RuleError(f"{self._name} returned {shown(answer)}: {problem}")
         return answer
@@ -75,11 +73,8 @@ class PluggedInRule:
         call = getattr(self._rule, method)
 
         def guarded(*arguments: Any) -> None:
-            try:
+            with blamed(self._name, RuleError, f" in {method}"):
                 call(*arguments)
-            except (Exception, SystemExit) as error:
-                msg = f"{self._name} raised {described(error)} in {method}"
-                raise RuleError(msg) from error
 
         return guarded
 

@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from pedestrian_model import Accelerations, ModelSetup, Velocities, Walkers, check_model
+from giveway.plug_ins.conformance import check_model
+from pedestrian_model import Accelerations, ModelSetup, Velocities, Walkers
 
 SETUP = ModelSetup(0.05, 0.27, 5.0, 2.5, 1)
 
@@ -168,7 +169,9 @@ def test_a_sound_model_passes():
     ],
 )
 def test_a_planted_defect_is_found_under_its_rule(kind, rule, monkeypatch):
-    monkeypatch.setattr("pedestrian_model.plug_ins.conformance._SLOW", 0.5e-3)  # a fast suite
+    monkeypatch.setattr(
+        "giveway.plug_ins.conformance.battery.Battery.longest", 0.5e-3
+    )  # a fast suite
     assert rule in broken(kind)
 
 
@@ -176,5 +179,5 @@ def test_what_is_found_is_said_in_words():
     problems = {finding.rule: finding.problem for finding in check_model(Runner, SETUP)}
     assert problems["asks for what bodies can do"].endswith("of 2.5 m/s")
     (found,) = check_model(Unmakeable, SETUP)
-    assert "raised KeyError: 'nothing' (test_conformance.py:" in found.problem
+    assert "raised KeyError: 'nothing' (test_models.py:" in found.problem
     assert "when it was made" in found.problem

@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Callable
-from contextlib import contextmanager
 from math import isfinite
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from controller.errors import PlugInError
-from controller.observation import Observation, People
-from controller.plug_ins.plug_in import Acceleration, Force, PlugIn, Setup, Speed
-from controller.protocol import Decision
+from controller import (
+    Acceleration,
+    Decision,
+    Force,
+    Observation,
+    PlugIn,
+    PlugInError,
+    Setup,
+    Speed,
+)
+from giveway.plug_ins.faults import blamed, read_only, shown
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+Array = NDArray[np.float64]
 
-    from controller._jit import Array
-
-_SHOWN = 80  # largest number of characters of a returned value in a message
 _ROUNDING = 1e-8  # tolerance of the force limit as a share of it, as solvers need
+_ARRAYS = ("obstacle_positions", "vehicles", "lane_speeds", "person_ids")
 _FURTHEST = 10_000  # largest prediction horizon [steps]
-_Entry = TypeVar("_Entry", bound=np.generic)
 
 
 class PluggedIn:
@@ -44,17 +44,17 @@ class PluggedIn:
 
     def __init__(self, name: str, make: Callable[[], object], setup: Setup) -> None:
         self._name, self._setup = name, setup
-        with self._blamed("when it was made"):
+        with blamed(name, PlugInError, " when it was made"):
             plug_in = make()
         if not isinstance(plug_in, PlugIn):
-            msg = f"{name} made {_shown(plug_in)}: expected an object with a method control"
+            msg = f"{name} made {shown(plug_in)}: expected an object with a method control"
             raise PlugInError(msg)
         self._plug_in = plug_in
-        with self._blamed("when it was asked for its horizon"):
+        with blamed(name, PlugInError, " when it was asked for its horizon"):
             horizon = getattr(plug_in, "horizon", 0)
             self.foresees = bool(getattr(plug_in, "foresees", False))
         if not _is_count(horizon):
-            msg = f"{name} has horizon = {_shown(horizon)}: expected a whole number of steps"
+            msg = f"{name} has horizon = {shown(horizon)}: expected a whole number of steps"
             raise PlugInError(f"{msg} from 0 to {_FURTHEST}")
         self.horizon = int(horizon)
         if self.foresees and not self.horizon:
@@ -63,10 +63,7 @@ class PluggedIn:
 
     def reset(self) -> None:
         """Forget the past."""
-        reset = getattr(self._plug_in, "reset", None)
-        if reset is not None:
-            with self._blamed("in reset"):
-                reset()
+        self._call_if_there("reset")
 
     def control(self, observation: Observation) -> Decision:
         """Decide on the force at t_k.
@@ -74,10 +71,8 @@ class PluggedIn:
         Raises:
             PlugInError: the plug-in raises, or returns no finite number.
         """
-        try:
-            answer = self._plug_in.control(_read_only(observation))
-        except (Exception, SystemExit) as error:
-            raise self._blame(error, "") from error
+        with blamed(self._name, PlugInError):
+            answer = self._plug_in.control(_unwritable(observation))
         setup = self._setup
         force, reason = self._force_of(answer, observation.speed)
         if abs(force) > setup.force_limit * (1.0 + _ROUNDING):
@@ -87,17 +82,17 @@ class PluggedIn:
 
     def applied(self, force: float) -> None:
         """Tell the plug-in that ``force`` [N] acts instead of its last answer."""
-        applied = getattr(self._plug_in, "applied", None)
-        if applied is not None:
-            with self._blamed("in applied"):
-                applied(force)
+        self._call_if_there("applied", force)
 
     def close(self) -> None:
         """Close the plug-in after its last answer."""
-        close = getattr(self._plug_in, "close", None)
-        if close is not None:
-            with self._blamed("in close"):
-                close()
+        self._call_if_there("close")
+
+    def _call_if_there(self, method: str, *arguments: float) -> None:
+        call = getattr(self._plug_in, method, None)
+        if call is not None:
+            with blamed(self._name, PlugInError, f" in {method}"):
+                call(*arguments)
 
     @property
     def warnings(self) -> list[str]:
@@ -123,47 +118,20 @@ class PluggedIn:
         known = isinstance(value, float | int | np.floating | np.integer)
         if not known or isinstance(value, bool):
             raise PlugInError(
-                f"{self._name} returned {_shown(answer)}: expected Force, Acceleration or Speed of "
+                f"{self._name} returned {shown(answer)}: expected Force, Acceleration or Speed of "
                 f"one number, or a force as a number [{unit}]"
             )
         if not isfinite(value):  # type: ignore[arg-type]
             raise PlugInError(
-                f"{self._name} returned {_shown(answer)}: expected a finite number [{unit}]"
+                f"{self._name} returned {shown(answer)}: expected a finite number [{unit}]"
             )
         return float(value)  # type: ignore[arg-type]
 
     def _word(self, answer: object, reason: object) -> str:
         if not isinstance(reason, str):
-            msg = f"{self._name} returned {_shown(answer)}: expected words as its reason"
+            msg = f"{self._name} returned {shown(answer)}: expected words as its reason"
             raise PlugInError(msg)
         return reason if reason.isprintable() else " ".join(reason.split())
-
-    @contextmanager
-    def _blamed(self, when: str) -> Iterator[None]:
-        try:
-            yield
-        except (Exception, SystemExit) as error:
-            raise self._blame(error, f" {when}") from error
-
-    def _blame(self, error: BaseException, when: str) -> PlugInError:
-        if isinstance(error, PlugInError):
-            return PlugInError(f"{self._name}: {error}")
-        return PlugInError(f"{self._name} raised {described(error)}{when}")
-
-
-def described(error: BaseException) -> str:
-    """Describe an error of another package by kind, first line and place.
-
-    Example: "ValueError: bad (a.py:3)".
-    """
-    try:
-        lines = str(error).split("\n")
-    except Exception:
-        lines = [""]
-    said = f": {lines[0][: 3 * _SHOWN]}" if lines[0].strip() else ""
-    frames = traceback.extract_tb(error.__traceback__)
-    place = f" ({Path(frames[-1].filename).name}:{frames[-1].lineno})" if frames else ""
-    return f"{type(error).__name__}{said}{place}"
 
 
 class _SeenPeople(NamedTuple):
@@ -173,38 +141,16 @@ class _SeenPeople(NamedTuple):
     velocity: Array
 
 
-def _read_only(observation: Observation) -> Observation:
+def _unwritable(observation: Observation) -> Observation:
     """Return a copy of the observation with read-only arrays, because they belong to the run."""
-    people, vehicles, ids = observation.people, observation.vehicles, observation.person_ids
-    lanes = observation.lane_speeds
-    return observation.replaced(
-        obstacle_positions=_fixed(observation.obstacle_positions),
-        people=None if people is None else _people(people),
-        vehicles=None if vehicles is None else _fixed(vehicles),
-        lane_speeds=None if lanes is None else _fixed(lanes),
-        person_ids=None if ids is None else _fixed(ids),
-    )
-
-
-def _people(people: People) -> _SeenPeople:
-    return _SeenPeople(_fixed(people.position), _fixed(people.velocity))
-
-
-def _fixed(array: NDArray[_Entry]) -> NDArray[_Entry]:
-    view = array.view()
-    view.flags.writeable = False
-    return view
+    arrays = {name: getattr(observation, name) for name in _ARRAYS}
+    fixed = {name: read_only(array) for name, array in arrays.items() if array is not None}
+    people = observation.people
+    if people is not None:
+        people = _SeenPeople(read_only(people.position), read_only(people.velocity))
+    return observation.replaced(people=people, **fixed)
 
 
 def _is_count(value: Any) -> bool:
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
     return whole and 0 <= int(value) <= _FURTHEST
-
-
-def _shown(value: object) -> str:
-    """Return a value on one line, even if its ``repr`` fails."""
-    try:
-        text = " ".join(repr(value).split())
-    except Exception:
-        text = f"a {type(value).__name__}"
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."

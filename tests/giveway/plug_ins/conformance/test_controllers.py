@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from controller import Acceleration, Observation, Setup, Speed, check_controller
+from controller import Acceleration, Observation, Setup, Speed
+from giveway.plug_ins.conformance import check_controller
 
 SETUP = Setup(0.05, 1000.0, 100.0, 4.0, 2.0, 5000.0, 2.0)
 
@@ -152,7 +153,9 @@ def test_a_sound_controller_keeps_all_rules():
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda kind: kind.__name__)
 def test_a_planted_defect_is_found_and_told_in_words(defect, monkeypatch):
-    monkeypatch.setattr("controller.plug_ins.conformance._SLOW", 0.5e-3)  # a fast suite
+    monkeypatch.setattr(
+        "giveway.plug_ins.conformance.battery.Battery.longest", 0.5e-3
+    )  # a fast suite
     broken = {f.rule: f.problem for f in check_controller(defect, SETUP) if f.problem}
     assert DEFECTS[defect] in broken, broken
     assert all(problem.isprintable() for problem in broken.values())

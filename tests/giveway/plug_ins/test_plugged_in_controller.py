@@ -9,11 +9,11 @@ from controller import (
     Acceleration,
     Force,
     Observation,
-    PluggedIn,
     PlugInError,
     Setup,
     Speed,
 )
+from giveway.plug_ins.plugged_in_controller import PluggedIn
 
 SETUP = Setup(0.05, 1000.0, 100.0, 4.0, 2.0, 5000.0, 2.0)
 
@@ -116,10 +116,12 @@ def leaves(seen: Observation) -> float:
 
 
 def test_what_it_raises_is_told_with_kind_text_and_place():
-    expected = r"raised ZeroDivisionError: .*division by zero \(test_plugged_in.py:\d+\)"
+    expected = r"raised ZeroDivisionError: .*division by zero \(test_plugged_in_controller.py:\d+\)"
     with pytest.raises(PlugInError, match=expected):
         asked(fails)
-    with pytest.raises(PlugInError, match=r"raised SystemExit: 3 \(test_plugged_in.py:\d+\)"):
+    with pytest.raises(
+        PlugInError, match=r"raised SystemExit: 3 \(test_plugged_in_controller.py:\d+\)"
+    ):
         asked(leaves)
 
 
@@ -140,7 +142,7 @@ def test_the_runs_arrays_cannot_be_written(name):
 
 
 def test_people_cannot_be_moved():
-    from controller.plug_ins.plugged_in import _SeenPeople
+    from giveway.plug_ins.plugged_in_controller import _SeenPeople
 
     people = _SeenPeople(np.ones((2, 2)), np.zeros((2, 2)))
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from giveway.plug_ins.plugged_in_model import PluggedInModel
 from pedestrian_model import (
     SIM,
     Accelerations,
     Crowd,
     CrowdModel,
     ModelSetup,
-    PluggedInModel,
     PlugInError,
     Surroundings,
     Vehicles,

@@ -1,1 +1,0 @@
-"""Controllers of other packages: their protocol, their wrapper, and a check of both."""

@@ -1,0 +1,59 @@
+"""The way to the next way-point of everybody, for models that plug in."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import kernel
+from pedestrian_model.routes import heading_for
+from pedestrian_model.stepping import first_insane
+
+_ARRIVES = 0.3  # Distance [m] from a way-point at which somebody slows down to stop
+
+first_insane_of = kernel(first_insane)
+"""The first pedestrian whose state is not finite, compiled for Python."""
+
+
+@kernel
+def preferred_velocities(
+    state: tuple[Any, ...],
+    desired_speed: NDArray[np.float64],
+    routes: tuple[Any, ...],
+    closed: NDArray[np.bool_],
+    radii: tuple[float, float],
+    out: tuple[Any, ...],
+) -> None:
+    """Pass the way-points reached; tell where everybody walks to, and how fast they would like to.
+
+    Args:
+        state: Positions, velocities and way-point indices of a crowd; the indices are changed.
+        desired_speed: Desired speed (n,) [m/s].
+        routes: Arrays of the way-points.
+        closed: State of each signal, True if it holds people.
+        radii: Radii [m] of way-points and bodies.
+        out: Preferred velocities (n, 2) [m/s], goals (n, 2) [m] and stops (n,), to be filled.
+    """
+    position, _, waypoint_index = state
+    preferred, goal, stops = out
+    start = routes[3]
+    for i in range(position.shape[0]):
+        x, y = position[i, 0], position[i, 1]
+        at, halts, to_x, to_y = heading_for(
+            x,
+            y,
+            start[i] + waypoint_index[i],
+            start[i + 1] - 1,
+            routes,
+            closed,
+            radii,
+        )
+        waypoint_index[i] = at - start[i]
+        goal[i, 0], goal[i, 1], stops[i] = to_x, to_y, halts
+        e_x, e_y = to_x - x, to_y - y
+        left = np.sqrt(e_x * e_x + e_y * e_y)
+        slowed = np.sqrt(left * left + _ARRIVES * _ARRIVES) if halts else max(left, 1e-9)
+        share = desired_speed[i] / slowed
+        preferred[i, 0], preferred[i, 1] = share * e_x, share * e_y
