@@ -15,61 +15,61 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 class ModelSetup(NamedTuple):
-    """The facts of a run that do not change; a model is told once, when it is made."""
+    """The constant facts of a run, which a model gets when it is made."""
 
-    time_step: float  # h [s] from one step to the next
-    body_radius: float  # [m] of everybody
-    max_acceleration: float  # [m/s^2] nobody has more: what is answered is limited to it
-    max_speed: float  # [m/s] nobody is faster: likewise
-    seed: int  # of the run
+    time_step: float  # time step h [s]
+    body_radius: float  # body radius [m] of all people
+    max_acceleration: float  # largest acceleration [m/s^2]; answers are limited to it
+    max_speed: float  # largest speed [m/s]; answers are limited to it
+    seed: int  # seed of the run
 
 
 class Walkers(NamedTuple):
-    """All who walk, and what they walk among, at t_k; the arrays cannot be written."""
+    """The pedestrians and their surroundings at t_k. The arrays are read-only."""
 
-    position: Array  # (n, 2) [m] centres of bodies
-    velocity: Array  # (n, 2) [m/s]
-    desired_speed: Array  # (n,) [m/s]
-    preferred: Array  # (n, 2) [m/s] straight to the goal at the desired speed, slower to stop there
-    goal: Array  # (n, 2) [m] the next way-point, or the nearest point of its line
-    stops: NDArray[np.bool_]  # (n,) whether the way ends there, or a red light holds it
+    position: Array  # centres of bodies (n, 2) [m]
+    velocity: Array  # velocities (n, 2) [m/s]
+    desired_speed: Array  # desired speeds (n,) [m/s]
+    preferred: Array  # desired velocities (n, 2) [m/s] straight to the goal, slower before a stop
+    goal: Array  # next way-points (n, 2) [m], or nearest points of their lines
+    stops: NDArray[np.bool_]  # (n,) whether the route ends at the goal, or a red light is there
     ids: NDArray[np.int64]  # (n,) a number for each, the same in every run and in its twin
     vehicles: Array  # (m, 7) x, y, heading, speed, front, rear, width [m, rad, m/s]
-    wall_distance: Array  # (n,) [m] of the centre from the nearest wall; inf: none near
-    wall_normal: Array  # (n, 2) unit vector from it, into where people may walk
-    walls: Array  # (k, 4) [m] x0, y0, x1, y1, the walkable side on the left
+    wall_distance: Array  # distances (n,) [m] of the centres from the nearest wall, or inf
+    wall_normal: Array  # unit vectors (n, 2) from this wall to its walkable side
+    walls: Array  # walls (k, 4), x0, y0, x1, y1 [m], with the walkable side on the left
 
 
 class Accelerations(NamedTuple):
-    """The acceleration of each, constant over the step."""
+    """The acceleration of each pedestrian, constant over the step."""
 
-    values: Array  # (n, 2) [m/s^2]
+    values: Array  # accelerations (n, 2) [m/s^2]
 
 
 class Velocities(NamedTuple):
-    """The velocity that each has at the end of the step; on the way it changes evenly."""
+    """The velocity of each pedestrian at the end of the step; it changes linearly until then."""
 
-    values: Array  # (n, 2) [m/s]
+    values: Array  # velocities (n, 2) [m/s]
 
 
 Answer: TypeAlias = Accelerations | Velocities | Array
-"""What ``step`` returns; a mere array is accelerations [m/s^2]."""
+"""The type that ``step`` returns; a plain array is accelerations [m/s^2]."""
 
 
 @runtime_checkable
 class ModelPlugIn(Protocol):
-    """Somebody else's model, made by ``Class(setup)`` or ``Class(setup, options)``.
+    """A model of another package, made by ``Class(setup)`` or ``Class(setup, options)``.
 
-    It may have, and has to have neither of:
+    It may have these optional members:
 
-    * ``Options``, of the class: a dataclass or pydantic model of what users may set;
+    * ``Options`` of the class: a dataclass or pydantic model of the options that users may set;
     * ``reset()``: forget the past.
 
-    It is made before the run, once more for the run's twin and for each ego that believes in it,
-    and so starts nothing then. Who keeps something of a person keeps it by ``ids``: people come,
-    go, and come back. Where a controller predicts by it, it is reset before each prediction, and
-    those who matter to that are numbered from 0.
+    It is made before the run, again for the counterfactual run, and for each ego that predicts with
+    it. Its constructor must not start anything. A model that remembers something about a person
+    must use ``ids``, because people come, go, and come back. If a controller predicts with it, it
+    is reset before each prediction, and the predicted people are numbered from 0.
     """
 
     def step(self, walkers: Walkers, /) -> Answer:
-        """Return how everybody moves from t_k to t_k+1."""
+        """Return the motion of all pedestrians from t_k to t_k+1."""

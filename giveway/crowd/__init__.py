@@ -1,1 +1,1 @@
-"""The crowd of a run: how pedestrians are drawn, taken over, handed back, disturbed and seen."""
+"""The crowd of a run: pedestrians are generated, taken over from SUMO, moved and handed back."""

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd, targets
 
-ASIDE = 0.5  # Distance [m] beside its marking within which people count as on it
-_ONWARD = 0.5  # Smallest cosine (60 degrees) between heading and crossing of who crosses
-_WAITING = 1.5  # Distance [m] from the waiting point within which people wait
-_LOOK_AHEAD = 3  # Number of next way-points searched for one at a kerb
+ASIDE = 0.5  # distance [m] beside a crossing's marking, within which people count as on it
+_ONWARD = 0.5  # least cosine (60 degrees) of the angle between walking direction and crossing
+_WAITING = 1.5  # distance [m] to the waiting point, within which people wait
+_LOOK_AHEAD = 3  # number of next way-points that are searched for one at a kerb
 _GREEN = "Gg"
 _OUT = "Oo"
 
@@ -23,20 +23,20 @@ _OUT = "Oo"
 class Use(NamedTuple):
     """The use that each of k people makes of a crossing."""
 
-    on: NDArray[np.bool_]  # between its kerbs
-    waiting: NDArray[np.bool_]  # for its light, if it is closed; some do so a step from the kerb
-    entering: NDArray[np.bool_]  # before a kerb, and they want to cross
-    leaving: NDArray[np.bool_]  # behind a kerb, and they walk away from it
-    onward: Array  # cosine of the angle between where they walk to and the way from u = 0 on
+    on: NDArray[np.bool_]  # whether each is between its kerbs
+    waiting: NDArray[np.bool_]  # whether each is where people wait for its light
+    entering: NDArray[np.bool_]  # whether each is before a kerb and wants to cross
+    leaving: NDArray[np.bool_]  # whether each is behind a kerb and walks away from it
+    onward: Array  # cosine of the angle between walking direction and crossing, from u = 0 on
 
 
 def place_on(position: Array, kerb: Array, along: Array) -> tuple[Array, Array]:
-    """Places u and w (k,) [m] of people at ``position`` (k, 2) [m].
+    """Return the places u and w (k,) [m] of people on crossings.
 
     Args:
-        position: Positions of the people.
-        kerb: (2,) or (k, 2) [m] Point at which u and w are 0.
-        along: (2,) or (k, 2) Unit vectors along the crossings.
+        position: Positions (k, 2) [m] of the people.
+        kerb: Point (2,) or (k, 2) [m] at which u and w are 0.
+        along: Unit vectors (2,) or (k, 2) along the crossings.
     """
     x, y = position[:, 0] - kerb[..., 0], position[:, 1] - kerb[..., 1]
     along_x, along_y = along[..., 0], along[..., 1]
@@ -50,7 +50,7 @@ def is_near(
     half_width: Array | float,
     reach: Array | float,
 ) -> NDArray[np.bool_]:
-    """Return (k,) whether each is on a crossing or within ``reach`` [m] before or behind it."""
+    """Return whether each place (k,) is on a crossing or within ``reach`` [m] of its kerbs."""
     near: NDArray[np.bool_] = (np.abs(w) <= half_width) & (u >= -reach) & (u <= length + reach)
     return near
 
@@ -64,7 +64,7 @@ def use_of(
         crowd: All pedestrians.
         rows: Rows of the people beside a crossing.
         u: Distance of each from one kerb along the crossing.
-        along: (2,) or (k, 2) Unit vectors along the crossings.
+        along: Unit vectors (2,) or (k, 2) along the crossings.
         length: Length of one crossing or of each [m].
     """
     way = targets(crowd, rows) - crowd.position[rows]
@@ -74,22 +74,24 @@ def use_of(
     at = crowd.waypoint_start[rows] + crowd.waypoint_index[rows]
     waiting = (crowd.waypoint_signal[at] >= 0) & (far <= _WAITING)
     inward = np.where(u < 0.0, onward, -onward)
-    entering = ~on & ~waiting & (inward >= _ONWARD)  # who waits looks anywhere: see turning_in
+    entering = ~on & ~waiting & (inward >= _ONWARD)  # for people who wait see `turning_in`
     return Use(on, waiting, entering, ~on & (inward <= -_ONWARD), onward)
 
 
 def turning_in(
     crowd: Crowd, rows: NDArray[np.intp], kerb: Array, along: Array, length: float, reach: Array
 ) -> Array:
-    """Return (k,) who is going to cross: 1 from u = 0, -1 from the other kerb, 0 not at all.
+    """Return the direction (k,) in which each person is going to cross.
+
+    It is 1 from u = 0, -1 from the other kerb, and 0 for people who do not cross.
 
     Args:
         crowd: All pedestrians.
         rows: Rows of the people beside the crossing.
-        kerb: (2,) [m] Point at which u is 0.
-        along: (2,) Unit vector along the crossing.
+        kerb: Point (2,) [m] at which u is 0.
+        along: Unit vector (2,) along the crossing.
         length: Length of the crossing [m].
-        reach: (k,) [m] Largest walk of each up to the kerb.
+        reach: Largest distance (k,) [m] of each person to the kerb.
     """
     last = crowd.waypoint_start[rows + 1] - 1
     position = crowd.position[rows]
@@ -108,7 +110,7 @@ def turning_in(
 
 
 def have_priority(use: Use, can_enter: NDArray[np.bool_] | bool) -> NDArray[np.bool_]:
-    """Return (k,) who may walk on: people on a crossing or about to enter an open one.
+    """Return whether each person (k,) has priority: on a crossing, or about to enter an open one.
 
     Args:
         use: Use that each makes of a crossing.
@@ -124,7 +126,7 @@ def is_open(state: str, link: int, *, zebra: bool) -> bool:
     Args:
         state: State of its traffic light, SUMO's letter per movement; empty without a light.
         link: Index of the crossing's movement in ``state``.
-        zebra: Whether people have priority wherever no light says otherwise.
+        zebra: Whether people have priority without a light, or while it is off.
     """
     letter = state[link] if 0 <= link < len(state) else "O"
     return letter in _GREEN or (letter in _OUT and zebra)

@@ -1,4 +1,4 @@
-"""The exchange of the scenario's walkers between our crowd and SUMO."""
+"""The exchange of the scenario's pedestrians between giveway's crowd and SUMO."""
 
 import math
 from collections.abc import Sequence
@@ -13,8 +13,8 @@ from giveway.sumo.session import SumoSession
 from giveway.walkways import WalkNetwork
 from pedestrian_model import Crowd, Surroundings, Walls
 
-HANDED_BACK_WITHIN = 3.0  # Distance [m] to a pedestrian lane beyond which SUMO makes them jump
-_CLOSED = frozenset("rRyYus")  # states of a crossing's light at which pedestrians wait
+HANDED_BACK_WITHIN = 3.0  # largest distance [m] to a pedestrian lane; from beyond it SUMO jumps
+_CLOSED = frozenset("rRyYus")  # letters of a crossing's light at which pedestrians wait
 
 
 class Exchange:
@@ -23,9 +23,9 @@ class Exchange:
     Args:
         session: Running simulation.
         network: Network of walkways.
-        zone: Zone in which pedestrians are ours.
+        zone: Zone in which giveway moves pedestrians.
         roster: Crowd that walkers join.
-        walls: Whether the edges of walkways hold pedestrians back.
+        walls: Whether the edges of walkways are walls.
     """
 
     def __init__(
@@ -43,10 +43,11 @@ class Exchange:
         self._roster = roster
         self._walkers = session.persons(roster.added)
         self._states: dict[str, str] = {}
-        self._crossings: dict[str, list[tuple[int, int]]] = {}  # of each light: signal, movement
+        # For each light, the signals of its crossings and their movements
+        self._crossings: dict[str, list[tuple[int, int]]] = {}
         for number, signal in enumerate(network.signals):
             self._crossings.setdefault(signal.tls, []).append((number, signal.link))
-        self.unconnected = 0  # hops of routes that the network does not connect
+        self.unconnected = 0  # number of gaps in routes, between edges that are not connected
         self.surroundings = Surroundings(
             walls=Walls.create(network.wall_segments()) if walls else None,
             closed=np.zeros(len(network.signals), dtype=np.bool_),
@@ -56,11 +57,11 @@ class Exchange:
         """Hand people back, take people over and read the lights, once after each SUMO step.
 
         Args:
-            egos: (e, 2) [m] Positions of the egos' front bumpers.
+            egos: Positions (e, 2) [m] of the egos' front bumpers.
         """
         self._hand_back(egos)
         self._take_over(egos)
-        self._read_lights()  # for those who have just joined, too: some wait at a red one
+        self._read_lights()  # last, because people who have just joined may wait at a red light
 
     def _read_lights(self) -> None:
         """Open or close every crossing by the state of its traffic light."""
@@ -69,7 +70,7 @@ class Exchange:
         closed = self.surroundings.closed
         for system, crossings in self._crossings.items():
             state = self._session.light_state(system)
-            if state != self._states.get(system):  # which is seldom
+            if state != self._states.get(system):
                 self._states[system] = state
                 for number, link in crossings:
                     closed[number] = state[link] in _CLOSED
@@ -107,7 +108,7 @@ class Exchange:
         )
 
     def _hand_back(self, egos: Array) -> None:
-        """Hand back those outside who are near a lane; the others walk on as ours."""
+        """Hand back people outside of the zone who are near a lane. The others walk on."""
         roster = self._roster
         if self._zone.everywhere or not self._walkers.held:
             return
@@ -118,7 +119,7 @@ class Exchange:
         for i in np.flatnonzero(outside):
             name = roster.ids[roster.person_ids[i]]
             if name not in self._walkers.held:
-                continue  # one that giveway added
+                continue  # giveway added this person
             x, y = roster.crowd.position[i].tolist()
             lane = self._network.nearest_lane(x, y)
             if lane is None or lane.distance > HANDED_BACK_WITHIN:
@@ -128,7 +129,7 @@ class Exchange:
             roster.count("handed_back", len(roster.release(gone)))
 
     def arrive(self, names: Sequence[str]) -> list[str]:
-        """End walks in SUMO's next step and return those of ``names`` that are not SUMO's."""
+        """End walks in SUMO's next step, and return the ``names`` that are not SUMO's persons."""
         others = []
         for name in names:
             if name not in self._walkers.held:

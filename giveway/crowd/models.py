@@ -1,4 +1,4 @@
-"""The model that moves a run's people, and the one that is believed to, from the configuration."""
+"""Makes the pedestrian model of a run, and that of an ego's prediction, from the configuration."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def model_of(
     Raises:
         ConfigError: the preset or an option of the model cannot be used.
         ControlError: the model is not installed.
-        CrowdError: somebody else's model cannot be made.
+        CrowdError: another package's model cannot be made.
     """
     crowd = config.crowd
     model = _plain_model_of(config, time_step, roster, threads)
@@ -59,7 +59,7 @@ def model_of(
 def _plain_model_of(
     config: RunConfig, time_step: float, roster: Roster, threads: int
 ) -> PedestrianModel:
-    """Return the model itself, in which all people are alike."""
+    """Return the model without distracted people and groups."""
     crowd = config.crowd
     parameters = parameters_of(crowd.preset)
     if crowd.plugged_in or crowd.model in JUPEDSIM_MODELS:
@@ -82,7 +82,7 @@ def believed_model(
         parameters: Bodies and limits that the ego assumes of people.
 
     Raises:
-        ConfigError: an option of somebody else's model cannot be used.
+        ConfigError: an option of another package's model cannot be used.
         ControlError: it is not installed.
         CrowdError: it cannot be made.
     """

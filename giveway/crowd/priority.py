@@ -1,7 +1,7 @@
 """The priority of pedestrians on zebras and at their green light.
 
-Whoever is on a crossing that is theirs has priority, and whoever is about to enter one that is open
-to them. Priority fades over the first metre behind the crossing, so that no force sets in at once.
+People on such a crossing have priority, and so do people who are about to enter an open one.
+Priority fades over the first metre behind the crossing, so that no force begins abruptly.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,19 +13,19 @@ from giveway.crowd.crossings import ASIDE, have_priority, is_near, is_open, plac
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from pedestrian_model import Crowd
 
-_FADE = 1.0  # Distance [m] behind a crossing over which priority fades
-_CELL = 16.0  # Cell size [m] of the grid in which crossings are found
-_MOST_CELLS = 2**20  # Limit on the cells of the grid; larger networks get larger cells
+_FADE = 1.0  # distance [m] behind a crossing over which priority fades
+_CELL = 16.0  # cell size [m] of the grid in which crossings are found
+_MOST_CELLS = 2**20  # largest number of cells; larger networks have larger cells
 
 
 class PriorityOnFoot:
-    """Marks in a crowd which pedestrians have priority.
+    """Sets the priority of the pedestrians of a crowd.
 
     Args:
         crossings: Crossings of the network.
         light_state: Function that returns the state of a traffic light by its id.
-        kerb_distance: [m] from the kerb, from which on somebody who heads for a crossing is about
-            to enter it.
+        kerb_distance: Distance [m] to the kerb, within which a pedestrian who walks towards a
+            crossing is about to enter it.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class PriorityOnFoot:
         return len(self._crossings)
 
     def _sort(self) -> None:
-        """Note which crossings reach into each cell of a grid."""
+        """Sort the crossings into the cells of a grid that they reach into."""
         middle = self._kerb + self._along * self._length[:, None] / 2.0
         along = np.abs(self._along)
         half = along * (self._length[:, None] / 2.0 + self._reach)
@@ -82,7 +82,7 @@ class PriorityOnFoot:
         self._first = np.concatenate([[0], np.cumsum(count)])
 
     def update(self, crowd: Crowd) -> None:
-        """Note in ``crowd.priority`` who has it now."""
+        """Set ``crowd.priority`` to the present priorities."""
         crowd.priority[:] = 0.0
         if not len(crowd) or not self._crossings:
             return
@@ -117,7 +117,7 @@ class PriorityOnFoot:
         return np.repeat(rows, count), self._sorted[at]
 
     def _are_open(self, which: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Return (k,) whether people may enter each of these crossings now."""
+        """Return whether people may enter each of these crossings (k,) now."""
         states: dict[str, str] = {"": ""}
         open_now: dict[int, bool] = {}
         for number in which.tolist():

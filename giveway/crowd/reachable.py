@@ -1,4 +1,4 @@
-"""The check that added pedestrians start on walkable ground and near an ego's way."""
+"""Checks that added pedestrians start on walkable ground and near an ego's path."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,20 +14,20 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at
 from giveway.walkways import WalkNetwork, beside
 
-_NEAR = 25.0  # Distance [m] from the ego's way beyond which people do not matter to it
-_NO_WALKWAY = 30.0  # Distance [m] to a pedestrian lane beyond which there is no walkway
+_NEAR = 25.0  # distance [m] to the ego's path, beyond which people do not matter to it
+_NO_WALKWAY = 30.0  # distance [m] to a pedestrian lane, beyond which there is no walkway
 
 
 def spawn_remark(config: CrowdConfig, ways: Sequence[Array], net_file: Path) -> str:
-    """The remark on a spawn area whose pedestrians no ego can meet; empty if one can.
+    """Return a remark on a spawn area whose pedestrians meet no ego, or an empty text.
 
     Args:
-        config: Places where people start, and how they walk.
-        ways: (k, 2) [m] Way of each ego, from its departure to its goal.
-        net_file: File of the network, which is read only if there is something to remark.
+        config: Configuration of the crowd.
+        ways: Path (k, 2) [m] of each ego, from its departure to its goal.
+        net_file: File of the network, which is read only for a remark.
     """
     if config.sampler == ENCOUNTERS:
-        return ""  # they start where they meet it
+        return ""  # these people start where they meet the ego
     start = shapely.box(*config.spawn_area)
     middle = (start.centroid.x, start.centroid.y)
     walked = start.union(shapely.affinity.translate(start, *config.walk)).convex_hull
@@ -45,11 +45,11 @@ def spawn_remark(config: CrowdConfig, ways: Sequence[Array], net_file: Path) -> 
 
 
 def flow_remark(flows: Sequence[FlowConfig], ways: Sequence[Array]) -> str:
-    """The remark on flows none of which an ego can meet; empty if it can meet one.
+    """Return a remark on flows whose people meet no ego, or an empty text.
 
     Args:
-        flows: Flows of people who come in.
-        ways: (k, 2) [m] Way of each ego, from its departure to its goal.
+        flows: Flows of people.
+        ways: Path (k, 2) [m] of each ego, from its departure to its goal.
     """
     if not flows:
         return ""

@@ -1,4 +1,4 @@
-"""The pedestrians that giveway moves: who they are, where they came from, where they went, how."""
+"""The pedestrians that giveway moves: their ids and traits, and how they join and leave."""
 
 import hashlib
 import itertools
@@ -13,30 +13,30 @@ from giveway.config.tables.people import DISTRACTED
 from giveway.crowd.motion.disturbance import disturbance_of
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
 
-ARRIVAL_RADIUS = 0.5  # Distance [m] to the destination at which a pedestrian has arrived
+ARRIVAL_RADIUS = 0.5  # distance [m] to the destination, within which a pedestrian has arrived
 
 
 class Trait(NamedTuple):
     """The kind and the group of a pedestrian that giveway adds."""
 
-    kind: str = ""  # as in kinds.py; empty without a kind
-    group: str = ""  # the id of its first member; empty for single people
+    kind: str = ""  # kind, as in kinds.py; empty without a kind
+    group: str = ""  # id of the group's first member; empty for single people
 
 
 _NOTHING = Trait()
 
 
 class Roster:
-    """The crowd and the names of those in it.
+    """The crowd, and the ids of its people.
 
     Attributes:
-        ids: Ids of all that ever were in the crowd; the tables refer to them by index.
-        crowd: State of those who are in the crowd now.
-        person_ids: (n,) Index into ``ids`` of each pedestrian in the crowd.
+        ids: Ids of all people who ever were in the crowd; the tables refer to them by index.
+        crowd: State of the people who are in the crowd now.
+        person_ids: Index (n,) into ``ids`` of each pedestrian in the crowd.
         names: Ids of the pedestrians in the crowd.
-        newcomers: Indices of those who joined since the list was last emptied.
-        added: Ids of those that giveway added; the others are the scenario's own.
-        traits: Traits of those who have any, by their ids.
+        newcomers: Indices of the people who joined since the list was last emptied.
+        added: Ids of the people that giveway added; the others are the scenario's own.
+        traits: Traits of the people who have any, by their ids.
     """
 
     def __init__(
@@ -63,13 +63,13 @@ class Roster:
 
     @property
     def ledger(self) -> dict[str, int]:
-        """The ledger: added + taken over = handed back + arrived + continued + walking."""
+        """The counts: added + taken_over = handed_back + arrived + continued + walking."""
         added, walking = len(self.added), len(self.person_ids)
         return {"added": added, **self._counts, "walking": walking}
 
     @property
     def keys(self) -> NDArray[np.int64]:
-        """A number (n,) for each pedestrian by the id alone, the same in every run and twin."""
+        """A number (n,) for each pedestrian that depends on the id alone."""
         for name in itertools.islice(self.ids, len(self._keys), None):
             digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
             self._keys.append(int.from_bytes(digest, "big") >> 1)
@@ -77,31 +77,31 @@ class Roster:
 
     @property
     def distracted(self) -> NDArray[np.bool_]:
-        """The pedestrians (n,) who are distracted."""
+        """The marks (n,) of distracted pedestrians."""
         self._learn()
         return np.array(self._distracted, dtype=np.bool_)[self.person_ids]
 
     @property
     def groups(self) -> NDArray[np.int64]:
-        """The index (n,) of each one's group; -1 for single people."""
+        """The index (n,) of each pedestrian's group; -1 for single people."""
         self._learn()
         return np.array(self._groups, dtype=np.int64)[self.person_ids]
 
     def _learn(self) -> None:
-        """Note the traits of those who are new."""
+        """Store the traits of new people."""
         for name in itertools.islice(self.ids, len(self._groups), None):
             trait = self.traits.get(name, _NOTHING)
             self._distracted.append(trait.kind == DISTRACTED)
             self._groups.append(self._index[trait.group] if trait.group else -1)
 
     def add(self, names: Sequence[str], crowd: Crowd, traits: Mapping[str, Trait]) -> None:
-        """Let people in that giveway adds during the run."""
+        """Add people of giveway's own during the run."""
         self.added.update(names)
         self.traits |= traits
         self._join(names, crowd)
 
     def take_in(self, names: Iterable[str], crowd: Crowd) -> None:
-        """Add walkers of the scenario; who comes back keeps the index."""
+        """Add people of the scenario. A person who comes back keeps the index."""
         names = list(names)
         self._join(names, crowd)
         self._counts["taken_over"] += len(names)
@@ -119,7 +119,7 @@ class Roster:
         self.crowd = self.crowd.concatenate(crowd) if len(self.crowd) else crowd
 
     def release(self, gone: NDArray[np.bool_]) -> list[str]:
-        """Drop those where ``gone`` (n,) is true from the crowd; their ids."""
+        """Remove the people marked in ``gone`` (n,) from the crowd, and return their ids."""
         names = [self.names[i] for i in np.flatnonzero(gone)]
         self.names = list(itertools.compress(self.names, (~gone).tolist()))
         self.crowd = self.crowd.select(~gone)
@@ -127,12 +127,12 @@ class Roster:
         return names
 
     def count(self, event: str, number: int = 1) -> None:
-        """Note what became of pedestrians that left the crowd."""
+        """Count an event of pedestrians who left the crowd."""
         self._counts[event] += number
 
 
 class Log(Protocol):
-    """Notes how people get on."""
+    """A log of people's positions and arrivals."""
 
     def note(
         self, step: int, ids: Sequence[str], person_ids: NDArray[np.int64], crowd: Crowd
@@ -140,7 +140,7 @@ class Log(Protocol):
         """Note the positions of ``person_ids`` at a control instant."""
 
     def arrive(self, step: int, pedestrians: NDArray[np.int64]) -> None:
-        """Note who reached the last way-point at a control instant."""
+        """Note the pedestrians who reached their last way-point at a control instant."""
 
 
 class Walking:
@@ -150,7 +150,7 @@ class Walking:
         config: Configuration of the run.
         model: Model of the crowd.
         roster: Crowd that is stepped, and its ids.
-        log: Log of how people get on; None if it is not needed.
+        log: Log of positions and arrivals, or None if it is not needed.
     """
 
     def __init__(
@@ -162,13 +162,13 @@ class Walking:
         self._disturbance = disturbance_of(config, model)
 
     def note(self, step: int) -> None:
-        """Note where everybody is at the control instant ``step``."""
+        """Note the positions of all people at the control instant ``step``."""
         if self._log is not None:
             roster = self._roster
             self._log.note(step, roster.ids, roster.person_ids, roster.crowd)
 
     def advance(self, step: int, vehicles: Vehicles, surroundings: Surroundings) -> list[str]:
-        """Step the crowd from the control instant ``step``; the names of those who have arrived.
+        """Step the crowd from the control instant ``step``, and return the ids of arrivals.
 
         Args:
             step: Index of the control instant.

@@ -1,4 +1,4 @@
-"""The way of somebody who walks with a flow: where it begins, what it leads through, its end."""
+"""The routes of people who walk with a flow: start, gates, crossings and end."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from giveway.geometry.kernel import Array
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.walkways.reading import Signal
 
-_BODY = 0.27  # Distance [m] kept from a line's ends: half a shoulder breadth
-_BACK = 0.3  # Distance [m] from the kerb at which people wait for their light
+_BODY = 0.27  # distance [m] kept from a line's ends: half of the shoulder breadth
+_BACK = 0.3  # distance [m] to the kerb at which people wait for their light
 
 
 class Gate(NamedTuple):
-    """A gate on the way of people: a point, or a line that they cross anywhere."""
+    """A gate on people's routes: a point, or a line that they cross anywhere."""
 
-    middle: Array  # (2,) [m]
-    across: Array  # (2,) unit direction in which a line is crossed; 0, 0 for a point
-    half_width: float  # [m] of a line; 0 for a point
-    signal: int = -1  # the signal that has to be open; -1 without one
+    middle: Array  # middle (2,) [m]
+    across: Array  # unit direction (2,) in which a line is crossed; 0, 0 for a point
+    half_width: float  # half-width [m] of a line; 0 for a point
+    signal: int = -1  # signal that has to be open; -1 without one
 
     def aim(self, place: Array) -> Array:
-        """Return the point (2,) [m] at which somebody from ``place`` (2,) passes the gate."""
+        """Return the point (2,) [m] at which a person from ``place`` (2,) passes the gate."""
         along = np.array([-self.across[1], self.across[0]])
         room = max(self.half_width - _BODY, 0.0)
         beside = float(np.clip((place - self.middle) @ along, -room, room))
@@ -37,18 +37,18 @@ class Gate(NamedTuple):
 class LitCrossing(NamedTuple):
     """A crossing with a light."""
 
-    kerb: Array  # (2,) [m] the middle of one kerb
-    along: Array  # (2,) unit direction to the other kerb
-    length: float  # [m]
-    half_width: float  # [m]
-    signal: int
+    kerb: Array  # middle (2,) [m] of one kerb
+    along: Array  # unit direction (2,) to the other kerb
+    length: float  # length [m]
+    half_width: float  # half-width [m]
+    signal: int  # signal that has to be open
 
     def gate(self, start: Array, end: Array) -> Gate | None:
-        """Return the gate of a straight walk over the crossing; None if it leads elsewhere."""
+        """Return the gate of a straight walk over the crossing, or None if it leads elsewhere."""
         u, w = self._place(start)
         u_end, w_end = self._place(end)
         along = self.along
-        if u > u_end:  # the other way about: seen from the other kerb
+        if u > u_end:  # for the other direction the other kerb is the first one
             u, u_end = self.length - u, self.length - u_end
             along = -along
         if not u <= 0.0 < self.length <= u_end:
@@ -59,7 +59,7 @@ class LitCrossing(NamedTuple):
         return Gate(kerb - _BACK * along, along, self.half_width, self.signal)
 
     def _place(self, at: Array) -> tuple[float, float]:
-        """Return the distances [m] along the crossing from the kerb and to its side."""
+        """Return the distances [m] of a point along the crossing and to its left."""
         x, y = at - self.kerb
         d_x, d_y = self.along
         return float(x * d_x + y * d_y), float(y * d_x - x * d_y)
@@ -87,7 +87,7 @@ def lit_crossings(
 
 
 def gates_of(flow: FlowConfig) -> tuple[Gate, ...]:
-    """Return the gates of a flow, with the lines facing away from its start."""
+    """Return the gates of a flow. Lines are crossed in the direction away from the start."""
     gates = []
     before = middle_of(flow.start)
     for place in flow.via:
@@ -107,7 +107,7 @@ def gates_of(flow: FlowConfig) -> tuple[Gate, ...]:
 def with_lights(
     start: Array, gates: Sequence[Gate], end: Array, lit: Sequence[LitCrossing]
 ) -> Iterator[Gate]:
-    """The gates of a way, and the kerbs between them at which people wait for their light."""
+    """Yield the gates of a route, with the kerbs between them at which people wait for a light."""
     at = start
     for gate in (*gates, None):
         goal = end if gate is None else gate.aim(at)

@@ -1,4 +1,4 @@
-"""The zone in which the scenario's own walkers follow the VCI model."""
+"""The zone in which giveway moves the scenario's own pedestrians."""
 
 import math
 
@@ -14,15 +14,15 @@ _EXPECTED = (
     "three corners 'x,y x,y x,y' [m] in network coordinates"
 )
 
-_SMALLEST, _LARGEST = 0.1, 1e6  # Bounds of the radius [m]
-_FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
+_SMALLEST, _LARGEST = 0.1, 1e6  # bounds of the radius [m]
+_FARTHEST = 1e7  # largest coordinate [m]; beyond it rounding errors exceed a millimetre
 
 
-_MARGIN = 5.0  # Hysteresis [m] at the zone's edge: people do not change hands to and fro
+_MARGIN = 5.0  # hysteresis [m] at the zone's edge
 
 
 class Zone:
-    """The zone in which pedestrians are ours: round egos, a polygon, everywhere or nowhere.
+    """The zone in which giveway moves pedestrians: around egos, a polygon, everywhere or nowhere.
 
     Args:
         text: Text of the setting ``zone`` in the configuration.
@@ -51,16 +51,17 @@ class Zone:
             self._radius = _radius(text, numbers[0])
         elif len(numbers) >= 6 and len(numbers) % 2 == 0 and np.abs(numbers).max() <= _FARTHEST:
             self._inner = _polygon(text, numbers)
-            self._outer = self._inner.union(self._inner.buffer(margin))  # which may be rounded away
+            # The union, because rounding may make the buffer smaller than the polygon.
+            self._outer = self._inner.union(self._inner.buffer(margin))
             shapely.prepare((self._inner, self._outer))
         else:
             raise ConfigError(f"--zone '{text}': {_EXPECTED}")
 
     def along(self, way: Array) -> "Zone":
-        """Return the zone of a run without an ego: round the way that one would drive.
+        """Return the zone of a run without an ego, around the path that an ego would drive.
 
         Args:
-            way: (k, 2) [m] Way that an ego would drive.
+            way: Path (k, 2) [m] that an ego would drive.
         """
         if self._radius is None:
             return self
@@ -73,7 +74,7 @@ class Zone:
 
     @property
     def follows_egos(self) -> bool:
-        """Return whether the zone is round the egos, and so nowhere without one."""
+        """Return whether the zone is around the egos, and so nowhere without one."""
         return self._radius is not None
 
     def require_overlap(self, boundary: tuple[float, float, float, float]) -> None:
@@ -94,16 +95,19 @@ class Zone:
         )
 
     def enters(self, points: Array, egos: Array) -> NDArray[np.bool_]:
-        """Return which of ``points`` (n, 2) [m] lie in the zone.
+        """Return whether each point (n,) is in the zone.
 
         Args:
-            points: (n, 2) [m] Points to test.
-            egos: (e, 2) [m] Positions of the egos' front bumpers.
+            points: Points (n, 2) [m].
+            egos: Positions (e, 2) [m] of the egos' front bumpers.
         """
         return self._inside(points, egos, self._radius or 0.0, self._inner)
 
     def keeps(self, points: Array, egos: Array) -> NDArray[np.bool_]:
-        """Return which of ``points`` lie in the zone or at most its margin outside."""
+        """Return whether each point (n,) is in the zone, or at most its margin outside.
+
+        Arguments are as for :meth:`enters`.
+        """
         return self._inside(points, egos, (self._radius or 0.0) + self._margin, self._outer)
 
     def _inside(

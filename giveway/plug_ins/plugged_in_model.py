@@ -1,4 +1,4 @@
-"""Somebody else's model of people among ours: shown who walks, its answer checked and limited."""
+"""The wrapper of a pedestrian model of another package: it checks and limits its answers."""
 
 from __future__ import annotations
 
@@ -30,18 +30,19 @@ _NO_WALLS = read_only(np.empty((0, 4)))
 
 
 class PluggedInModel:
-    """A model of somebody else's as the co-simulation asks any other.
+    """A pedestrian model of another package, which the co-simulation asks like giveway's own.
 
-    Way-points, lines and signals are ours to follow; what people answer to each other, to walls and
-    vehicles is the model's. Nobody gets more than the largest acceleration and speed of the
-    parameters, which the safety layer's promise is about.
+    Giveway follows way-points, lines and signals. The model decides how people react to each other,
+    to walls and to vehicles. Accelerations and speeds are limited to those of the parameters, which
+    the guarantee of the safety layer assumes.
 
     Args:
         name: Name of the model, for messages.
-        make: makes the plug-in.
+        make: Function that makes the plug-in.
         setup: Setup of the run.
-        parameters: bodies and limits.
-        who: the ids of those in the crowd; None: they are numbered as they stand in it.
+        parameters: Bodies and limits of people.
+        who: Function that returns the ids of the people in the crowd, or None to number them by
+            their rows.
 
     Raises:
         PlugInError: it cannot be made, or is no model.
@@ -74,7 +75,7 @@ class PluggedInModel:
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
     ) -> None:
-        """Change position, velocity and waypoint_index of ``crowd`` in place, one time step on.
+        """Advance position, velocity and waypoint_index of ``crowd`` in place by one time step.
 
         Raises:
             DivergenceError: if a pedestrian's state is not finite.
@@ -94,7 +95,7 @@ class PluggedInModel:
         self._move(crowd, self._velocities(answer, crowd))
 
     def _seen(self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings) -> Walkers:
-        """Return what the model is told; who has passed a way-point goes on to the next."""
+        """Return the input of the model, after passing the way-points that were reached."""
         n, p = len(crowd), self.parameters
         preferred, goal, stops = np.empty((n, 2)), np.empty((n, 2)), np.empty(n, dtype=np.bool_)
         preferred_velocities(
@@ -161,6 +162,6 @@ class PluggedInModel:
 
 
 def _within(vectors: Array, longest: float) -> Array:
-    """(n, 1) factors that shorten each vector (n, 2) to ``longest``; 1 for the shorter ones."""
+    """Return factors (n, 1) that shorten each vector (n, 2) to at most ``longest``."""
     length = np.sqrt((vectors**2).sum(axis=1))[:, None]
     return np.asarray(longest / np.maximum(length, longest))

@@ -1,14 +1,14 @@
-"""People who walk by a model of JuPedSim's; the only file that imports it, when one is made.
+"""The pedestrian models of JuPedSim. This is the only file that imports JuPedSim.
 
-JuPedSim lets nobody set an agent's position, and knows neither vehicles nor forces of others. So a
-simulation is built anew in each step, on open ground round those who walk, with everybody where and
-as fast as they are, steered straight to where they want to go; where it has moved them is the
-answer. That serves models whose state is position and velocity (:data:`JUPEDSIM_MODELS`), and none
-that remembers more.
+JuPedSim does not allow to set an agent's position, and has neither vehicles nor external forces.
+Therefore a new simulation is made in each step, on open ground around the pedestrians, with their
+positions and velocities. Each agent is steered straight to its goal. The new positions are the
+answer. This works for models whose state is position and velocity (:data:`JUPEDSIM_MODELS`), but
+not for models that remember more.
 
-What JuPedSim does not know is ours: before the strip of a moving vehicle people stop as in
-``gap-acceptance``, by the speed that they want; its body is a row of circles, agents like others,
-too heavy to be moved; and towards a wall nobody is faster than what stops there.
+Giveway adds what JuPedSim lacks. People stop before the strip of a moving vehicle as in
+``gap-acceptance``, by a lower desired speed. A vehicle's body is a row of circles: agents that are
+too heavy to be moved. Towards a wall speeds are limited so that people stop before it.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ JuPedSimName = Literal["jupedsim:CollisionFreeSpeedModel", "jupedsim:SocialForce
 JUPEDSIM_MODELS: Final[tuple[JuPedSimName, ...]] = get_args(JuPedSimName)
 """Tordeux, Chraibi and Seyfried (arXiv 1512.05597); Helbing, Farkas and Vicsek (Nature 2000)."""
 
-_STEP = 0.01  # [s] of the forces at most, JuPedSim's own; speeds are set once in a step
-_ROOM = 15.0  # [m] of ground beyond the outermost; JuPedSim looks 4 m far
-_TO = 5.0  # [m] the target lies ahead, on that ground
-_POINT = 1e-9  # [m] nobody may be placed within another's radius: it is given afterwards
-_ASIDE = 1e-3  # [m] that somebody is moved who stands where another one does
-_GOLDEN = 2.399963229728653  # [rad] from one direction to the next
-_HEAVY = 1e9  # [kg]
-_FASTEST = 10.0  # [m/s] that JuPedSim lets an agent want; where it is says more
-_THROWN = 10.0  # [m/s] of who overlaps with a body: where that leads to, no step of 0.01 s follows
+_STEP = 0.01  # longest step [s] of force-based models, JuPedSim's own
+_ROOM = 15.0  # margin [m] of the ground around the pedestrians; JuPedSim looks 4 m far
+_TO = 5.0  # distance [m] of an agent's target ahead
+_POINT = 1e-9  # radius [m] of a new agent; its true radius is set when all are placed
+_ASIDE = 1e-3  # distance [m] by which an agent is moved if another one has the same place
+_GOLDEN = 2.399963229728653  # angle [rad] between successive directions of such moves
+_HEAVY = 1e9  # mass [kg] of a vehicle's circles
+_FASTEST = 10.0  # largest desired speed [m/s] that JuPedSim accepts
+_THROWN = 10.0  # speed [m/s] of people in a vehicle's body, above which a step ends early
 
 
 class JuPedSimPeople:
-    """One of JuPedSim's models, as somebody else's are asked.
+    """One of JuPedSim's models, in the form of a plug-in.
 
     Args:
-        name: which one.
+        name: Name of the model.
         setup: Setup of the run.
 
     Raises:
@@ -64,7 +64,7 @@ class JuPedSimPeople:
         self._times = max(1, math.ceil(setup.time_step / _STEP - 1e-9)) if self._forces else 1
 
     def step(self, walkers: Walkers) -> Velocities:
-        """Move everybody from t_k to t_k+1."""
+        """Return the velocities of all pedestrians after the step from t_k to t_k+1."""
         low, high = walkers.position.min(axis=0) - _ROOM, walkers.position.max(axis=0) + _ROOM
         simulation = self._jupedsim.Simulation(
             model=self._model,
@@ -85,14 +85,14 @@ class JuPedSimPeople:
             else:
                 places = np.array([simulation.agent(i).position for i in ids])
                 velocity = (places - began) / self._step
-            if np.abs(velocity).max() > _THROWN:  # by friction deep in a body: ever faster
+            if np.abs(velocity).max() > _THROWN:  # friction deep in a body accelerates without end
                 break
         return Velocities(self._limited(velocity, walkers))
 
     def _people(
         self, simulation: Any, walkers: Walkers, steered: dict[str, Any]
     ) -> tuple[list[int], Array]:
-        """Everybody as an agent: their ids, and (n, 2) [m] where they are."""
+        """Add all pedestrians as agents; return their ids and their positions (n, 2) [m]."""
         pace = np.hypot(walkers.preferred[:, 0], walkers.preferred[:, 1])
         ahead = walkers.preferred / np.maximum(pace, _POINT)[:, None]
         _stop_before(walkers.position, ahead, pace, walkers.vehicles, self._radius)
@@ -108,7 +108,7 @@ class JuPedSimPeople:
         return ids, began
 
     def _bodies(self, simulation: Any, bodies: Array, steered: dict[str, Any]) -> None:
-        """The vehicles' circles as agents that drive on."""
+        """Add the circles of vehicles as agents that drive on."""
         for k, (x, y, radius, v_x, v_y) in enumerate(bodies):
             speed = math.hypot(v_x, v_y)
             own = {"velocity": (v_x, v_y), "mass": _HEAVY} if self._forces else {}
@@ -119,9 +119,9 @@ class JuPedSimPeople:
             agent.target = (x + to * v_x, y + to * v_y)
 
     def _placed(self, simulation: Any, place: Array, number: int, settings: dict[str, Any]) -> Any:
-        """A new agent, a millimetre aside if somebody is there already.
+        """Add an agent, moved by a millimetre or more if the place is occupied, and return it.
 
-        What is returned is good until the next one is added: JuPedSim moves its agents in memory.
+        The result is valid until the next agent is added, because JuPedSim moves agents in memory.
         """
         x, y = float(place[0]), float(place[1])
         parameters = self._agent(position=(x, y), radius=_POINT, **settings)
@@ -137,7 +137,7 @@ class JuPedSimPeople:
         raise PlugInError(f"a hundred people stand at {x:g}, {y:g} m")
 
     def _limited(self, velocity: Array, walkers: Walkers) -> Array:
-        """Limit speeds to those of people, and to those that can stop at a wall."""
+        """Limit velocities to the largest speed of people, and so that they stop at walls."""
         normal = walkers.wall_normal
         least = (self._radius - walkers.wall_distance) / RELAXATION
         towards = (velocity * normal).sum(axis=1)
@@ -151,7 +151,7 @@ class JuPedSimPeople:
 
 
 def _circles(vehicles: Array) -> Array:
-    """(k, 5) x, y, radius [m], velocity [m/s] of circles that cover vehicles (m, 7)."""
+    """Return circles (k, 5) that cover vehicles (m, 7): x, y, radius [m], velocity x, y [m/s]."""
     circles = [np.empty((0, 5))]
     for vehicle in vehicles:
         length, width = vehicle[FRONT] + vehicle[REAR], vehicle[WIDTH]
@@ -170,7 +170,15 @@ def _circles(vehicles: Array) -> Array:
 def _stop_before(
     position: Array, ahead: Array, pace: Array, vehicles: Array, radius: float
 ) -> None:
-    """Lower each ``pace`` (n,) [m/s] to what stops before the strips of vehicles."""
+    """Lower each ``pace`` (n,) [m/s] so that people stop before the strips of vehicles.
+
+    Args:
+        position: Positions (n, 2) [m].
+        ahead: Unit vectors (n, 2) to the goals.
+        pace: Desired speeds (n,) [m/s], changed.
+        vehicles: Vehicles (m, 7).
+        radius: Radius of a body [m].
+    """
     for i in range(len(pace)):
         place, direction = (position[i, 0], position[i, 1]), (ahead[i, 0], ahead[i, 1])
         slowest = speed_before(place, direction, pace[i], vehicles, radius, 0.0)

@@ -1,13 +1,14 @@
 """Optimal reciprocal collision avoidance, for one pedestrian among people, vehicles and a wall.
 
-van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance" (Robotics Research, STAR
-70, 2011): everybody who would meet somebody within ``tau`` takes the half of the velocity's change
-that avoids it; of the velocities that all these half-planes permit one takes the closest to that
-which one wants, by an incremental linear programme, and, where they permit none, the one that
-breaks the worst least. A vehicle takes no half: people get out of its way alone. It is a row of
-circles that cover it. A wall is a half-plane that nobody may break.
+The method is that of van den Berg, Guy, Lin and Manocha, "Reciprocal n-body collision avoidance"
+(Robotics Research, STAR 70, 2011). Two people who would collide within ``tau`` each make half of
+the change of velocity that avoids the collision. This permits a half-plane of velocities. An
+incremental linear programme finds the permitted velocity closest to the desired one. If none is
+permitted, it finds the one with the smallest largest violation. A vehicle does not avoid people:
+they make the whole change. It is covered by a row of circles. A wall is a half-plane that is always
+kept.
 
-A line is (point, direction); the permitted velocities lie on its left.
+A line is (point, direction). The permitted velocities are on its left.
 """
 
 import math
@@ -21,14 +22,14 @@ from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 
 Array = NDArray[np.float64]
 
-TAU = 3.0  # [s] ahead in which people avoid to meet (ours; the paper's scenes have 2 to 10)
-_WALL_TAU = 0.5  # [s] in which nobody may reach a wall (ours)
-_NEIGHBOURS = 10  # people at most that one looks at, the nearest
-_SIGHT = 10.0  # [m] at most
-_CIRCLES = 4  # that a vehicle is
-_VEHICLES = 8  # at most, the nearest
+TAU = 3.0  # time [s] within which people avoid collisions (ours; the paper's scenes have 2 to 10)
+_WALL_TAU = 0.5  # time [s] within which nobody may reach a wall (ours)
+_NEIGHBOURS = 10  # largest number of people that are considered, the nearest ones
+_SIGHT = 10.0  # largest distance [m] of people that are considered
+_CIRCLES = 4  # number of circles that cover a vehicle
+_VEHICLES = 8  # largest number of vehicles that are considered, the nearest ones
 LINES = 1 + _CIRCLES * _VEHICLES + _NEIGHBOURS
-_PARALLEL = 1e-9
+_PARALLEL = 1e-9  # cross product of unit vectors below which two lines are parallel
 
 
 @inlined
@@ -46,7 +47,17 @@ def _add_line(
     share: float,
     dt: float,
 ) -> None:
-    """Write the half-plane that avoids a circle (x, y, radius), relative to oneself."""
+    """Write the line of the half-plane of velocities that avoid a circle.
+
+    Args:
+        lines: Lines (LINES, 4), changed.
+        at: Row of the new line.
+        circle: Centre x, y [m], relative to the person, and radius [m].
+        relative_velocity: Velocity [m/s] of the person relative to the circle.
+        velocity: Velocity [m/s] of the person.
+        share: Share of the change of velocity that the person makes.
+        dt: Time step [s].
+    """
     (r_x, r_y, radius), (w_x, w_y), (v_x, v_y) = circle, relative_velocity, velocity
     apart, both = r_x * r_x + r_y * r_y, radius * radius
     meets = apart <= both
@@ -78,7 +89,7 @@ def _add_line(
 
 @inlined
 def _nearest(found: Array, count: int, most: int, distance: float, which: int) -> int:
-    """Put a neighbour into the sorted list ``found`` (distance, index); how many it holds then."""
+    """Insert a neighbour into the sorted list ``found`` (distance, index); return its length."""
     if count == most and distance >= found[count - 1, 0]:
         return count
     place = count if count < most else count - 1
@@ -119,7 +130,7 @@ def orca_velocity(
     v_x, v_y = velocity[i, 0], velocity[i, 1]
     n = 0
     if wall[0] < np.inf:
-        most = -(wall[0] - radius) / _WALL_TAU  # towards it, or away from it at least
+        most = -(wall[0] - radius) / _WALL_TAU  # least velocity [m/s] along the normal
         lines[0, 0], lines[0, 1] = most * wall[1], most * wall[2]
         lines[0, 2], lines[0, 3] = wall[2], -wall[1]
         n = 1
@@ -149,7 +160,7 @@ def orca_velocity(
     for near in range(count):
         j = int(found[near, 1])
         r_x, r_y = position[j, 0] - x, position[j, 1] - y
-        if r_x == 0.0 and r_y == 0.0:  # two in one place part by their order
+        if r_x == 0.0 and r_y == 0.0:  # two people in one place separate by their order
             r_x = math.copysign(1e-9, j - i)
         w_x, w_y = v_x - velocity[j, 0], v_y - velocity[j, 1]
         _add_line(lines, n, (r_x, r_y, 2.0 * radius), (w_x, w_y), (v_x, v_y), 0.5, dt)
@@ -168,9 +179,11 @@ def orca_velocity(
 def _closest(
     lines: Array, n: int, fastest: float, p_x: float, p_y: float, furthest: bool
 ) -> tuple[int, float, float]:
-    """The permitted velocity closest to p, or furthest along the unit vector p.
+    """Return the permitted velocity closest to p, or furthest along the unit vector p.
 
-    The first is n, or the line at which none was left; the velocity is that before it, then.
+    Returns:
+        n, or the first line with which no velocity is permitted; velocity x, y [m/s], in that case
+        the permitted one before this line.
     """
     o_x, o_y = (fastest * p_x, fastest * p_y) if furthest else (p_x, p_y)
     for i in range(n):
@@ -213,7 +226,10 @@ def _least_broken(
     best: tuple[float, float],
     projected: Array,
 ) -> tuple[float, float]:
-    """Return the velocity that is least far outside of the half-planes; the hard ones hold."""
+    """Return the velocity with the smallest largest violation of the half-planes.
+
+    The hard half-planes are kept.
+    """
     (hard, first), (o_x, o_y) = hard_and_failed, best
     deepest = 0.0
     for i in range(first, n):

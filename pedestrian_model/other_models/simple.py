@@ -1,26 +1,26 @@
-"""Other models of people than VCI: is what holds for one crowd true whatever people do?
+"""Pedestrian models other than VCI, to find out whether results depend on the model.
 
 ``constant-velocity``
-    Everybody walks to the next way-point at the desired speed, through whatever is there: the
-    least that a model of people can be, and the assumption behind a time to collision.
+    People walk to the next way-point at the desired speed and ignore everything else. This is the
+    simplest model, and the assumption behind a time to collision.
 ``social-force``
     Helbing and Molnár, "Social force model for pedestrian dynamics" (Phys. Rev. E 51, 4282, 1995),
-    with its numbers: the way to the goal, elliptical repulsion among people, borders, and the
-    weight of what one sees. A vehicle is a rectangle that repels as a border does, by the ellipse
-    of its way in the next two seconds.
+    with its parameters: a force to the goal, elliptical repulsion among people, repulsion by
+    borders, and a lower weight of what is out of sight. A vehicle is a rectangle that repels as a
+    border does, by the ellipse of its way in the next two seconds.
 ``gap-acceptance``
-    Among themselves people walk by the same social force. To a vehicle that moves they answer by a
-    gap: they stop before the strip that it will sweep, unless it takes longer to arrive than their
-    critical headway t_c = L / v_0 + t_s, of the Highway Capacity Manual (2010, equation 19-69: the
-    way across over the walking speed, and 3 s to start and to be clear of it). Who has begun to
-    cross goes on. A vehicle that stands is a rectangle, as a wall is.
+    People walk among each other by the same social force. For a moving vehicle they accept gaps:
+    they stop before the strip that it will sweep, unless it arrives later than their critical
+    headway t_c = L / v_0 + t_s of the Highway Capacity Manual (2010, equation 19-69: the length of
+    the crossing over the walking speed, plus 3 s to start and to clear it). People who have begun
+    to cross go on. A standing vehicle is a rectangle that repels as a wall does.
 ``orca``
-    Optimal reciprocal collision avoidance (van den Berg et al. 2011): everybody takes the velocity
-    closest to the desired one that meets nobody within the next 3 s, if the others do their half;
-    out of a vehicle's way people get alone.
+    Optimal reciprocal collision avoidance (van den Berg et al. 2011): each person takes the
+    velocity closest to the desired one that avoids collisions within the next 3 s, if the others
+    make their half of the change. Vehicles do not avoid people.
 
-All of them know way-points, lines and signals, and keep to the parameters' largest acceleration and
-speed; they have no detour around cars, and no priority.
+All of them follow way-points, lines and signals, and keep the largest acceleration and speed of the
+parameters. They have no detour around cars, and no priority.
 """
 
 import math
@@ -58,18 +58,18 @@ _STRAIGHT, _FORCES, _GAPS, _ORCA = range(len(PLAIN_MODELS))
 Array = NDArray[np.float64]
 
 # Highway Capacity Manual 2010, equation 19-69
-_START = 3.0  # [s] t_s, to start and to be clear of the way
-_HALT = 4.0 * RELAXATION  # [s] v = room / T stops before a kerb and not beyond it
-_BESIDE = 0.3  # [m] between the vehicle's side and a body that waits (ours)
-_STANDS = 0.1  # [m/s] a slower vehicle stands
-_ARRIVES = 0.3  # [m] about a way-point at which somebody slows down (ours)
+_START = 3.0  # time t_s [s] to start and to clear the strip
+_HALT = 4.0 * RELAXATION  # time constant T [s]: v = room / T leads to a stop without overshoot
+_BESIDE = 0.3  # distance [m] between the vehicle's side and a body that waits (ours)
+_STANDS = 0.1  # speed [m/s] below which a vehicle stands
+_ARRIVES = 0.3  # distance [m] over which people slow down to stop at a way-point (ours)
 
 
 def unmoved(parameters: VciParameters) -> VciParameters:
-    """VCI of people whom nothing moves: ``constant-velocity``, for what predicts by VCI alone.
+    """Return VCI parameters without forces, as ``constant-velocity`` for VCI's predictor.
 
     Args:
-        parameters: whose bodies, limits and way-points hold.
+        parameters: Parameters with the bodies, limits and way-points of the result.
     """
     return replace(
         parameters,
@@ -84,14 +84,14 @@ def unmoved(parameters: VciParameters) -> VciParameters:
 
 
 class PlainModel:
-    """One of the plain models with a time step; it holds no state but scratch memory.
+    """One of the plain models with a time step. It keeps no state but scratch memory.
 
     Args:
-        name: which one.
-        parameters: Parameters of VCI; body radius, largest speed and acceleration, and the
-            way-points' radius hold here too.
-        time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
-            drive straight on at constant speed.
+        name: Name of the model.
+        parameters: Parameters of VCI, of which body radius, largest speed and acceleration, and the
+            radius of way-points are used.
+        time_step: Time step [s]. Above 0.05 s it is divided into equal sub-steps, during which the
+            vehicles drive straight on at constant speed.
 
     Raises:
         ParameterError: if the time step is not positive and finite.
@@ -118,7 +118,7 @@ class PlainModel:
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
     ) -> None:
-        """Change position, velocity and waypoint_index of ``crowd`` in place, one time step on.
+        """Advance position, velocity and waypoint_index of ``crowd`` in place by one time step.
 
         Raises:
             DivergenceError: if a pedestrian's state is or becomes not finite.
@@ -155,7 +155,7 @@ def _advance(
     timing: tuple[float, int],
     memory: tuple[Array, Array, tuple[Array, Array, Array]],
 ) -> int:
-    """Advance the state in place by ``steps`` steps of dt; ``FINE`` or the first bad index."""
+    """Advance the state in place by some steps, and return ``FINE`` or the first bad index."""
     position, velocity, waypoint_index = state
     desired_speed, routes, start = wishes[0], wishes[1:], wishes[4]
     closed, walled, lines, cells, vehicles = scene
@@ -237,7 +237,9 @@ def speed_before(
     radius: float,
     travelled: float,
 ) -> float:
-    """The speed [m/s] that stops somebody before the strips of vehicles that come too soon.
+    """Return the speed [m/s] at which a person stops before the strips of vehicles, or inf.
+
+    A strip counts if its vehicle arrives before the person's critical headway is over.
 
     Args:
         place: Position [m] of the person.
@@ -257,10 +259,10 @@ def speed_before(
         u = vehicle[SPEED]
         if u < _STANDS or abs(across) <= half or across * aside >= 0.0 or pace <= 0.0:
             continue
-        room = (abs(across) - half) / abs(aside)  # [m] to walk to the strip
+        room = (abs(across) - half) / abs(aside)  # distance [m] to walk to the strip
         if room > _HALT * pace:
             continue
-        meets = along + room * forth - vehicle[FRONT]  # [m] ahead of the front
+        meets = along + room * forth - vehicle[FRONT]  # distance [m] ahead of the front
         if meets < -vehicle[REAR] - vehicle[FRONT]:
             continue
         critical = 2.0 * half / (abs(aside) * pace) + _START

@@ -1,8 +1,8 @@
-"""The social force of Helbing and Molnár (Phys. Rev. E 51, 4282, 1995), with its numbers.
+"""The social force of Helbing and Molnár (Phys. Rev. E 51, 4282, 1995), with its parameters.
 
-People repel by ellipses over the way that they go in the next two seconds, and count half where
-they are not seen; borders repel by their distance. A vehicle is a rectangle that repels as a border
-does, by the ellipse of its way in the next two seconds (ours).
+People repel each other by ellipses over their way in the next two seconds. People out of sight
+count half. Borders repel by their distance. A vehicle is a rectangle that repels as a border does,
+by the ellipse of its way in the next two seconds (ours).
 """
 
 import math
@@ -16,22 +16,28 @@ from pedestrian_model.arrays import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 
 Array = NDArray[np.float64]
 
-RELAXATION = 0.5  # [s] in which people take up their pace
-AHEAD = 2.0  # [s] of somebody's way that counts as theirs
-FASTER = 1.3  # of the desired speed, at most
-EPSILON = 1e-9  # [m]
+RELAXATION = 0.5  # relaxation time [s] of the velocity
+AHEAD = 2.0  # time [s] of a person's way that its ellipse covers
+FASTER = 1.3  # largest speed as a share of the desired speed
+EPSILON = 1e-9  # least length [m], against a division by zero
 
 _PERSON, _PERSON_RANGE = 2.1, 0.3  # V_0 [m^2/s^2] and sigma [m]
 _BORDER, _BORDER_RANGE = 10.0, 0.2  # U_0 [m^2/s^2] and R [m]
-_SIGHT, _UNSEEN = -0.17364817766693033, 0.5  # cos 100 degrees; the share of what lies behind
-_FAR = 8.0  # [m] beyond it nobody is felt: less than 1e-6 m/s^2 is left out
+_SIGHT, _UNSEEN = -0.17364817766693033, 0.5  # cos 100 degrees; weight of what is out of sight
+_FAR = 8.0  # distance [m] beyond which forces of less than 1e-6 m/s^2 are left out
 
 
 @inlined
 def elliptical(r_x: float, r_y: float, s_x: float, s_y: float) -> tuple[float, float, float]:
-    """B [m] and its gradient, of the ellipse about somebody who steps (s_x, s_y), seen at r.
+    """Return the semi-minor axis b [m] of an ellipse, and its gradient.
 
     2 b = sqrt((|r| + |r - s|)^2 - |s|^2).
+
+    Args:
+        r_x: Vector r [m] from the other person.
+        r_y: Vector r [m] from the other person.
+        s_x: Step s [m] of the other person.
+        s_y: Step s [m] of the other person.
     """
     first = max(math.sqrt(r_x * r_x + r_y * r_y), EPSILON)
     u_x, u_y = r_x - s_x, r_y - s_y
@@ -44,7 +50,7 @@ def elliptical(r_x: float, r_y: float, s_x: float, s_y: float) -> tuple[float, f
 
 @inlined
 def _seen(e_x: float, e_y: float, f_x: float, f_y: float) -> float:
-    """The weight of an influence f on somebody who looks along e."""
+    """Return the weight of a force f on a person who looks along e."""
     f = math.sqrt(f_x * f_x + f_y * f_y)
     return 1.0 if -(e_x * f_x + e_y * f_y) >= f * _SIGHT else _UNSEEN
 
@@ -53,7 +59,7 @@ def _seen(e_x: float, e_y: float, f_x: float, f_y: float) -> float:
 def of_people(
     i: int, e_x: float, e_y: float, position: Array, velocity: Array
 ) -> tuple[float, float]:
-    """The acceleration [m/s^2] that others give pedestrian i."""
+    """Return the acceleration [m/s^2] of pedestrian i by the force of all others."""
     a_x, a_y = 0.0, 0.0
     for j in range(position.shape[0]):
         r_x, r_y = position[i, 0] - position[j, 0], position[i, 1] - position[j, 1]
@@ -70,7 +76,7 @@ def of_people(
 
 @inlined
 def border(distance: float) -> float:
-    """The acceleration [m/s^2] away from a border at a distance [m] of the skin."""
+    """Return the acceleration [m/s^2] away from a border at a distance [m] from the body."""
     if distance > _FAR:
         return 0.0
     return _BORDER / _BORDER_RANGE * exponential(-max(distance, 0.0) / _BORDER_RANGE)
@@ -80,7 +86,10 @@ def border(distance: float) -> float:
 def in_frame(
     x: float, y: float, vehicle: Array, travelled: float
 ) -> tuple[float, float, float, float]:
-    """A point in the vehicle's frame after some time [s], and its heading's cosine and sine."""
+    """Return a point in the frame of a vehicle, and cosine and sine of the vehicle's heading.
+
+    The vehicle has driven straight on for ``travelled`` [s].
+    """
     c, s = cosine_sine(vehicle[HEADING])
     d_x = x - vehicle[X] - travelled * vehicle[SPEED] * c
     d_y = y - vehicle[Y] - travelled * vehicle[SPEED] * s
@@ -96,7 +105,7 @@ def of_vehicles(
     travelled: float,
     ahead: float,
 ) -> tuple[float, float]:
-    """The acceleration [m/s^2] that vehicles give a person.
+    """Return the acceleration [m/s^2] of a person by the force of vehicles.
 
     Args:
         place: Position [m] of the person.
@@ -104,7 +113,7 @@ def of_vehicles(
         vehicles: Vehicles (m, 7).
         radius: Radius of a body [m].
         travelled: Time [s] for which the vehicles have driven straight on.
-        ahead: Time [s] of a vehicle's way that counts as its own; with 0 it is a border.
+        ahead: Time [s] of a vehicle's way that its ellipse covers; with 0 it is a border.
     """
     (x, y), (e_x, e_y) = place, direction
     a_x, a_y = 0.0, 0.0
@@ -118,7 +127,7 @@ def of_vehicles(
         step = ahead * vehicle[SPEED]
         if distance > _FAR + abs(step):
             continue
-        if distance <= EPSILON:  # inside: out by the nearer side
+        if distance <= EPSILON:  # a person inside is pushed out by the nearer side
             off_x, off_y = 0.0, math.copysign(EPSILON, across)
         if step == 0.0:
             push = border(distance - radius)

@@ -1,4 +1,4 @@
-"""Prediction of the crowd by any model, asked step by step under given vehicle poses."""
+"""Predicts the crowd with any model, step by step, for given vehicle poses."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class StepwisePredictor:
     """Predicts N steps of the crowd by N calls of a model.
 
     Args:
-        model: Model by which people are believed to walk; one with a memory is made to forget
-            it (``reset``) before each prediction, and belongs to this predictor alone.
-        horizon: N, the number of the model's steps.
+        model: Pedestrian model that only this predictor uses. A model with a memory is reset before
+            each prediction.
+        horizon: Number N of the model's steps.
 
     Raises:
         ParameterError: if the horizon is not positive.
@@ -39,7 +39,7 @@ class StepwisePredictor:
 
     @property
     def parameters(self) -> VciParameters:
-        """Bodies and limits of the people."""
+        """The bodies and limits of the people."""
         return self._model.parameters
 
     @property
@@ -53,16 +53,16 @@ class StepwisePredictor:
         vehicles_trajectory: NDArray[np.float64],
         surroundings: Surroundings = OPEN_GROUND,
     ) -> NDArray[np.float64]:
-        """The positions (N, n, 2) [m] after 1 ... N steps; ``crowd`` is not changed.
+        """Return the positions (N, n, 2) [m] after 1 ... N steps, without changing ``crowd``.
 
         Args:
-            crowd: the present state.
-            vehicles_trajectory: (N, m, 7) the vehicles at 0 ... N - 1 steps, see ``Vehicles``.
-            surroundings: walls and signals; those closed now stay closed over the horizon.
+            crowd: Present state.
+            vehicles_trajectory: Vehicles (N, m, 7) at steps 0 ... N - 1, see ``Vehicles``.
+            surroundings: Walls and signals. Signals closed now stay closed over the horizon.
 
         Raises:
             DivergenceError: if a pedestrian's state is or becomes not finite.
-            PlugInError: somebody else's model does not answer as it should.
+            PlugInError: the answer of another package's model cannot be used.
             SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
         if self._reset is not None:
@@ -75,7 +75,7 @@ class StepwisePredictor:
             self._vehicles.array[:] = vehicles_trajectory[k]
             try:
                 self._model.advance(ahead, self._vehicles, surroundings)
-            except PlugInError as error:  # whom it names is a row of those looked at alone
+            except PlugInError as error:  # without the person, whose row is that of a selection
                 raise PlugInError(f"{error} (predicting {k + 1} steps ahead)") from error
             out[k] = ahead.position
         return out
@@ -83,7 +83,7 @@ class StepwisePredictor:
     def desired_velocities(
         self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND
     ) -> NDArray[np.float64]:
-        """Return the wishes of all at the end of the latest prediction of ``crowd``, (n, 3)."""
+        """Return the desired velocities (n, 3) at the end of the latest prediction of ``crowd``."""
         wishes, ahead = np.empty((len(crowd), 3)), self._ahead
         fill_desired_velocities(
             (

@@ -1,7 +1,7 @@
-"""Crowds that an ego meets: groups from both sides, timed against its drive with nobody about.
+"""Generates crowds that an ego meets: groups from both sides, timed by the ego's free drive.
 
-Sizes and formation of groups are those of groups.py, also for those who walk alone. The
-distributions, and what comes of them: docs/encounter.md.
+Sizes and formations of groups are those of groups.py, also for people who walk alone.
+docs/encounter.md describes the distributions and their results.
 """
 
 from collections.abc import Sequence
@@ -16,20 +16,20 @@ from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 
-_JITTER = 0.1  # Largest offset [m] on each axis from the place in the formation
-_SKEW, _MOST_SKEW = 10.0, 25.0  # Deviation [deg] of a group's heading from a square crossing
-_FIRST, _LAST = 12.0, 4.0  # Length [m] of way before the first and after the last meeting point
-_MEETING = (-2.5, 0.5)  # Arrival [s] after the free ego of groups that meet it
-_ANY = (-4.0, 8.0)  # Arrival [s] after the free ego of all other groups
-_SHARE_MEETING = 0.4  # Share of groups that meet the ego; at least one does
-_EARLIEST = 2.5  # Shortest walk [s] from a start to the way
-_BEYOND = 15.0  # Distance [m] from the way to a destination
-_ATTEMPTS = 2_000  # Attempts to place one group
+_JITTER = 0.1  # largest offset [m] on each axis from the place in the formation
+_SKEW, _MOST_SKEW = 10.0, 25.0  # standard and largest deviation [deg] from a right angle
+_FIRST, _LAST = 12.0, 4.0  # length [m] of path before the first and after the last meeting point
+_MEETING = (-2.5, 0.5)  # arrival [s] after the free ego of groups that meet it
+_ANY = (-4.0, 8.0)  # arrival [s] after the free ego of all other groups
+_SHARE_MEETING = 0.4  # share of groups that meet the ego; at least one does
+_EARLIEST = 2.5  # shortest walk [s] from a start to the path
+_BEYOND = 15.0  # distance [m] from the path to a destination
+_ATTEMPTS = 2_000  # largest number of attempts to place one group
 
 
 @dataclass(frozen=True)
 class FreeDrive:
-    """The drive that an ego would make with nobody about.
+    """The drive of an ego without other road users.
 
     Attributes:
         path: Path of the front bumper.
@@ -47,20 +47,20 @@ class FreeDrive:
 def meet(
     config: CrowdConfig, drive: FreeDrive, kinds: Sequence[str], random: np.random.Generator
 ) -> tuple[Array, Array, Array, list[int]]:
-    """Draw ``config.pedestrians`` people in groups that cross the way of a free drive.
+    """Draw ``config.pedestrians`` people in groups that cross the path of a free drive.
 
     Args:
         config: Number, speeds and spacing of the people.
         drive: Free drive that they meet.
-        kinds: (n,) Kind of each person.
+        kinds: Kind (n,) of each person.
         random: Generator of the draws.
 
     Returns:
-        (n, 2) [m] where they start, (n, 2) [m] their destinations, (n,) [m/s] desired speeds, and
-        the sizes of their groups.
+        Starts (n, 2) [m], destinations (n, 2) [m], desired speeds (n,) [m/s], and sizes of the
+        groups.
 
     Raises:
-        CrowdError: the drive is too short, or there is no room for so many.
+        CrowdError: the drive is too short, or there is no room for so many people.
     """
     if drive.distance < _FIRST + _LAST:
         raise CrowdError(
@@ -93,7 +93,7 @@ def meet(
 
 
 def _sizes(people: int, random: np.random.Generator) -> list[int]:
-    """Sizes of groups, zero-truncated Poisson up to the largest; the last is what is left."""
+    """Draw sizes of groups from a zero-truncated Poisson distribution; the last has the rest."""
     sizes: list[int] = []
     while (left := people - sum(sizes)) > 0:
         size = int(random.poisson(RATE))
@@ -103,7 +103,7 @@ def _sizes(people: int, random: np.random.Generator) -> list[int]:
 
 
 def _speed(config: CrowdConfig, kinds: Sequence[str], random: np.random.Generator) -> float:
-    """Return the desired speed [m/s] of a group: in a mixed group that of the slowest."""
+    """Return the desired speed [m/s] of a group; in a mixed group that of the slowest person."""
     members = kinds if any(kinds) else kinds[:1]
     return float(desired_speeds(config, members, random).min())
 
@@ -116,7 +116,16 @@ def _group(
     meets: bool,
     random: np.random.Generator,
 ) -> tuple[Array, Array]:
-    """Return starts and ends (size, 2) [m] of a group that walks to the left (1) or right (-1)."""
+    """Return starts and ends (size, 2) [m] of a group that walks to the left or right of the path.
+
+    Args:
+        drive: Free drive of the ego.
+        size: Number of people.
+        side: Direction: 1 to the left, -1 to the right.
+        speed: Desired speed [m/s].
+        meets: Whether the group meets the ego.
+        random: Generator of the draws.
+    """
     along = float(random.uniform(_FIRST, drive.distance - _LAST))
     delay = float(random.uniform(*(_MEETING if meets else _ANY)))
     skew = float(np.clip(random.normal(0.0, _SKEW), -_MOST_SKEW, _MOST_SKEW))

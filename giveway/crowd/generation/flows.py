@@ -1,8 +1,8 @@
-"""Streams of people: who arrives when, where each appears, and which way each takes.
+"""Generates flows of people: arrival times, entries and routes.
 
-Everything about a party, one person or a group, is drawn from a stream of its own, by the run's
-seed, the flow and the party's number. So who arrives, when and bound for where depends on nothing
-that happens in the run: no ego, controller or model of people, and no other flow.
+A group, which may be a single person, is drawn from its own random stream, by the run's seed, the
+flow and the group's number. Arrivals and destinations therefore do not depend on egos,
+controllers, pedestrian models or other flows.
 """
 
 from __future__ import annotations
@@ -23,32 +23,32 @@ from giveway.crowd.ways import Gate, LitCrossing, gates_of, longest_way, somewhe
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
-_STREAM = 0xF70  # tells these draws from others of the same seed
-_TRIES = 20  # Places tried for a party at each of SUMO's instants
+_STREAM = 0xF70  # key of the random streams of flows, which differs from all others
+_TRIES = 20  # largest number of places that are tried for a group at an instant
 _HOUR = 3600.0  # [s]
 
 
 class Party(NamedTuple):
-    """Those who arrive together."""
+    """A group of people who arrive together, or a single person."""
 
-    due: float  # [s] after the run's start
-    names: tuple[str, ...]
-    kinds: tuple[str, ...]
-    speed: float  # Desired speed [m/s] of the party
-    random: np.random.Generator  # Generator of its places
+    due: float  # arrival time [s] after the run's start
+    names: tuple[str, ...]  # ids of the people
+    kinds: tuple[str, ...]  # kinds of the people
+    speed: float  # desired speed [m/s] of the group
+    random: np.random.Generator  # generator of its places
 
 
 class Walk(NamedTuple):
-    """The positions of a party's members when they appear, and their ways."""
+    """The positions of a group's members when they appear, and their routes."""
 
-    position: Array  # (k, 2) [m]
-    velocity: Array  # (k, 2) [m/s]
-    destination: Array  # (k, 2) [m]
+    position: Array  # positions (k, 2) [m]
+    velocity: Array  # velocities (k, 2) [m/s]
+    destination: Array  # destinations (k, 2) [m]
     gates: tuple[Gate, ...]  # gates that are still ahead
 
 
 class Flow:
-    """One stream.
+    """One flow of people.
 
     Args:
         config: Configuration of the run.
@@ -66,10 +66,10 @@ class Flow:
         self._prefix = prefix
         self._people = crowd.people if flow.people is None else flow.people
         self._groups = crowd.groups if flow.groups is None else flow.groups
-        parties = flow.rate * crowd.flow_scale * parties_per_person(self._groups)  # an hour
+        parties = flow.rate * crowd.flow_scale * parties_per_person(self._groups)  # per hour
         self._headway = _HOUR / parties
         self._random = np.random.default_rng(self._seed)
-        # People due before this have arrived; a Poisson process has no memory and may begin here.
+        # People who are due earlier have arrived already. A Poisson process may begin at any time.
         begin = max(flow.begin, -longest_way(flow) / crowd.desired_speed_min)
         self._next = begin + self._random.exponential(self._headway)
         self._parties = self._persons = 0
@@ -77,7 +77,7 @@ class Flow:
         self.waiting: deque[Party] = deque()
 
     def come(self, until: float) -> None:
-        """Let those who arrive up to ``until`` [s] after the run's start wait for their entry."""
+        """Let people who are due by ``until`` [s] after the run's start wait for their entry."""
         end = math.inf if self._flow.end is None else self._flow.end
         while self._next <= min(until, end):
             self.waiting.append(self._party(self._next))
@@ -94,7 +94,7 @@ class Flow:
         return Party(due, names, kinds, speed, random)
 
     def walk(self, party: Party, ahead: float) -> Walk | None:
-        """Return the walk of a party from ``ahead`` [m] after its start; None if it has arrived."""
+        """Return the walk of a group that has walked ``ahead`` [m], or None if it has arrived."""
         place = somewhere(self._flow.start, party.random)
         end = somewhere(self._flow.to, party.random)
         gates = list(with_lights(place, self._gates, end, self._lit))
@@ -120,7 +120,7 @@ class Flow:
 
 
 class Flows:
-    """All streams of a run, and the crowd that they join.
+    """All flows of a run, and the crowd that their people join.
 
     Args:
         config: Configuration of the run.
@@ -145,10 +145,10 @@ class Flows:
         self._lit = tuple(lit)
         self._flows = [Flow(config, i, prefix, lit) for i, prefix in enumerate(prefixes)]
         self._step = -1
-        self._longest = [0.0] * len(prefixes)  # [s] that anybody waited for room
+        self._longest = [0.0] * len(prefixes)  # longest wait [s] for room in each flow
 
     def afresh(self, roster: Roster) -> Self:
-        """The same streams from their beginning, into another crowd."""
+        """Return the same flows from their beginning, for another crowd."""
         return type(self)(self._config, roster, self._prefixes, self._time_step, self._lit)
 
     def enter(self, step: int) -> list[list[str]]:
@@ -165,7 +165,7 @@ class Flows:
             flow.come(time)
             while flow.waiting:
                 party = flow.waiting[0]
-                early = max(-party.due, 0.0) if first else 0.0  # [s] that it walks already
+                early = max(-party.due, 0.0) if first else 0.0  # time [s] that it has walked
                 entered = self._enter(flow, party, party.speed * early)
                 if entered is None and not early:
                     self._longest[number] = max(self._longest[number], time - party.due)
@@ -175,7 +175,7 @@ class Flows:
         return names
 
     def _enter(self, flow: Flow, party: Party, ahead: float) -> tuple[str, ...] | None:
-        """Let a party in ``ahead`` [m] after its start; return who came in, None without room."""
+        """Let a group in that has walked ``ahead`` [m]; return its ids, or None without room."""
         roster, spacing = self._roster, self._config.crowd.minimum_spacing
         for _ in range(_TRIES):
             walk = flow.walk(party, ahead)
@@ -213,7 +213,7 @@ class Flows:
 
 
 def _crowd(walk: Walk, speed: float) -> Crowd:
-    """A party as a crowd."""
+    """Return a group as a crowd."""
     count = len(walk.position)
     through = np.array([gate.middle for gate in walk.gates]).reshape(-1, 2)
     lines = np.array([(*gate.across, gate.half_width) for gate in walk.gates]).reshape(-1, 3)

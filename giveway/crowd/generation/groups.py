@@ -1,8 +1,8 @@
-"""People who walk together: how many, and how they stand to each other at the start.
+"""Draws groups of people who walk together: their sizes, and their formation at the start.
 
-Sizes and formation: Moussaïd, Perozo, Garnier, Helbing & Theraulaz, "The walking behaviour of
-pedestrian social groups and its impact on crowd dynamics", PLoS ONE 5(4), 2010: zero-truncated
-Poisson, abreast where there is room.
+Sizes and formation are those of Moussaïd, Perozo, Garnier, Helbing & Theraulaz, "The walking
+behaviour of pedestrian social groups and its impact on crowd dynamics", PLoS ONE 5(4), 2010: sizes
+have a zero-truncated Poisson distribution, and people walk abreast if there is room.
 """
 
 import math
@@ -11,13 +11,13 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 
-RATE = 1.11  # of the zero-truncated Poisson distribution of sizes (population B)
-LARGEST = 5
-_ABREAST = 3  # more walk in two rows
-_BESIDE, _BEHIND = 0.75, 1.0  # [m] between neighbours in a row, and between rows
+RATE = 1.11  # rate of the zero-truncated Poisson distribution of sizes (population B)
+LARGEST = 5  # largest size of a group
+_ABREAST = 3  # largest number of people in one row; larger groups walk in two
+_BESIDE, _BEHIND = 0.75, 1.0  # distance [m] of neighbours in a row, and of rows
 _SIZES = np.arange(2, LARGEST + 1)
 _WEIGHTS = np.array([RATE**size / math.factorial(size) for size in _SIZES.tolist()])
-_MEAN = float(_SIZES @ _WEIGHTS / _WEIGHTS.sum())  # Mean size of groups of at least two
+_MEAN = float(_SIZES @ _WEIGHTS / _WEIGHTS.sum())  # mean size of groups of at least two
 
 
 def parties_per_person(share: float) -> float:
@@ -30,7 +30,7 @@ def parties_per_person(share: float) -> float:
 
 
 def party_size(share: float, random: np.random.Generator) -> int:
-    """Draw the size of the next party; without groups it is 1 and nothing is drawn.
+    """Draw the size of the next group or single person; without groups it is 1, without a draw.
 
     Args:
         share: Share of the people who walk in groups.
@@ -42,7 +42,7 @@ def party_size(share: float, random: np.random.Generator) -> int:
 
 
 def party_sizes(people: int, share: float, random: np.random.Generator) -> list[int]:
-    """Draw sizes of parties that add up to ``people``; the last one takes the rest."""
+    """Draw sizes of groups and single people with the sum ``people``; the last has the rest."""
     sizes: list[int] = []
     left = people
     while left > 0:
@@ -80,6 +80,6 @@ def of_parties(sizes: list[int], names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def slowest(speed: Array, sizes: list[int]) -> Array:
-    """Return desired speeds (n,) [m/s], each that of the slowest member of the party."""
+    """Return desired speeds (n,) [m/s], each that of the slowest member of the group."""
     first = np.cumsum([0, *sizes[:-1]])
     return np.repeat(np.minimum.reduceat(speed, first), sizes) if len(speed) else speed

@@ -1,15 +1,15 @@
-"""Kinds of people: how fast each of them would like to walk.
+"""Draws kinds of people, and their desired speeds by kind.
 
-* ``adult``: as ``[crowd]`` says, by default as recorded in Yang & Özgüner 2019.
-* ``elderly``: 3.81 ft/s, 15th percentile 3.02 ft/s, at crossings (Gates, Noyce, Bill & Van Ee,
+* ``adult``: the speeds of ``[crowd]``, by default those recorded in Yang & Özgüner 2019.
+* ``elderly``: mean 3.81 ft/s, 15th percentile 3.02 ft/s, at crossings (Gates, Noyce, Bill & Van Ee,
   "Recommended walking speeds for timing of pedestrian clearance intervals based on characteristics
   of the pedestrian population", Transportation Research Record 1982, 2006: 326 people over 65).
-* ``child``: with an adult, who cross as fast as the elderly (the same).
-* ``distracted``: who writes on a phone takes 18 % longer (Thompson, Rivara, Ayyagari & Ebel,
-  "Impact of social and technological distraction on pedestrian crossing behaviour", Injury
-  Prevention 19, 2013). Late to notice vehicles, too: attention.py.
-* ``hurried``: 1.61 m/s, who walk on business (Weidmann, "Transporttechnik der Fussgänger",
-  Schriftenreihe des IVT 90, 1993; cited from memory), scattered as adults are.
+* ``child``: a child with an adult, as fast as the elderly (same source).
+* ``distracted``: a person who writes on a phone needs 18 % more time (Thompson, Rivara, Ayyagari &
+  Ebel, "Impact of social and technological distraction on pedestrian crossing behaviour", Injury
+  Prevention 19, 2013), and notices vehicles late: attention.py.
+* ``hurried``: mean 1.61 m/s, for people on business (Weidmann, "Transporttechnik der Fussgänger",
+  Schriftenreihe des IVT 90, 1993; cited from memory), with the standard deviation of adults.
 """
 
 from collections.abc import Sequence
@@ -20,15 +20,16 @@ from giveway.config.tables.crowd import CrowdConfig
 from giveway.config.tables.people import ADULT, PeopleConfig
 from giveway.geometry.kernel import Array
 
-_FOOT = 0.3048  # [m]
-_SLOW = 3.81 * _FOOT, (3.81 - 3.02) * _FOOT / 1.0364  # mean, deviation: 15 % are 1.0364 below
-_PHONE = 1.18
-_BUSINESS = 1.61  # [m/s]
-_REDRAWS = 1_000
+_FOOT = 0.3048  # length [m] of a foot
+# Mean and standard deviation [m/s]; the 15th percentile is 1.0364 deviations below the mean.
+_SLOW = 3.81 * _FOOT, (3.81 - 3.02) * _FOOT / 1.0364
+_PHONE = 1.18  # factor on the walking time of a person who writes on a phone
+_BUSINESS = 1.61  # mean speed [m/s] of people on business
+_REDRAWS = 1_000  # largest number of draws
 
 
 def draw_kinds(people: PeopleConfig, count: int, random: np.random.Generator) -> tuple[str, ...]:
-    """Draw the kinds of ``count`` people; without a mixture all are empty and undrawn."""
+    """Draw the kinds of ``count`` people; without a mixture all are empty, without a draw."""
     if not people.mixed:
         return ("",) * count
     shares = people.shares
@@ -38,11 +39,11 @@ def draw_kinds(people: PeopleConfig, count: int, random: np.random.Generator) ->
 
 
 def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.Generator) -> Array:
-    """Draw desired speeds (n,) [m/s] by kind: normal, redrawn until they lie in the bounds.
+    """Draw desired speeds (n,) [m/s] by kind: normal, drawn again until they are in the bounds.
 
     Args:
         config: Distribution for adults, and the bounds for all.
-        kinds: (n,) Kind of each person; empty counts as adult.
+        kinds: Kind (n,) of each person; empty counts as adult.
         random: Generator of the draws.
     """
     low, high = config.desired_speed_min, config.desired_speed_max
@@ -54,7 +55,7 @@ def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.
         if not outside.any():
             return speeds
         speeds[outside] = random.normal(mean[outside], deviation[outside])
-    return np.clip(speeds, low, high)  # bounds so narrow that hardly any draw falls between them
+    return np.clip(speeds, low, high)  # for bounds so narrow that hardly any draw is within
 
 
 def _distribution(config: CrowdConfig, kind: str) -> tuple[float, float]:

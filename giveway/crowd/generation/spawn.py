@@ -1,4 +1,4 @@
-"""The pedestrians of a run, drawn from its seed: where each starts, goes, and how fast."""
+"""Draws the pedestrians of a run from its seed: starts, destinations and desired speeds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
 
-_ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
+_ATTEMPTS_PER_PERSON = 2_000  # enough for up to a third of the densest packing
 
-_KINDS = 0x41D  # Key of the stream of kinds, apart from others of the same seed
+_KINDS = 0x41D  # key of the random stream of kinds, which differs from all others
 
-PREFIX = "ped"  # Prefix of the ids of the pedestrians that giveway adds
+PREFIX = "ped"  # prefix of the ids of the pedestrians that giveway adds
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,11 @@ class Spawned:
     """Drawn pedestrians, in the order of their ids."""
 
     ids: tuple[str, ...]
-    position: Array  # (n, 2) [m]
-    destination: Array  # (n, 2) [m]
-    desired_speed: Array  # (n,) [m/s]
-    kinds: tuple[str, ...]  # (n,) as in kinds.py; empty without a kind
-    groups: tuple[str, ...]  # (n,) id of the group's first member; empty for single people
+    position: Array  # starts (n, 2) [m]
+    destination: Array  # destinations (n, 2) [m]
+    desired_speed: Array  # desired speeds (n,) [m/s]
+    kinds: tuple[str, ...]  # kinds (n,), as in kinds.py; empty without a kind
+    groups: tuple[str, ...]  # ids (n,) of the group's first member; empty for single people
 
     @property
     def traits(self) -> dict[str, Trait]:
@@ -46,24 +46,24 @@ def spawn(
     prefix: str = PREFIX,
     drive: FreeDrive | None = None,
 ) -> Spawned:
-    """Draw ``config.pedestrians`` pedestrians, none closer to another than allowed.
+    """Draw ``config.pedestrians`` pedestrians that keep the minimum spacing.
 
-    They start uniform in the spawn area; with the sampler ``encounters`` so as to meet ``drive``.
+    Starts are uniform in the spawn area. With the sampler ``encounters`` people meet ``drive``.
 
-    With ``two_sided`` every second party stands on, and walks to, the mirror image about the ego's
-    path where it passes the spawn area. The first k of a larger crowd of the same seed are not the
-    same people: the spacing rule couples them.
+    With ``two_sided`` every second group or single person is mirrored about the ego's path at the
+    spawn area. The first k people of a larger crowd of the same seed differ from a crowd of k,
+    because the spacing rule couples all of them.
 
     Args:
         config: Number, places, destinations and speeds of the people.
-        path: Path of the ego, for ``two_sided``; None where no ego is inserted.
+        path: Path of the ego, for ``two_sided``; None if no ego is inserted.
         seed: Seed of the draw.
         prefix: Prefix of their ids; a number follows.
-        drive: Free drive for the sampler ``encounters``; None where no way is known.
+        drive: Free drive for the sampler ``encounters``; None if no route is known.
 
     Raises:
-        CrowdError: there is no room for so many at this spacing, or no ego about whose path to
-            mirror, or whom to meet.
+        CrowdError: there is no room for so many people at this spacing, or there is no ego to
+            mirror about or to meet.
     """
     random = np.random.default_rng(seed)
     ids = tuple(f"{prefix}{i}" for i in range(config.pedestrians))
@@ -95,7 +95,7 @@ def spawn(
 
 
 def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
-    """The ego's path where it is nearest to the middle of the spawn area."""
+    """Return the pose of the ego's path at its nearest point to the middle of the spawn area."""
     x_min, y_min, x_max, y_max = config.spawn_area
     stations, _ = path.project([((x_min + x_max) / 2, (y_min + y_max) / 2)])
     return path.pose(float(stations[0]))
@@ -104,9 +104,9 @@ def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
 def _scatter(
     config: CrowdConfig, sizes: Sequence[int], random: np.random.Generator, axis: Pose | None
 ) -> Array:
-    """Draw places (n, 2) [m] of parties that keep the minimum spacing from one another.
+    """Draw places (n, 2) [m] of groups that keep the minimum spacing from one another.
 
-    All lie in the spawn area, or every second party in its mirror image about ``axis``.
+    All are in the spawn area. With an ``axis`` every second group is in its mirror image.
     """
     x_min, y_min, x_max, y_max = config.spawn_area
     low, high = np.array([x_min, y_min]), np.array([x_max, y_max])
@@ -141,7 +141,7 @@ def has_room(places: Array, others: Array, spacing: float) -> bool:
 
 
 def _mirror(points: Array, axis: Pose) -> Array:
-    """The mirror image of ``points`` (n, 2) about the line through ``axis``."""
+    """Return the mirror images of ``points`` (n, 2) [m] about the line through ``axis``."""
     origin = np.array([axis.x, axis.y])
     normal = np.array([-np.sin(axis.heading), np.cos(axis.heading)])
     return points - 2.0 * np.outer((points - origin) @ normal, normal)

@@ -1,8 +1,8 @@
-"""People who look at a phone notice a vehicle late, whatever model moves them.
+"""Distracted people, who look at a phone, notice a vehicle late. This works with any model.
 
-A distracted person walks as if there were no vehicle, until one is within 2 m; then as everybody
-else. That they look less for traffic is on record (Thompson et al., Injury Prevention 19, 2013:
-"failing to look both ways"); how near a vehicle has to be is not: 2 m are an assumption of ours.
+A distracted person walks as if there were no vehicle until one is within 2 m, and then like
+everybody else. Studies show that they look less for traffic (Thompson et al., Injury Prevention 19,
+2013: "failing to look both ways"). The distance of 2 m is giveway's own assumption.
 """
 
 from collections.abc import Callable
@@ -20,18 +20,19 @@ from pedestrian_model import (
     Vehicles,
 )
 
-NOTICED = 2.0  # Distance [m] to a vehicle within which everybody notices it
+NOTICED = 2.0  # distance [m] to a vehicle, within which distracted people notice it
 _NONE = Vehicles.empty()
 
 
 class Inattentive(AroundModel):
     """A model whose distracted people notice vehicles late.
 
-    If somebody does not notice, the crowd is stepped twice: the bundled models have no memory.
+    If somebody does not notice a vehicle, the crowd is stepped twice: with and without vehicles.
+    This needs a model without a memory, as the bundled ones are.
 
     Args:
-        model: Model that moves everybody.
-        distracted: Function that returns (n,) who is distracted.
+        model: Model that moves all people.
+        distracted: Function that returns the marks (n,) of distracted people.
     """
 
     def __init__(self, model: PedestrianModel, distracted: Callable[[], NDArray[np.bool_]]) -> None:

@@ -1,9 +1,10 @@
-"""The cohesion of groups: people who have fallen behind are drawn to the middle of their group.
+"""The cohesion of groups: people far from the middle of their group accelerate towards it.
 
-Moussaïd et al. 2010 (groups.py): an acceleration of 3 m/s^2 towards the centre of mass of a group
-of N, beyond (N - 1)/2 m from it. Here it rises to that over another metre (ours), so that nobody
-trembles at the threshold. The paper's turning of heads and repulsion within a group are left out:
-the models' own repulsion keeps people apart. Only force-based models support cohesion.
+Moussaïd et al. 2010 (groups.py) have an acceleration of 3 m/s^2 towards the centre of a group of N,
+for people more than (N - 1)/2 m from it. Here it rises to this value over another metre (ours), so
+that nobody oscillates at the threshold. The paper's turning of heads and repulsion within a group
+are left out, because the models' own repulsion keeps people apart. Only force-based models support
+cohesion.
 """
 
 from collections.abc import Callable
@@ -24,18 +25,18 @@ from pedestrian_model import (
 )
 
 BY_FORCES: Final = frozenset({"vci", "social-force"})
-"""The models in which groups are drawn together."""
+"""The models that support the cohesion of groups."""
 
-_ATTRACTION = 3.0  # Largest acceleration [m/s^2] towards the middle of the group
-_RISE = 1.0  # Distance [m] over which the acceleration rises to it
+_ATTRACTION = 3.0  # largest acceleration [m/s^2] towards the middle of the group
+_RISE = 1.0  # distance [m] over which the acceleration rises to this value
 
 
 class Cohesive(AroundModel):
     """A model whose groups stay together.
 
     Args:
-        model: Model that moves everybody.
-        groups: Function that returns (n,) the index of each one's group; -1 for single people.
+        model: Model that moves all people.
+        groups: Function that returns the index (n,) of each person's group; -1 for single people.
     """
 
     def __init__(self, model: PedestrianModel, groups: Callable[[], NDArray[np.int64]]) -> None:
@@ -56,11 +57,11 @@ class Cohesive(AroundModel):
 
 
 def attraction(position: Array, groups: NDArray[np.int64]) -> Array:
-    """Return accelerations (n, 2) [m/s^2] that draw each person to the middle of the group.
+    """Return the accelerations (n, 2) [m/s^2] of people towards the middle of their group.
 
     Args:
-        position: (n, 2) [m] Position of each person.
-        groups: (n,) Index of the group of each person; -1 for single people.
+        position: Position (n, 2) [m] of each person.
+        groups: Index (n,) of each person's group; -1 for single people.
     """
     pull = np.zeros_like(position)
     rows = np.flatnonzero(groups >= 0)

@@ -1,4 +1,4 @@
-"""A random acceleration on top of the model's: pedestrians walk as no model predicts."""
+"""The disturbance: a random acceleration in addition to the model's, which cannot be predicted."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,18 +8,18 @@ from giveway.crowd.motion.noise import planar_noise
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles
 
-_STREAM = 0xACC  # tells these draws from others of the same seed
+_STREAM = 0xACC  # key of the random stream of disturbances, which differs from all others
 
 
 class Disturbance:
-    """A random acceleration of each pedestrian, constant over a step and new in the next.
+    """A random acceleration of each pedestrian, constant over a step and new in the next one.
 
-    It is drawn for all that ever were in the crowd, present or not: a pedestrian meets the same
-    accelerations at the same instants whichever controller drives.
+    It is drawn for all people who ever were in the crowd, present or not. A pedestrian thus gets
+    the same accelerations at the same instants with every controller.
 
     Args:
-        model: Model of the crowd; its limits of speed and acceleration still hold.
-        deviation: Standard deviation on each axis [m/s^2], before it is cut off at twice that.
+        model: Model of the crowd. Its limits of speed and acceleration still hold.
+        deviation: Standard deviation [m/s^2] on each axis, before the cut-off at twice this value.
         seed: Seed of the draws.
     """
 
@@ -36,14 +36,14 @@ class Disturbance:
         person_ids: NDArray[np.integer],
         known: int,
     ) -> None:
-        """Step the crowd in place as the model does, and push each pedestrian.
+        """Step the crowd in place as the model does, and add the random accelerations.
 
         Args:
             crowd: Crowd of n pedestrians.
             vehicles: Vehicles that pedestrians react to.
             surroundings: Walls and lights that pedestrians heed.
-            person_ids: (n,) Index of each among all ``known`` pedestrians.
-            known: Number of pedestrians that ever were in the crowd.
+            person_ids: Index (n,) of each person among all ``known`` pedestrians.
+            known: Number of pedestrians who ever were in the crowd.
         """
         before = crowd.velocity.copy()
         self._model.advance(crowd, vehicles, surroundings)
@@ -53,20 +53,19 @@ class Disturbance:
 
 
 def pushed(model: PedestrianModel, crowd: Crowd, before: Array, push: Array) -> None:
-    """Change the velocities after a model's step by ``push`` (n, 2) [m/s], within its limits.
+    """Change the velocities after a model's step by ``push``, within the model's limits.
 
-    The whole change of the step, the model's own and the added one, keeps a_max, and the result
-    v_max. Taking a velocity back to v_max shortens its way from ``before``, which lies within, so
-    the second limit keeps the first. Positions follow: half the added velocity times the step, as
-    constant acceleration has it.
+    The change of the whole step, the model's plus the added one, is limited by a_max. The result is
+    limited by v_max, which does not increase the change, because ``before`` is within v_max.
+    Positions change by half of the added velocity times the step, as for a constant acceleration.
 
     Args:
         model: Model that made the step.
-        crowd: Crowd after its step.
-        before: (n, 2) [m/s] Velocities before the step.
-        push: (n, 2) [m/s] Velocity changes to add.
+        crowd: Crowd after its step, changed.
+        before: Velocities (n, 2) [m/s] before the step.
+        push: Changes of velocity (n, 2) [m/s] to add.
     """
-    most = model.parameters.max_acceleration * model.time_step  # [m/s] in a step
+    most = model.parameters.max_acceleration * model.time_step  # largest change [m/s] in a step
     change = crowd.velocity + push - before
     wanted = before + change * _within(change, most)
     wanted *= _within(wanted, model.parameters.max_speed)

@@ -7,7 +7,7 @@ class AroundModel:
     """A model that wraps another one and has its bodies, limits and time step.
 
     Args:
-        model: Model that moves everybody.
+        model: Model that moves all people.
     """
 
     def __init__(self, model: PedestrianModel) -> None:
