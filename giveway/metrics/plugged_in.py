@@ -184,6 +184,8 @@ def _columns(name: str, kind: Any) -> tuple[Column, ...]:
         columns = columns_of(table)
         if not columns or any(column.type not in _EXPECTED for column in columns):
             raise TypeError("no column, or one that holds no number")
+        if not {column.better for column in columns} <= {None, "lower", "higher"}:
+            raise TypeError("better is neither 'lower' nor 'higher'")
     except Exception as error:
         raise MetricError(
             f"{METRIC.setting} = '{name}': {described(error).partition(' (')[0]}: expected "

@@ -29,7 +29,6 @@ from giveway.reports.tables.level_table import levels_section
 from giveway.reports.tables.published import published_frame, published_table
 from giveway.reports.wording import pretty_unit
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.statistics import METRICS
 
 _MEANINGS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 REPORT = "report.html"
@@ -214,7 +213,7 @@ def _content(
         "execution": tables.settings_table(
             "execution-table", "How it was computed", _execution(study)
         ),
-        "glossary": _glossary(),
+        "glossary": _glossary(study),
         "factors": _factors(study),
         "definition": json.dumps(
             definition.model_dump(mode="json", exclude_none=True), indent=2, ensure_ascii=False
@@ -252,8 +251,8 @@ def _execution(study: StudyFolder) -> dict[str, str]:
     return found | {"runs that were tried again": f"{repeated:,}"}
 
 
-def _glossary() -> list[dict[str, str]]:
-    meanings = {field.name: field.description for field in _MEANINGS}
+def _glossary(study: StudyFolder) -> list[dict[str, str]]:
+    meanings = {field.name: field.description for field in (*_MEANINGS, *study.measured)}
     return [
         {
             "name": metric.name,
@@ -262,7 +261,7 @@ def _glossary() -> list[dict[str, str]]:
             "better": metric.better,
             "meaning": meanings[metric.name],
         }
-        for metric in METRICS
+        for metric in study.metrics
     ]
 
 

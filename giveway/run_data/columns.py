@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
 
 ColumnType = Literal["number", "integer", "string", "boolean"]
+Direction = Literal["lower", "higher"]
 Number = TypeVar("Number")
 """Type of a number in a class that describes one row or a whole table: float, or an array."""
 Text = TypeVar("Text")
@@ -28,12 +29,21 @@ _TYPES: dict[Any, ColumnType] = {
 
 @dataclass(frozen=True)
 class Column:
-    """One column: Frictionless type, unit (None if it has none) and meaning."""
+    """One column of a table.
+
+    Attributes:
+        name: Name in the CSV file.
+        type: Frictionless type.
+        unit: Unit, or None.
+        description: Meaning of the values.
+        better: Direction that is better, or None if studies do not compare the column.
+    """
 
     name: str
     type: ColumnType
     unit: str | None
     description: str
+    better: Direction | None = None
 
 
 def _unchanged(values: Any) -> Any:
@@ -49,12 +59,14 @@ class Quantity:
         meaning: Meaning of the values.
         column: Name in the CSV file, or an empty text if it is the attribute's name.
         written: Conversion of the attribute's array into what the CSV file holds.
+        better: Direction that is better, for metrics of other packages that studies compare.
     """
 
     unit: str | None
     meaning: str
     column: str = ""
     written: Callable[[Any], Any] = _unchanged
+    better: Direction | None = None
 
 
 def quantities_of(table: type) -> dict[str, tuple[ColumnType, Quantity]]:
@@ -69,7 +81,7 @@ def quantities_of(table: type) -> dict[str, tuple[ColumnType, Quantity]]:
 def columns_of(table: type) -> tuple[Column, ...]:
     """Return the columns of a class whose every attribute is ``Annotated[type, Quantity(...)]``."""
     return tuple(
-        Column(quantity.column or name, kind, quantity.unit, quantity.meaning)
+        Column(quantity.column or name, kind, quantity.unit, quantity.meaning, quantity.better)
         for name, (kind, quantity) in quantities_of(table).items()
     )
 

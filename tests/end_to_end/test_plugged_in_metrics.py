@@ -169,6 +169,7 @@ def test_numbers_of_numpy_become_python_s(
         (own(kind="str"), "expected Columns, a dataclass whose attributes are all Annotated"),
         (own(kind="list[int]"), "expected Columns, a dataclass"),
         (own(dataclass=""), "expected Columns, a dataclass"),
+        (own().replace('some number"', 'x", better="less"'), "better is neither 'lower' nor"),
         ("class Own:\n    measure = print", "expected Columns, a dataclass"),
         (own().replace("def measure", "def measures"), "has no method measure"),
     ],
@@ -206,6 +207,15 @@ def test_a_study_has_the_columns_in_its_runs(
     assert (runs.loc[slow, "fast_near_time"] > 0.0).all()
     assert (runs.loc[~slow, "fast_near_time"] == 0.0).all()
     assert runs["own"].fillna("").tolist() == ["-1", "", "-1", ""]  # whole, but for the fault
+    compared = pd.read_csv(tmp_path / "study" / "comparison.csv")
+    assert "own" not in set(compared["metric"])
+    assert "fast_near_people" not in set(compared["metric"])
+    rows = compared[(compared["metric"] == "fast_near_time") & (compared["n"] == 2)]
+    assert "general" in set(rows["situation"])
+    assert (rows["mean_difference"] > 0.0).all()
+    assert (rows["unit"] == "s").all()
+    levels = pd.read_csv(tmp_path / "study" / "levels.csv").query("metric == 'fast_near_time'")
+    assert levels["mean"].tolist()[1] == 0.0 < levels["mean"].tolist()[0]
     package = json.loads((tmp_path / "study" / "datapackage.json").read_text())
     (table,) = [table for table in package["resources"] if table["name"] == "runs"]
     described = {field["name"]: field for field in table["schema"]["fields"]}

@@ -18,7 +18,7 @@ from giveway.reports.wording import counted
 from giveway.studies.contexts import other_factors
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.plan import Plan
-from giveway.studies.statistics import metric, precise_enough
+from giveway.studies.statistics import METRICS, metric, precise_enough
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -130,15 +130,17 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
         highlight=False,
     )
     missing, left, fewest = [], _MOST_ROWS, math.inf
-    for name, situation in _SHOWN:
+    known_metrics = {known.name: known for known in study.metrics}
+    own = [(known.name, "general") for known in study.metrics[len(METRICS) :]]
+    for name, situation in (*_SHOWN, *own):
+        known = known_metrics[name]
         chosen = comparison[(comparison["metric"] == name) & (comparison["situation"] == situation)]
         few = chosen[chosen["verdict"] == "N.A."]["n"]
         if (chosen["n"] == 0).all():
             if name not in _OF_TWINS:
-                missing.append(f"{metric(name).label} ({situation})")
+                missing.append(f"{known.label} ({situation})")
         elif left > 0:
             fewest = min(fewest, few[few > 0].min() if (few > 0).any() else math.inf)
-            known = metric(name)
             unit = f" [{known.unit}]" if known.unit else ""
             title = f"{known.label}{unit}, {situation}: {known.better} is better"
             console.print(f"\n {escape(title)}", highlight=False)

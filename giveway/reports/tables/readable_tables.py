@@ -13,7 +13,7 @@ from giveway.reports.tables.table import Cell, Table, number_cell, verdict_cell,
 from giveway.reports.wording import digits_for, interval, number, pretty_unit, quantity, share
 from giveway.studies.contexts import other_factors, short_name
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.statistics import METRICS, metric
+from giveway.studies.statistics import Metric, metric
 
 SHOWN_IN_CELLS = (
     "completion_time",
@@ -35,11 +35,12 @@ def comparison_table(study: StudyFolder) -> Table:
     verdict = len(headings) + 2
     headings += ["mean difference", "interval", "verdict", "pairs", "share", "treatment mean"]
     headings += ["baseline mean", "median difference", "q"]
+    labels = {known.name: _with_unit(known) for known in study.metrics}
     rows = [
         [
             *(_level(row[name]) for name in names),
             Cell(row["situation"]),
-            Cell(_with_unit(row["metric"]), "text"),
+            Cell(labels[row["metric"]], "text"),
             *_numbers(row),
         ]
         for row in frame.to_dict("records")
@@ -89,11 +90,10 @@ def glance_table(study: StudyFolder) -> Table:
         parts += [f"ego {row['ego']}"] if egos else []
         columns.setdefault(", ".join(parts), {})[str(row["metric"])] = row
     rows = []
-    for known in METRICS:
+    for known in study.metrics:
         cells = [_glance(column.get(known.name)) for column in columns.values()]
         if any(cell.kind != "na" for cell in cells):
-            unit = f" [{pretty_unit(known.unit)}]" if known.unit else ""
-            rows.append([Cell(known.label + unit, link=f"#metric-{known.name}"), *cells])
+            rows.append([Cell(_with_unit(known), link=f"#metric-{known.name}"), *cells])
     return Table(
         name="glance-table",
         caption="Mean differences of all pairs: better, worse, or = no difference shown",
@@ -162,7 +162,7 @@ def cells_table(study: StudyFolder) -> Table:
                 *(_mean(here[name]) for name in shown),
             ]
         )
-    quantities = [_with_unit(name) for name in shown]
+    quantities = [_with_unit(metric(name)) for name in shown]
     return Table(
         name="cells-table",
         caption="The cells of the study, with means over their runs",
@@ -252,6 +252,5 @@ def _level(value: object) -> Cell:
     return Cell(label, "number")
 
 
-def _with_unit(name: str) -> str:
-    known = metric(name)
+def _with_unit(known: Metric) -> str:
     return f"{known.label} [{pretty_unit(known.unit)}]" if known.unit else known.label

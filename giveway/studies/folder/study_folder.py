@@ -34,7 +34,15 @@ from giveway.studies.folder.frames import (
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.identity import run_key
 from giveway.studies.record import RunRecord, run_id
-from giveway.studies.statistics import COMPARISON_COLUMNS, compare, fronts, levels, situations
+from giveway.studies.statistics import (
+    COMPARISON_COLUMNS,
+    Metric,
+    compare,
+    compared,
+    fronts,
+    levels,
+    situations,
+)
 
 _RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
 
@@ -123,10 +131,20 @@ class StudyFolder:
                     found.append((cell, seed, record))
         return found
 
+    @cached_property
+    def measured(self) -> tuple[Column, ...]:
+        """The columns that metrics of other packages have added."""
+        return measured_columns(record for *_, record in self.records)
+
+    @property
+    def metrics(self) -> tuple[Metric, ...]:
+        """The metrics that the study compares."""
+        return compared(self.measured)
+
     @property
     def runs_columns(self) -> tuple[Column, ...]:
         """The columns of :attr:`runs`."""
-        return runs_columns(self.design, measured_columns(record for *_, record in self.records))
+        return runs_columns(self.design, self.measured)
 
     @cached_property
     def runs(self) -> pd.DataFrame:
@@ -141,7 +159,7 @@ class StudyFolder:
     @cached_property
     def levels(self) -> pd.DataFrame:
         """The means of every level: one row per cell, ego and metric."""
-        return levels(self.runs, self.design, self.definition.comparison)
+        return levels(self.runs, self.design, self.definition.comparison, self.metrics)
 
     @cached_property
     def fronts(self) -> pd.DataFrame:
@@ -166,7 +184,7 @@ class StudyFolder:
         kept = self._kept_comparison()
         if kept is not None:
             return kept
-        return compare(self.runs, self.design, self.definition.comparison)
+        return compare(self.runs, self.design, self.definition.comparison, self.metrics)
 
     @cached_property
     def situations(self) -> pd.DataFrame:

@@ -6,7 +6,7 @@ docs/statistics.md describes the methods.
 from giveway.studies.statistics.comparing import compare
 from giveway.studies.statistics.fronts import fronts
 from giveway.studies.statistics.level_means import levels
-from giveway.studies.statistics.metrics import METRICS, Metric, metric
+from giveway.studies.statistics.metrics import METRICS, Metric, compared, metric
 from giveway.studies.statistics.sequential import looks, precise_enough
 from giveway.studies.statistics.situations import SITUATIONS, situations
 from giveway.studies.statistics.yang2019 import PUBLISHED, table2
@@ -31,6 +31,7 @@ __all__ = [
     "TABLE_2_COLUMNS",
     "Metric",
     "compare",
+    "compared",
     "fronts",
     "levels",
     "looks",

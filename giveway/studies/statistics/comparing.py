@@ -1,6 +1,6 @@
 """The table of differences: every metric in every situation of every context."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -69,13 +69,19 @@ def interval(
     )
 
 
-def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
+def compare(
+    runs: pd.DataFrame,
+    design: Design,
+    comparison: Comparison,
+    metrics: Sequence[Metric] = METRICS,
+) -> pd.DataFrame:
     """Return ``comparison.csv``: the paired differences between the levels of one factor.
 
     Args:
         runs: Table with a row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor, its baseline, and the confidence.
+        metrics: Metrics that are compared.
 
     Returns:
         Table with a row per context, ego, treatment, situation and metric, in this order. Its
@@ -87,9 +93,9 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     """
     wanted = [
         (pairs, metric, situation)
-        for pairs in paired(runs, design, comparison)
+        for pairs in paired(runs, design, comparison, metrics)
         for situation in SITUATIONS
-        for metric in METRICS
+        for metric in metrics
     ]
     rows = side_by_side(lambda of: _row(*of, comparison), wanted)
     names = [*other_factors(design, comparison), *(column.name for column in COMPARISON_COLUMNS)]

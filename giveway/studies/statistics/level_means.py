@@ -1,5 +1,7 @@
 """The numbers of every level: the mean of each metric over the runs of each cell."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
@@ -13,7 +15,12 @@ from giveway.studies.statistics.rounding import mean, tabulated
 from giveway.studies.table_columns import LEVEL_COLUMNS, numbers_of
 
 
-def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
+def levels(
+    runs: pd.DataFrame,
+    design: Design,
+    comparison: Comparison,
+    metrics: Sequence[Metric] = METRICS,
+) -> pd.DataFrame:
     """Return ``levels.csv``: the mean of every metric in every cell, with its interval.
 
     A level's mean, unlike a difference, depends on how hard the crowds are. Therefore its interval
@@ -23,12 +30,13 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
         runs: Table with a row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Confidence of the intervals. Fewer runs than ``minimum_pairs`` have no interval.
+        metrics: Metrics whose means are computed.
 
     Returns:
         Table with a row per cell, ego and metric, in this order. Its columns are the factors, then
         ``LEVEL_COLUMNS``. A cell without any result has no row.
     """
-    frame = cleaned(runs)
+    frame = cleaned(runs, metrics)
     frame = frame[~without_result(frame)]
     tables = dict(iter(frame.groupby(["cell", "ego"])))
     wanted = [
@@ -36,7 +44,7 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
         for cell in design.cells
         for (number, ego), table in tables.items()
         if number == cell.number
-        for metric in METRICS
+        for metric in metrics
     ]
 
     def row(of: tuple[Cell, str, Metric, pd.DataFrame]) -> dict[str, object]:

@@ -1,12 +1,13 @@
 """The metrics of a run that studies compare, and which direction is better."""
 
 import difflib
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
 
 from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
+from giveway.run_data.columns import Column, Direction
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Metric:
 
     name: str
     unit: str
-    better: Literal["lower", "higher"]
+    better: Direction
     label: str
 
 
@@ -99,3 +100,17 @@ def metric(name: str) -> Metric:
     close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"
     raise ConfigError(f"metric '{name}': no such number to compare; {hint}")
+
+
+def compared(columns: Iterable[Column]) -> tuple[Metric, ...]:
+    """Return giveway's metrics, and those of other packages that say which direction is better.
+
+    Args:
+        columns: Columns that metrics of other packages have added.
+    """
+    own = (
+        Metric(column.name, column.unit or "", column.better, column.name.replace("_", " "))
+        for column in columns
+        if column.better is not None
+    )
+    return (*METRICS, *own)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +14,9 @@ from giveway.studies.contexts import Context, baseline_level, contexts
 from giveway.studies.definition import Comparison
 from giveway.studies.design import Design
 from giveway.studies.record import CRASHED, FAILED, Scalar
-from giveway.studies.statistics.metrics import METRICS
+from giveway.studies.statistics.metrics import METRICS, Metric
 
-_NAMES = (*(metric.name for metric in METRICS), "slowed")
+_SLOWED = "slowed"  # Column that tells whether people ever slowed the ego
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,7 @@ class Pairs:
         seeds: Seeds of the pairs (n,).
         treated: Metrics of the treatment's runs (n, metrics), nan where there is no number.
         based: Metrics of the baseline's runs (n, metrics); row i of both has seed i.
+        metrics: Names of the columns of both.
     """
 
     context: Context
@@ -40,6 +41,7 @@ class Pairs:
     seeds: NDArray[np.int64]
     treated: Array
     based: Array
+    metrics: tuple[str, ...]
 
     def __len__(self) -> int:
         """The number of pairs."""
@@ -47,7 +49,7 @@ class Pairs:
 
     def of(self, name: str) -> tuple[Array, Array]:
         """Return both sides (n,) of one metric."""
-        place = _NAMES.index(name)
+        place = self.metrics.index(name)
         return self.treated[:, place], self.based[:, place]
 
     @property
@@ -74,7 +76,12 @@ class _Side:
     values: Array
 
 
-def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterator[Pairs]:
+def paired(
+    runs: pd.DataFrame,
+    design: Design,
+    comparison: Comparison,
+    metrics: Sequence[Metric] = METRICS,
+) -> Iterator[Pairs]:
     """Yield all pairs, by context in the design's order, then by ego, then by treatment.
 
     A run that failed or crashed belongs to each ego of its context. Levels without a common seed
@@ -84,38 +91,41 @@ def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterat
         runs: Table with a row per run and ego, as ``runs.csv``.
         design: Design of the study.
         comparison: Compared factor and its baseline.
+        metrics: Metrics that are compared.
 
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.
     """
     compared = design.factor(comparison.factor).levels
     baseline = baseline_level(design, comparison)
-    by_cell = dict(iter(cleaned(runs).groupby("cell")))
-    nothing = cleaned(runs.iloc[:0])
+    by_cell = dict(iter(cleaned(runs, metrics).groupby("cell")))
+    nothing = cleaned(runs.iloc[:0], metrics)
+    names = _names(metrics)
     for context in contexts(design, comparison):
         tables = {label: by_cell.get(cell, nothing) for label, cell in context.cells.items()}
         if baseline.label not in tables:
             continue
         for ego in _egos(tables):
-            based = _side(tables[baseline.label], ego)
+            based = _side(tables[baseline.label], ego, names)
             for level in compared:
                 if level is baseline or level.label not in tables:
                     continue
-                treated = _side(tables[level.label], ego)
+                treated = _side(tables[level.label], ego, names)
                 seeds, i, j = np.intersect1d(treated.seeds, based.seeds, return_indices=True)
                 if i.size:
                     sides = seeds, treated.values[i], based.values[j]
-                    yield Pairs(context, ego, level.label, baseline.label, *sides)
+                    yield Pairs(context, ego, level.label, baseline.label, *sides, names)
 
 
-def cleaned(runs: pd.DataFrame) -> pd.DataFrame:
+def cleaned(runs: pd.DataFrame, metrics: Sequence[Metric] = METRICS) -> pd.DataFrame:
     """Return the columns that are compared, with the types that a CSV reader may have lost."""
-    frame = runs.reindex(columns=["cell", "seed", "ego", "ending", *_NAMES])
+    names = _names(metrics)
+    frame = runs.reindex(columns=["cell", "seed", "ego", "ending", *names])
     frame["ego"] = frame["ego"].astype(object).fillna("").astype(str)
-    for name in _NAMES:
+    for name in names:
         values = pd.to_numeric(frame[name], errors="coerce").to_numpy(np.float64, na_value=np.nan)
         frame[name] = np.where(np.isfinite(values), values, np.nan)
-    frame.loc[without_result(frame), list(_NAMES)] = np.nan
+    frame.loc[without_result(frame), list(names)] = np.nan
     return frame.sort_values(["cell", "seed", "ego"], kind="stable")
 
 
@@ -133,8 +143,12 @@ def _egos(tables: dict[str, pd.DataFrame]) -> list[str]:
     return sorted(names) or [""]
 
 
-def _side(table: pd.DataFrame, ego: str) -> _Side:
+def _names(metrics: Sequence[Metric]) -> tuple[str, ...]:
+    return (*(metric.name for metric in metrics), _SLOWED)
+
+
+def _side(table: pd.DataFrame, ego: str, names: tuple[str, ...]) -> _Side:
     rows = table[(table["ego"] == ego) | without_result(table)]
     rows = rows.drop_duplicates("seed")
     seeds = rows["seed"].to_numpy(np.int64)
-    return _Side(seeds, rows[list(_NAMES)].to_numpy(np.float64))
+    return _Side(seeds, rows[list(names)].to_numpy(np.float64))
