@@ -16,10 +16,12 @@ from pedestrian_model.other_models.stepwise_prediction import StepwisePredictor
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.plug_in import (
     Accelerations,
+    Goals,
     ModelPlugIn,
     ModelSetup,
     Velocities,
     Walkers,
+    WallsAround,
 )
 from pedestrian_model.protocol import CrowdPredictor, PedestrianModel
 from pedestrian_model.stepping import LONGEST_STEP
@@ -44,6 +46,7 @@ __all__ = [
     "CrowdModel",
     "CrowdPredictor",
     "DivergenceError",
+    "Goals",
     "JuPedSimName",
     "JuPedSimPeople",
     "ModelPlugIn",
@@ -64,6 +67,7 @@ __all__ = [
     "Velocities",
     "Walkers",
     "Walls",
+    "WallsAround",
     "any_arrived",
     "arrived",
     "remaining_distance",

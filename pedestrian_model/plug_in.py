@@ -24,6 +24,21 @@ class ModelSetup(NamedTuple):
     seed: int  # seed of the run
 
 
+class Goals(NamedTuple):
+    """The places to which people walk."""
+
+    position: Array  # next way-points (n, 2) [m], or nearest points of their lines
+    stops: NDArray[np.bool_]  # (n,) whether the route ends at the goal, or a red light is there
+
+
+class WallsAround(NamedTuple):
+    """The walls, and the nearest one of each person."""
+
+    distance: Array  # distances (n,) [m] of the centres from the nearest wall, or inf
+    normal: Array  # unit vectors (n, 2) from this wall to its walkable side
+    segments: Array  # walls (k, 4), x0, y0, x1, y1 [m], with the walkable side on the left
+
+
 class Walkers(NamedTuple):
     """The pedestrians and their surroundings at t_k. The arrays are read-only."""
 
@@ -31,13 +46,10 @@ class Walkers(NamedTuple):
     velocity: Array  # velocities (n, 2) [m/s]
     desired_speed: Array  # desired speeds (n,) [m/s]
     preferred: Array  # desired velocities (n, 2) [m/s] straight to the goal, slower before a stop
-    goal: Array  # next way-points (n, 2) [m], or nearest points of their lines
-    stops: NDArray[np.bool_]  # (n,) whether the route ends at the goal, or a red light is there
+    goals: Goals
     ids: NDArray[np.int64]  # (n,) a number for each, the same in every run and in its twin
     vehicles: Array  # (m, 7) x, y, heading, speed, front, rear, width [m, rad, m/s]
-    wall_distance: Array  # distances (n,) [m] of the centres from the nearest wall, or inf
-    wall_normal: Array  # unit vectors (n, 2) from this wall to its walkable side
-    walls: Array  # walls (k, 4), x0, y0, x1, y1 [m], with the walkable side on the left
+    walls: WallsAround
 
 
 class Accelerations(NamedTuple):

@@ -12,6 +12,7 @@ from pedestrian_model import (
     OPEN_GROUND,
     Accelerations,
     Crowd,
+    Goals,
     ModelPlugIn,
     ModelSetup,
     PlugInError,
@@ -20,6 +21,7 @@ from pedestrian_model import (
     Vehicles,
     Velocities,
     Walkers,
+    WallsAround,
 )
 from pedestrian_model.preferred import first_insane_of, preferred_velocities
 from pedestrian_model.stepping import FINE, divergence, unknown_signal
@@ -118,13 +120,10 @@ class PluggedInModel:
             velocity=read_only(crowd.velocity),
             desired_speed=read_only(crowd.desired_speed),
             preferred=read_only(preferred),
-            goal=read_only(goal),
-            stops=read_only(stops),
+            goals=Goals(read_only(goal), read_only(stops)),
             ids=read_only(ids),
             vehicles=read_only(vehicles.array),
-            wall_distance=read_only(distance),
-            wall_normal=read_only(normal),
-            walls=read_only(segments),
+            walls=WallsAround(read_only(distance), read_only(normal), read_only(segments)),
         )
 
     def _velocities(self, answer: object, crowd: Crowd) -> Array:

@@ -138,10 +138,10 @@ class JuPedSimPeople:
 
     def _limited(self, velocity: Array, walkers: Walkers) -> Array:
         """Limit velocities to the largest speed of people, and so that they stop at walls."""
-        normal = walkers.wall_normal
-        least = (self._radius - walkers.wall_distance) / RELAXATION
+        normal = walkers.walls.normal
+        least = (self._radius - walkers.walls.distance) / RELAXATION
         towards = (velocity * normal).sum(axis=1)
-        near = np.isfinite(walkers.wall_distance)
+        near = np.isfinite(walkers.walls.distance)
         velocity = (
             velocity + np.where(near, np.maximum(least - towards, 0.0), 0.0)[:, None] * normal
         )

@@ -7,6 +7,7 @@ wrong: a dozen people from two sides, two vehicles that pass, a wall, a red ligh
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from copy import deepcopy
 from functools import partial
 from typing import Any
 
@@ -126,7 +127,7 @@ class _Copied:
         self._step = model.step  # type: ignore[attr-defined]
 
     def step(self, walkers: Walkers) -> object:
-        return self._step(Walkers._make(array.copy() for array in walkers))
+        return self._step(deepcopy(walkers))
 
 
 class _Watched:

@@ -78,14 +78,15 @@ def test_what_it_is_told():
     car = Vehicles.create([2.0], [-3.0], [0.0], [4.0])
     model.advance(crowd, car, walls)
     (seen,) = plug_in.seen
-    assert seen.goal.tolist() == [[9.0, 0.0], [4.0, 1.1]]
-    assert seen.stops.tolist() == [True, True]
+    assert seen.goals.position.tolist() == [[9.0, 0.0], [4.0, 1.1]]
+    assert seen.goals.stops.tolist() == [True, True]
     assert seen.preferred[0] == pytest.approx([1.2, 0.0], abs=1e-3)
     assert 0.3 < seen.preferred[1, 1] < 0.5  # 0.1 m before the end of the way
-    assert seen.wall_distance == pytest.approx([1.0, 2.0])
-    assert seen.wall_normal == pytest.approx(np.array([[0.0, 1.0], [0.0, 1.0]]))
+    assert seen.walls.distance == pytest.approx([1.0, 2.0])
+    assert seen.walls.normal == pytest.approx(np.array([[0.0, 1.0], [0.0, 1.0]]))
     assert seen.vehicles.tolist() == car.array.tolist()
-    assert all(not array.flags.writeable for array in seen)
+    told = [array for field in seen for array in (field if isinstance(field, tuple) else (field,))]
+    assert all(not array.flags.writeable for array in told)
 
 
 def test_way_points_and_red_lights_are_ours():
@@ -97,10 +98,10 @@ def test_way_points_and_red_lights_are_ours():
     for _ in range(200):
         model.advance(crowd, NO_CAR, around)
     assert crowd.position[0] == pytest.approx([2.0, 0.0], abs=0.2)
-    assert plug_in.seen[-1].stops.all()
+    assert plug_in.seen[-1].goals.stops.all()
     closed[0] = False
     model.advance(crowd, NO_CAR, around)
-    assert plug_in.seen[-1].goal.tolist() == [[5.0, 0.0]]
+    assert plug_in.seen[-1].goals.position.tolist() == [[5.0, 0.0]]
     vci = Crowd.create([[0.0, 0.0]], [[0.0, 0.0]], 1.0, [route], signals=[[0, -1]])
     CrowdModel(SIM, H).advance(vci, NO_CAR, around)
     assert vci.waypoint_index.tolist() == [0]

@@ -47,7 +47,7 @@ class SharedAmong(Sound):
 
     def step(self, walkers):
         answer = super().step(walkers).values + self.latest[0]
-        self.latest[0] = 0.1 * float(walkers.goal[0, 0] % 1.0)
+        self.latest[0] = 0.1 * float(walkers.goals.position[0, 0] % 1.0)
         return Accelerations(answer)
 
     def reset(self):
