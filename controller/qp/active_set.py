@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller._jit import Array, inner
-from controller.qp.verification import PRIMAL_TOLERANCE, equality_solve
+from controller.qp.verification import PRIMAL_TOLERANCE, Projection, equality_solve
 
 INFEASIBLE = -1
 UNFINISHED = -2
@@ -35,6 +35,7 @@ def solve_exactly(
         Number of iterations, or INFEASIBLE or UNFINISHED.
     """
     m, N = rows.shape
+    problem = Projection(rows, lower, upper, target)
     side = np.zeros(m, dtype=np.int64)
     dual = np.zeros(m)  # multipliers of the active rows, >= 0; `side` has their signs
     for j in range(len(target)):
@@ -44,7 +45,7 @@ def solve_exactly(
         if violated < 0:
             violated, direction = most_violated(rows, lower, upper, side, solution)
             if violated < 0:
-                return finish(rows, lower, upper, target, side, multipliers, solution, iteration)
+                return finish(problem, side, multipliers, solution, iteration)
             side_of_violated = direction
             price = 0.0
         active = np.flatnonzero(side)
@@ -169,10 +170,7 @@ def projected(
 
 @inner
 def finish(
-    rows: Array,
-    lower: Array,
-    upper: Array,
-    target: Array,
+    problem: Projection,
     side: NDArray[np.int64],
     multipliers: Array,
     solution: Array,
@@ -181,7 +179,7 @@ def finish(
     """Compute the optimum on the final active set anew, without accumulated rounding errors."""
     active = np.flatnonzero(side)
     dual = np.zeros(len(active))
-    if equality_solve(rows, lower, upper, target, side, active, dual, solution) >= 0:
+    if equality_solve(problem, side, active, dual, solution) >= 0:
         return UNFINISHED
     multipliers[:] = 0.0
     for a in range(len(active)):

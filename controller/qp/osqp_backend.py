@@ -68,6 +68,7 @@ class OsqpBackend:
         self._lower = np.empty(count)
         self._upper = np.empty(count)
         self._start = np.empty(N)
+        self._memory = (self._lower, self._upper, self._aimed_at, self._start)
 
     def _gradient(self, target: Array) -> Array:
         """The linear cost of |x - target|^2 in the solver's unknowns."""
@@ -85,17 +86,8 @@ class OsqpBackend:
             Outcome, and number of iterations.
         """
         solver, problem = self._solver, self._problem
-        aims_elsewhere = pose(
-            problem.lower,
-            problem.upper,
-            problem.target,
-            solution,
-            problem.increments,
-            self._lower,
-            self._upper,
-            self._aimed_at,
-            self._start,
-        )
+        posed = problem.lower, problem.upper, problem.target
+        aims_elsewhere = pose(posed, solution, problem.increments, self._memory)
         q = self._gradient(problem.target) if aims_elsewhere else None
         solver.update_data_vec(q=q, l=self._lower, u=self._upper)
         solver.warm_start(self._start, multipliers)
@@ -116,29 +108,20 @@ class OsqpBackend:
 
 @kernel
 def pose(
-    lower: Array,
-    upper: Array,
-    target: Array,
+    problem: tuple[Array, Array, Array],
     solution: Array,
     increments: bool,
-    low: Array,
-    high: Array,
-    aimed_at: Array,
-    start: Array,
+    memory: tuple[Array, Array, Array, Array],
 ) -> bool:
     """Fill the solver's finite bounds and start, and return whether the target has changed.
 
     Args:
-        lower: Lower bounds (m,) of the problem.
-        upper: Upper bounds (m,) of the problem.
-        target: Target (n,) of the problem.
+        problem: Lower and upper bounds (m,) and target (n,) of the problem.
         solution: Solution (n,) of the problem from which to start.
         increments: Whether the solver's unknowns are increments.
-        low: Lower bounds (m,) of the solver, filled.
-        high: Upper bounds (m,) of the solver, filled.
-        aimed_at: Last target (n,) of the solver, updated.
-        start: Start (n,) of the solver, filled.
+        memory: Lower and upper bounds (m,), last target (n,) and start (n,) of the solver, filled.
     """
+    (lower, upper, target), (low, high, aimed_at, start) = problem, memory
     for i in range(lower.size):
         low[i], high[i] = max(lower[i], -_INFINITY), min(upper[i], _INFINITY)
     elsewhere = False

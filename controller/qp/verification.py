@@ -6,6 +6,8 @@ section 5.5.3). A certificate of infeasibility is accepted only if it holds over
 possible speeds.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,15 @@ from controller._jit import Array, inner, kernel
 
 PRIMAL_TOLERANCE = 1e-10  # tolerance [m/s] of constraints, for the rounding of sums of N speeds
 _PIVOT = 1e-11  # relative pivot below which an active row depends on the others
+
+
+class Projection(NamedTuple):
+    """The problem of the V closest to a target, |V - target|^2, with lower <= rows V <= upper."""
+
+    rows: Array  # (m, N)
+    lower: Array  # (m,); -inf where there is none
+    upper: Array  # (m,); inf where there is none
+    target: Array  # (N,)
 
 
 @inner
@@ -34,6 +45,7 @@ def refine(
         Number of corrections to the active set, or -1 if the result is not verified.
     """
     m, N = rows.shape
+    problem = Projection(rows, lower, upper, target)
     side = np.zeros(m, dtype=np.int64)  # +1 if the upper bound is active, -1 the lower, 0 none
     least = 1e-6 * max(1.0, largest_size(multipliers))
     for _ in range(N):  # the largest first; more than N active rows are linearly dependent
@@ -44,7 +56,7 @@ def refine(
     for correction in range(4 * N):
         active = np.flatnonzero(side)
         dual = np.zeros(len(active))
-        dependent = equality_solve(rows, lower, upper, target, side, active, dual, solution)
+        dependent = equality_solve(problem, side, active, dual, solution)
         if dependent >= 0:
             side[active[dependent]] = 0
             continue
@@ -76,10 +88,7 @@ def refine(
 
 @inner
 def equality_solve(
-    rows: Array,
-    lower: Array,
-    upper: Array,
-    target: Array,
+    problem: Projection,
     side: NDArray[np.int64],
     active: NDArray[np.int64],
     dual: Array,
@@ -90,6 +99,7 @@ def equality_solve(
     Returns:
         -1, or the index in ``active`` of a row that depends linearly on those before it.
     """
+    rows, lower, upper, target = problem
     size, N = len(active), rows.shape[1]
     factor = np.empty((size, size))
     right = np.empty(size)

@@ -18,7 +18,7 @@ from controller._jit import Array, kernel
 from controller.defaults import FORCE_LIMIT, STANDSTILL
 from controller.model import LongitudinalModel
 from controller.parameters import require, require_not_negative, require_positive
-from controller.safety.stopping import Limits, is_safe
+from controller.safety.stopping import EgoMotion, Limits, Walking, is_safe, packed, unpacked
 from controller.safety.worst_motion import RECORDED, WorstMotion
 
 LONGEST_STOP = 20.0  # longest duration [s] of a stop; a longer braking is not a stop
@@ -101,15 +101,19 @@ class SafetyLayer:
         z = model.friction * dt / model.mass
         self._limits = Limits(
             time_step=dt,
-            slowest_decay=exp(-z),
-            fastest_decay=max(0.0, model.decay),
-            gain=model.speed_per_force,
-            braking_gain=model.speed_per_force * ((1.0 - exp(-z)) / z if z > 0.0 else 1.0),
-            force_limit=p.force_limit,
-            force_rate_limit=p.force_rate_limit,
-            walking_acceleration=p.walking_acceleration,
-            walking_speed=p.walking_speed,
-            setting_out=min(p.setting_out, p.walking_acceleration),
+            ego=EgoMotion(
+                slowest_decay=exp(-z),
+                fastest_decay=max(0.0, model.decay),
+                gain=model.speed_per_force,
+                braking_gain=model.speed_per_force * ((1.0 - exp(-z)) / z if z > 0.0 else 1.0),
+                force_limit=p.force_limit,
+                force_rate_limit=p.force_rate_limit,
+            ),
+            people=Walking(
+                acceleration=p.walking_acceleration,
+                speed=p.walking_speed,
+                setting_out=min(p.setting_out, p.walking_acceleration),
+            ),
             half_width=p.width / 2.0,
             body_radius=p.body_radius,
             margin=p.margin,
@@ -118,7 +122,7 @@ class SafetyLayer:
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
-        self.memory = (tuple(self._limits), self._commands, self._boxes)
+        self.memory = (packed(self._limits), self._commands, self._boxes)
         # Largest number of steps until full braking acts
         self._not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit
 
@@ -128,14 +132,14 @@ class SafetyLayer:
         Args:
             speed: Speed now [m/s].
         """
-        c, not_yet = self._limits, self._not_yet
-        v = max(speed, 0.0) + not_yet * c.gain * c.force_limit
-        return v * c.time_step * (not_yet + 1.0 + v / (2.0 * c.braking_gain * c.force_limit))
+        c, not_yet = self._limits.ego, self._not_yet
+        v, dt = max(speed, 0.0) + not_yet * c.gain * c.force_limit, self._limits.time_step
+        return v * dt * (not_yet + 1.0 + v / (2.0 * c.braking_gain * c.force_limit))
 
     @property
     def fastest(self) -> float:
         """The highest speed [m/s] from which the ego stops in `LONGEST_STOP` after any force."""
-        c, not_yet = self._limits, self._not_yet
+        c, not_yet = self._limits.ego, self._not_yet
         steps = len(self._boxes) - 1 - not_yet
         if steps <= 0:
             return 0.0
@@ -152,8 +156,7 @@ class SafetyLayer:
         self,
         force: float,
         speed: float,
-        way: Array,
-        spacing: float,
+        front: tuple[Array, float],
         position: Array,
         velocity: Array,
         errors: Array | None = None,
@@ -164,10 +167,9 @@ class SafetyLayer:
         Args:
             force: Force [N] that the controller asks for, for the step from now on.
             speed: Speed of the ego [m/s].
-            way: Poses (k, 4) of the front ahead: x, y [m] of its middle and cos, sin of the body's
-                heading, after 0, 1, ... times ``spacing`` of travel. It goes straight on beyond.
-            spacing: Travel [m] between the rows of ``way``.
-            position: Centres (n, 2) [m] of people, in the frame of ``way``.
+            front: Poses (k, 4) of the front ahead: x, y [m] of its middle and cos, sin of the
+                body's heading; and the travel [m] between them. It goes straight on beyond.
+            position: Centres (n, 2) [m] of people, in the frame of the poses.
             velocity: Velocities (n, 2) [m/s] of people.
             errors: Largest errors (n,) [m] of ``position``, or None for the parameters' error.
             kerbs: Kerbs (n, 3) of people on a sidewalk: unit vector to the kerb and distance [m];
@@ -175,7 +177,7 @@ class SafetyLayer:
         """
         errors = self.errors(len(position)) if errors is None else errors
         people = position, velocity, errors, kerbs
-        safe, verdict = largest_safe_force(force, speed, (way, spacing), people, self.memory)
+        safe, verdict = largest_safe_force(force, speed, front, people, self.memory)
         return SafeForce(safe, verdict != LETS_THROUGH, self.REASONS[verdict])
 
     def errors(self, people: int) -> Array:
@@ -191,7 +193,7 @@ def largest_safe_force(
     speed: float,
     front: tuple[Array, float],
     people: tuple[Array, Array, Array, Array],
-    memory: tuple[tuple[float, ...], Array, Array],
+    memory: tuple[Array, Array, Array],
 ) -> tuple[float, int]:
     """Find the largest safe force up to ``force`` [N], and remember it as the last command.
 
@@ -201,19 +203,19 @@ def largest_safe_force(
         front: Poses (k, 4) of the front ahead, and the distance [m] between them.
         people: Positions (n, 2) [m], velocities (n, 2) [m/s], largest errors of the positions
             (n,) [m] or more, and kerbs (n, 3) or none; see :meth:`SafetyLayer.filter`.
-        memory: Fields of :class:`Limits`, as a plain tuple; past forces (delay + 1,) [N], the
-            latest last, changed; scratch (longest stop + 1, 9).
+        memory: Packed :class:`Limits`; past forces (delay + 1,) [N], the latest last, changed;
+            scratch (longest stop + 1, 9).
 
     Returns:
         Force [N]; 0 if it is the controller's, 1 if the layer acts, 2 if the layer acts although no
         braking is certain to be enough.
     """
-    limits, commands, boxes = memory
-    c, v = Limits(*limits), speed if speed > STANDSTILL else 0.0
+    numbers, commands, boxes = memory
+    c, v = unpacked(numbers), speed if speed > STANDSTILL else 0.0
     verdict, safe, scratch = LETS_THROUGH, force, (commands, boxes)
     if people[0].shape[0] > 0 and not is_safe(force, v, front, people, c, scratch, _SLACK):
         verdict = ACTS
-        safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
+        safe = max(-c.ego.force_limit, commands[-1] - c.ego.force_rate_limit)
         safe = min(safe, force)
         unsafe = force
         if not is_safe(safe, v, front, people, c, scratch, 0.0):

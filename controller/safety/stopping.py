@@ -3,27 +3,55 @@
 from math import sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from controller._jit import Array, inner
 
 _BETWEEN = 3  # number of poses of the front in a bend, besides the last, that a box encloses
 
 
-class Limits(NamedTuple):
-    """The limits of the ego's and people's motion."""
+class EgoMotion(NamedTuple):
+    """The limits of the ego's motion."""
 
-    time_step: float  # control step dt [s]
     slowest_decay: float  # largest share of the speed left after a step: exp(-alpha dt / M)
     fastest_decay: float  # least share of the speed left after a step: 1 - alpha dt / M
     gain: float  # largest change of speed per force in a step: dt / M [(m/s)/N]
     braking_gain: float  # least change of speed per braking force in a step [(m/s)/N]
     force_limit: float  # largest force u_max [N]
     force_rate_limit: float  # largest change of force [N per step]
-    walking_acceleration: float  # largest acceleration a_max [m/s^2] of people
-    walking_speed: float  # largest speed v_max [m/s] of people
+
+
+class Walking(NamedTuple):
+    """The limits of people's motion."""
+
+    acceleration: float  # largest acceleration a_max [m/s^2]
+    speed: float  # largest speed v_max [m/s]
     setting_out: float  # largest acceleration a_k [m/s^2] from a sidewalk towards the kerb
+
+
+class Limits(NamedTuple):
+    """The limits of the ego's and people's motion."""
+
+    time_step: float  # control step dt [s]
+    ego: EgoMotion
+    people: Walking
     half_width: float  # half width of the ego [m]
     body_radius: float  # radius R [m] of a person's body
     margin: float  # least distance [m] of the front to a body
+
+
+def packed(limits: Limits) -> Array:
+    """Return all numbers of ``limits`` in one array, which a kernel takes faster than a tuple."""
+    time_step, ego, people, *distances = limits
+    return np.array([time_step, *ego, *people, *distances])
+
+
+@inner
+def unpacked(numbers: Array) -> Limits:
+    """Return the limits of which ``numbers`` was made by :func:`packed`."""
+    n = numbers
+    ego = EgoMotion(n[1], n[2], n[3], n[4], n[5], n[6])
+    return Limits(n[0], ego, Walking(n[7], n[8], n[9]), n[10], n[11], n[12])
 
 
 @inner
@@ -34,14 +62,14 @@ def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
     ``force``, then full braking.
     """
     delay = commands.shape[0] - 1
-    strongest = -c.force_limit
+    strongest = -c.ego.force_limit
     for command in range(i - delay, i + 1):
         if command < 0:
             f = commands[commands.shape[0] + command]
         elif command == 0:
             f = force
         else:
-            f = force - command * c.force_rate_limit
+            f = force - command * c.ego.force_rate_limit
         strongest = max(strongest, f)
     return strongest
 
@@ -97,9 +125,9 @@ def _clearance(travel: float, c: Limits) -> float:
         travel: Largest distance [m] that the front travels in the step.
         c: Limits of the ego's and people's motion.
     """
-    L = travel + c.walking_speed * c.time_step
+    L = travel + c.people.speed * c.time_step
     between = sqrt(c.body_radius * c.body_radius + 0.25 * L * L)
-    between += 0.125 * c.walking_acceleration * c.time_step * c.time_step
+    between += 0.125 * c.people.acceleration * c.time_step * c.time_step
     return max(c.body_radius + c.margin, between)
 
 
@@ -143,12 +171,14 @@ def _stop(
         if fastest <= 0.0 and j > delay and _strongest(j, force, commands, c) <= 0.0:
             return j, high
         f = _strongest(j, force, commands, c)
-        after = max(0.0, c.slowest_decay * fastest + f * (c.gain if f > 0.0 else c.braking_gain))
+        after = max(
+            0.0, c.ego.slowest_decay * fastest + f * (c.ego.gain if f > 0.0 else c.ego.braking_gain)
+        )
         travel = 0.5 * dt * (fastest + max(fastest, after))
         clearance = _clearance(travel, c) if travel > 0.0 else -1.0
         _sweep(way, spacing, low, high + travel, c.half_width, boxes[j + 1])
         boxes[j, 8], boxes[j + 1, 8] = max(boxes[j, 8], clearance), clearance
-        slower = c.fastest_decay * slowest - c.gain * c.force_limit
+        slower = c.ego.fastest_decay * slowest - c.ego.gain * c.ego.force_limit
         if slowest > 0.0:
             low += _least_travel(slowest, slower, dt)
         slowest = max(0.0, slower)
@@ -173,7 +203,7 @@ def _touches(
     """
     d_x, d_y = x - box[0], y - box[1]
     along, across = d_x * box[2] + d_y * box[3], d_y * box[2] - d_x * box[3]
-    behind = c.walking_speed * c.time_step + error  # distance [m] that a person walks in a step
+    behind = c.people.speed * c.time_step + error  # distance [m] that a person walks in a step
     if along + radius < box[4] - behind:
         return False  # the person can only walk into the side of the body
     off = max(box[4] - along, 0.0, along - box[5])
@@ -212,15 +242,15 @@ def _may_meet(
         if box[8] < 0.0:
             continue
         t = j * c.time_step
-        accelerated = 0.5 * c.walking_acceleration * t * t
+        accelerated = 0.5 * c.people.acceleration * t * t
         if not _touches(box, x + v_x * t, y + v_y * t, accelerated, error, slack, c):
             continue
-        if not _touches(box, x, y, c.walking_speed * t, error, slack, c):
+        if not _touches(box, x, y, c.people.speed * t, error, slack, c):
             continue
         if depth <= error:
             return True
         pace = v_x * to_x + v_y * to_y
-        nearer = towards_kerb(t, pace, depth - error, c.setting_out, c.walking_acceleration)
+        nearer = towards_kerb(t, pace, depth - error, c.people.setting_out, c.people.acceleration)
         between = _nearest(box, to_x, to_y) - (x * to_x + y * to_y)
         if between - nearer <= box[8] + error + slack:
             return True
@@ -284,7 +314,7 @@ def is_safe(
     widest = 0.0
     for j in range(steps + 1):
         widest = max(widest, boxes[j, 8])
-    farthest = travel + c.half_width + widest + slack + c.walking_speed * steps * c.time_step
+    farthest = travel + c.half_width + widest + slack + c.people.speed * steps * c.time_step
     for i in range(position.shape[0]):
         x, y, reach = position[i, 0], position[i, 1], farthest + errors[i]
         d_x, d_y = x - way[0, 0], y - way[0, 1]

@@ -89,7 +89,7 @@ def drive(seed, *, hardest=WORST.setting_out, knows=True):
         eager = rng.choice([8000.0, 8000.0, rng.uniform(-8000.0, 8000.0)])
         kerbs = street.kerbs(x) if knows else np.zeros((0, 3))
         way = np.array([[travel, 0.0, 1.0, 0.0]])
-        safe = layer.filter(eager, speed, way, 0.25, x, v, kerbs=kerbs)
+        safe = layer.filter(eager, speed, (way, 0.25), x, v, kerbs=kerbs)
         reasons.append(safe.reason)
         look = rng.choice([0.1, 0.3, 0.6])
         front = np.column_stack(
@@ -158,10 +158,10 @@ def test_sidewalks_only_let_more_through(seed, speed, force):
     kerbs[:, 2] = np.maximum(0.0, np.abs(x[:, 1]) - rng.uniform(1.0, 3.0))
     kerbs[kerbs[:, 2] == 0.0] = 0.0
     kept = SafetyLayer(LongitudinalModel(), SafetyParameters()).filter(
-        force, speed, EAST, 0.25, x, v
+        force, speed, (EAST, 0.25), x, v
     )
     more = SafetyLayer(LongitudinalModel(), SafetyParameters()).filter(
-        force, speed, EAST, 0.25, x, v, kerbs=kerbs
+        force, speed, (EAST, 0.25), x, v, kerbs=kerbs
     )
     assert more.force >= kept.force - 4.0
     assert more.acted <= kept.acted
@@ -176,7 +176,7 @@ def test_a_walker_along_a_kerb_is_passed_at_thirty_km_per_hour():
 
     def acts(kerbs, v=v):
         layer = SafetyLayer(LongitudinalModel(), SafetyParameters())
-        return layer.filter(833.0, 8.33, EAST, 0.25, x, v, kerbs=kerbs).acted
+        return layer.filter(833.0, 8.33, (EAST, 0.25), x, v, kerbs=kerbs).acted
 
     assert acts(np.zeros((1, 3)))
     assert not acts(behind)

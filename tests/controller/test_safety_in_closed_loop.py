@@ -153,7 +153,7 @@ def drive(
         angle = rng.uniform(-np.pi, np.pi, people)
         seen = x + noise * np.column_stack([np.cos(angle), np.sin(angle)])
         way = road.ahead(plant.travel, layer.reach(plant.speed))
-        safe = layer.filter(eager, plant.speed, way, SPACING, seen, v)
+        safe = layer.filter(eager, plant.speed, (way, SPACING), seen, v)
         reasons.append(safe.reason)
         a = accelerations(rng, mood, x, v, road, plant)
         before, moving = plant.travel, plant.speed
@@ -249,7 +249,7 @@ def test_a_milder_assumption_lets_more_through(name):
 
     def allowed(**limits):
         layer = SafetyLayer(LongitudinalModel(), SafetyParameters(**limits))
-        return layer.filter(8000.0, 4.0, way, SPACING, beside, still).force
+        return layer.filter(8000.0, 4.0, (way, SPACING), beside, still).force
 
     assert allowed(**limits_of(name)) > allowed(**SIMULATED) + 100.0
 
@@ -279,5 +279,5 @@ def test_these_people_are_driven_into_without_it():
 def test_a_sudden_step_before_the_ego_causes_full_braking(speed):
     layer = SafetyLayer(LongitudinalModel(), SafetyParameters())
     way, still = np.array([[0.0, 0.0, 1.0, 0.0]]), np.zeros((1, 2))
-    safe = layer.filter(1000.0, speed, way, SPACING, np.array([[0.4, 0.0]]), still)
+    safe = layer.filter(1000.0, speed, (way, SPACING), np.array([[0.4, 0.0]]), still)
     assert safe == (-8000.0, True, "unavoidable")

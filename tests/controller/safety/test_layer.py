@@ -23,7 +23,7 @@ def let_through(force, speed, position, velocity=None, way=EAST, **parameters):
     layer = SafetyLayer(MODEL, SafetyParameters(**(SIMULATED | parameters)))
     position = np.asarray(position, dtype=float).reshape(-1, 2)
     velocity = np.zeros_like(position) if velocity is None else np.asarray(velocity, dtype=float)
-    return layer.filter(force, speed, way, 0.25, position, velocity.reshape(-1, 2))
+    return layer.filter(force, speed, (way, 0.25), position, velocity.reshape(-1, 2))
 
 
 relaxed = settings(max_examples=60)
@@ -233,10 +233,10 @@ def test_its_fastest_speed_is_what_full_braking_ends_in_20_s(friction):
 def test_its_braking_keeps_to_the_rate_limit_if_it_is_to():
     layer = SafetyLayer(MODEL, SafetyParameters(force_rate_limit=1000.0))
     blocked, still = np.array([[1.0, 0.0]]), np.zeros((1, 2))
-    told = [layer.filter(400.0, 4.0, EAST, 0.25, blocked, still).force for _ in range(10)]
+    told = [layer.filter(400.0, 4.0, (EAST, 0.25), blocked, still).force for _ in range(10)]
     assert told == [-1000.0 * k for k in range(1, 9)] + [-8000.0, -8000.0]
     layer.reset()
-    assert layer.filter(400.0, 4.0, EAST, 0.25, blocked, still).force == -1000.0
+    assert layer.filter(400.0, 4.0, (EAST, 0.25), blocked, still).force == -1000.0
 
 
 @pytest.mark.parametrize(

@@ -201,7 +201,7 @@ def test_threats_outline_when_the_safety_layer_would_act():
         w = pace * np.array([np.cos(towards), np.sin(towards)])
         layer.reset()
         way, here = np.array([[0.0, 0.0, 1.0, 0.0]]), np.array([[x, y]])
-        acted = layer.filter(100.0 * v, v, way, 0.1, here, w[None]).acted
+        acted = layer.filter(100.0 * v, v, (way, 0.1), here, w[None]).acted
         seen[
             int(acted),
             int(is_threat((x, y), tuple(w), outline(v, DT, ALARM), WIDTH / 2, DT, ALARM)),
@@ -223,7 +223,7 @@ def test_threats_show_when_the_layer_would_act_beside_a_sidewalk():
         layer.reset()
         way, here = np.array([[0.0, 0.0, 1.0, 0.0]]), np.array([[x, y]])
         kerbs = np.array([[0.0, 1.0, depth]])
-        acted = layer.filter(100.0 * v, v, way, 0.1, here, w[None], kerbs=kerbs).acted
+        acted = layer.filter(100.0 * v, v, (way, 0.1), here, w[None], kerbs=kerbs).acted
         behind = 0.0, 1.0, depth - 0.05
         threat = is_threat((x, y), tuple(w), outline(v, DT, alarm), WIDTH / 2, DT, alarm, behind)
         seen[int(acted), int(threat)] += 1
@@ -244,7 +244,7 @@ def test_a_person_for_whom_the_layer_would_act_is_a_threat(name):
         there = np.array([[x - aside * np.sin(heading), y + aside * np.cos(heading)]])
         layer.reset()
         way = front_poses(path, front, layer.reach(3.98), LENGTH)
-        if layer.filter(398.0, 3.98, *way, there, np.zeros((1, 2))).acted:
+        if layer.filter(398.0, 3.98, way, there, np.zeros((1, 2))).acted:
             acted += 1
             _, _, calm = assessed(path, np.repeat(there[None], N, axis=0), m)
             assert calm[0] < 3.98, (ahead, aside)
