@@ -106,7 +106,7 @@ def watch(
     """
     front, length, reach = place
     spacing = spacing_of(reach, poses.shape[0])
-    count = fill_front_poses(*path, front, length, reach, spacing, poses)
+    count = fill_front_poses(path, front, length, reach, spacing, poses)
     return largest_safe_force(force, speed, (poses[:count], spacing), people, memory)
 
 
@@ -118,9 +118,7 @@ def spacing_of(reach: float, most: int) -> float:
 
 @inner
 def fill_front_poses(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
+    path: tuple[Array, Array, Array],
     front: float,
     length: float,
     reach: float,
@@ -132,6 +130,7 @@ def fill_front_poses(
     One pose is enough if the path is straight from the rear bumper to ``reach`` [m] ahead of the
     front.
     """
+    vertices, stations, headings = path
     straight = segment_at(stations, front - length) == segment_at(stations, front + reach)
     count = 1 if straight else min(2 + int(reach / spacing), poses.shape[0])
     for i in range(count):

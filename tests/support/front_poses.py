@@ -18,4 +18,4 @@ def front_poses(path: EgoPath, front: float, reach: float, length: float) -> tup
     """
     poses, spacing = np.zeros((MOST_POSES, 4)), spacing_of(reach, MOST_POSES)
     way = path.vertices, path.stations, path.headings
-    return poses[: fill_front_poses(*way, front, length, reach, spacing, poses)], spacing
+    return poses[: fill_front_poses(way, front, length, reach, spacing, poses)], spacing

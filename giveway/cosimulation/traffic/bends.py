@@ -74,7 +74,7 @@ class Bends:
             road = path.vertices, path.stations, path.headings
             driven: Array = speed * self._times
             speeds = np.full(len(driven), speed)
-            fill_poses(*road, length, driven, speeds, length, len(self._rows), poses)
+            fill_poses(road, length, driven, speeds, length, len(self._rows), poses)
             self._rows.append(int(moving[k]))
         self._poses = poses
 

@@ -181,9 +181,7 @@ def path_from(
 
 @kernel
 def gaps_ahead(
-    fronts: Array,
-    positions: Array,
-    numbers: Indices,
+    vehicles: tuple[Array, Array, Indices],
     pool: LanePathPool,
     sight: Array,
     half_width: Array,
@@ -194,7 +192,18 @@ def gaps_ahead(
     """Fill each vehicle's distance [m] to the first pedestrian in sight; inf if there is none.
 
     Only pedestrians within the straight distance ``sight`` are examined; a grid finds them.
+
+    Args:
+        vehicles: Front bumpers (n, 2) [m], positions (n,) [m] on their lanes, and the numbers (n,)
+            of their lane paths; -1 without one.
+        pool: Lane paths.
+        sight: Sight (n,) [m] of each vehicle.
+        half_width: Half width (n,) [m] of the corridor of each vehicle.
+        pedestrians: Positions (p, 2) [m] of the pedestrians.
+        grid: Result of :func:`sort_pedestrians`.
+        gaps: Distances (n,) [m] to be filled.
     """
+    fronts, positions, numbers = vehicles
     longest = 2
     for i in range(len(numbers)):
         if numbers[i] >= 0:

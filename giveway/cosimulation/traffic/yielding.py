@@ -125,9 +125,7 @@ class Yielding:
         gaps = np.full(len(background.ids), np.inf)
         if (numbers >= 0).any():
             gaps_ahead(
-                np.column_stack([background.x, background.y]),
-                positions,
-                numbers,
+                (np.column_stack([background.x, background.y]), positions, numbers),
                 self._lane_paths.pool,
                 sight,
                 background.width / 2 + CORRIDOR_MARGIN,
@@ -189,9 +187,7 @@ class Yielding:
             if not (numbers >= 0).any():
                 continue
             gaps_ahead(
-                fronts[near],
-                positions,
-                numbers,
+                (fronts[near], positions, numbers),
                 self._lane_paths.pool,
                 sight[near],
                 background.width[near] / 2 + _BESIDE_EGO,

@@ -104,7 +104,7 @@ def assess_step(
             between[p, 1] = before[p, 1] + share * (after[p, 1] - before[p, 1])
         at = front + distance[i + 1]
         closest, _ = closest_in_front(
-            vertices, stations, first, last, between, at - PASSED, v.half_width, 0.0
+            vertices, stations, (first, last), between, at - PASSED, v.half_width, 0.0
         )
         gap[i] = closest - at
         if i > begin:

@@ -212,7 +212,7 @@ def advance(
                 at[p] = index[before + p]
         station = front + 0.5 * (distance[k, step] + distance[k, late])
         pace = 0.5 * (speed[k, step] + speed[k, late])
-        set_pose(vertices, stations, headings, station, pace, View(*view).length, poses[j, row])
+        set_pose((vertices, stations, headings), station, pace, View(*view).length, poses[j, row])
         bad = rollout_step(ahead, scene, poses[j], scratch, law[:-1])
         if bad != _FINE:
             return bad

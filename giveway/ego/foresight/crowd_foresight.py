@@ -306,7 +306,7 @@ class CrowdForesight:
         if not self._copied:
             self._copy()
         fill_poses(
-            *self._way,
+            self._way,
             self._front,
             self._middle(distance),
             self._middle(speed),

@@ -14,6 +14,9 @@ from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import EgoPath, body_pose
 
+#: Vertices (k + 1, 2) [m], stations (k + 1,) [m] and headings (k,) [rad] of a path.
+PathArrays = tuple[Array, Array, Array]
+
 
 class Corridor:
     """The corridor about a path; its arrays are allocated once and reused in every step.
@@ -41,6 +44,7 @@ class Corridor:
         straight: int | None = None,
     ) -> None:
         self.path = path
+        self._way = path.vertices, path.stations, path.headings
         self.half_width = half_width
         self.time_step = time_step
         self.body_length = body_length
@@ -81,17 +85,8 @@ class Corridor:
             front: Station of the front bumper now [m].
             speed: Speed of the ego [m/s], constant over the horizon as in the prediction.
         """
-        path = self.path
-        closest_ahead(
-            path.vertices,
-            path.stations,
-            positions,
-            front,
-            speed * self.time_step,
-            self.half_width,
-            self._reach,
-            self._ahead,
-        )
+        advance, widths = speed * self.time_step, (self.half_width, self._reach)
+        closest_ahead(self._way, positions, front, advance, widths, self._ahead)
         return self._ahead
 
     def closest_vehicle(
@@ -111,9 +106,9 @@ class Corridor:
             speed: Speed of the ego [m/s], constant over the horizon.
             beside: Marks (k,) of those of the last k vehicles whose lanes lead them past the path.
         """
-        path, ahead = self.path, self._vehicles_ahead
+        ahead = self._vehicles_ahead
         station, along = vehicles_in_front(
-            (path.vertices, path.stations, path.headings),
+            self._way,
             poses,
             own,
             (front, speed * self.time_step, self.time_step),
@@ -132,31 +127,14 @@ class Corridor:
             front: Station of the front bumper now [m].
             speed: Speed of the ego [m/s].
         """
-        path = self.path
-        fill_steady_poses(
-            path.vertices,
-            path.stations,
-            path.headings,
-            front,
-            speed * self.time_step,
-            speed,
-            self.body_length,
-            row,
-            poses,
-        )
+        advance, length = speed * self.time_step, self.body_length
+        fill_steady_poses(self._way, front, advance, speed, length, row, poses)
 
 
 @inner
-def set_pose(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
-    station: float,
-    speed: float,
-    length: float,
-    pose: Array,
-) -> None:
+def set_pose(path: PathArrays, station: float, speed: float, length: float, pose: Array) -> None:
     """Set a vehicle's ``pose`` (7,) to a body whose front bumper is at ``station`` [m]."""
+    vertices, stations, headings = path
     x, y, heading = body_pose(vertices, stations, headings, station, length)
     pose[0] = x - 0.5 * length * np.cos(heading)
     pose[1] = y - 0.5 * length * np.sin(heading)
@@ -166,9 +144,7 @@ def set_pose(
 
 @kernel
 def fill_steady_poses(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
+    path: PathArrays,
     front: float,
     advance: float,
     speed: float,
@@ -179,14 +155,12 @@ def fill_steady_poses(
     """Fill as :func:`fill_poses` does, for a body that drives ``advance`` [m] in each step."""
     for i in range(poses.shape[0]):
         station = front + i * advance
-        set_pose(vertices, stations, headings, station, speed, length, poses[i, row])
+        set_pose(path, station, speed, length, poses[i, row])
 
 
 @kernel
 def fill_poses(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
+    path: PathArrays,
     front: float,
     distance: Array,
     speeds: Array,
@@ -197,9 +171,7 @@ def fill_poses(
     """Fill ``poses[:, row]`` with a body's centre, heading and speed at steps 0 ... N-1.
 
     Args:
-        vertices: Vertices [m] of the path.
-        stations: Stations [m] of the vertices.
-        headings: Headings [rad] of the path's segments.
+        path: Vertices [m], stations [m] and headings [rad] of the path.
         front: Station of the front bumper now [m].
         distance: Distances (N or more,) [m] driven until each step.
         speeds: Speeds (N or more,) [m/s] at each step.
@@ -209,24 +181,31 @@ def fill_poses(
     """
     for i in range(poses.shape[0]):
         station = front + distance[i]
-        set_pose(vertices, stations, headings, station, speeds[i], length, poses[i, row])
+        set_pose(path, station, speeds[i], length, poses[i, row])
 
 
 @inner
 def closest_in_front(
     vertices: Array,
     stations: Array,
-    first: int,
-    last: int,
+    segments: tuple[int, int],
     positions: Array,
     front: float,
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Station [m] of the closest pedestrian in front, and whether any gets there by ``reach`` [m].
+    """Return the station of the closest pedestrian in front, and whether any can get there.
 
-    ``reach`` is the distance that a pedestrian can walk.
+    Args:
+        vertices: Points (k + 1, 2) [m] of the path.
+        stations: Stations (k + 1,) [m] of its vertices.
+        segments: The first and the last segment that count.
+        positions: Positions (n, 2) [m] of the pedestrians.
+        front: Station [m] of the front bumper.
+        half_width: Half width [m] of the corridor.
+        reach: Distance [m] that pedestrians can walk.
     """
+    first, last = segments
     if first == last and reach == 0.0:
         return closest_on_segment(vertices, stations, first, positions, front, half_width), False
     closest = np.inf
@@ -282,25 +261,33 @@ def closest_in_sight(
     reach: float,
 ) -> tuple[float, bool]:
     """Search as :func:`closest_in_front` does, on the part of the path in sight."""
-    first, last = window(stations, front, max(BEHIND, reach))
-    return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
+    segments = window(stations, front, max(BEHIND, reach))
+    return closest_in_front(vertices, stations, segments, positions, front, half_width, reach)
 
 
 @kernel
 def closest_ahead(
-    vertices: Array,
-    stations: Array,
+    path: PathArrays,
     positions: Array,
     front: float,
     advance: float,
-    half_width: float,
-    reach: float,
+    widths: tuple[float, float],
     closest: Array,
 ) -> None:
-    """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
-    first, last = window(stations, front, max(BEHIND, reach))
+    """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1.
+
+    Args:
+        path: Vertices, stations and headings of the path.
+        positions: Positions (N, n, 2) [m] predicted at steps 1 ... N.
+        front: Station [m] of the front bumper now.
+        advance: Distance [m] that the ego drives in each step.
+        widths: Half width [m] of the corridor, and the distance [m] that pedestrians can walk.
+        closest: Stations (N,) [m] of the closest pedestrian in front.
+    """
+    (vertices, stations, _), (half_width, reach) = path, widths
+    segments = window(stations, front, max(BEHIND, reach))
     for i in range(positions.shape[0]):
         at = front + (i + 1) * advance
         closest[i], _ = closest_in_front(
-            vertices, stations, first, last, positions[i], at, half_width, 0.0
+            vertices, stations, segments, positions[i], at, half_width, 0.0
         )

@@ -132,8 +132,8 @@ class Kerbs:
         """
         kept = kerbs.copy() if whom is None else kerbs[whom]
         way = people.waypoints, people.waypoint_start, people.waypoint_index
-        walks = people.position, people.velocity, people.desired_speed, *way
-        drop_kerbs(*walks, self._opening, kept)
+        walks = people.position, people.velocity, people.desired_speed
+        drop_kerbs(walks, way, self._opening, kept)
         return kept
 
 
@@ -291,27 +291,21 @@ def heed_line(
 
 @kernel
 def drop_kerbs(
-    position: Array,
-    velocity: Array,
-    desired_speed: Array,
-    waypoints: Array,
-    start: NDArray[np.int64],
-    index: NDArray[np.int64],
+    people: tuple[Array, Array, Array],
+    ways: tuple[Array, NDArray[np.int64], NDArray[np.int64]],
     mouths: Array,
     kerbs: Array,
 ) -> None:
     """Set rows of ``kerbs`` to 0 as :meth:`Kerbs.kept` does.
 
     Args:
-        position: Positions (n, 2) [m] of the people.
-        velocity: Velocities (n, 2) [m/s] of the people.
-        desired_speed: Desired speeds (n,) [m/s] of the people.
-        waypoints: Way-points (w, 2) [m] of all people, one after the other.
-        start: Index (n + 1,) of each person's first way-point.
-        index: Number (n,) of each person's next way-point.
+        people: Positions (n, 2) [m], velocities (n, 2) [m/s] and desired speeds (n,) [m/s].
+        ways: Way-points (w, 2) [m] of all people, one after the other; index (n + 1,) of each
+            person's first one, and number (n,) of the next one.
         mouths: Crossings (c, 6), as :func:`_mouths` returns them.
         kerbs: Kerbs (n, 3), changed.
     """
+    (position, velocity, desired_speed), (waypoints, start, index) = people, ways
     for p in range(len(kerbs)):
         if kerbs[p, 2] <= 0.0:
             continue

@@ -59,14 +59,11 @@ class Tracker:
         errors = self._errors[:n]
         errors[:] = self._error if percept.position_bound is None else percept.position_bound
         _track(
-            people.position,
-            people.velocity,
+            (people.position, people.velocity),
             numbers,
             self._look,
-            self._slack,
-            self._time_step,
-            self._known,
-            self._seen,
+            (self._slack, self._time_step),
+            (self._known, self._seen),
             errors,
         )
         return Percept(people, numbers, percept.age, errors)
@@ -74,29 +71,26 @@ class Tracker:
 
 @kernel
 def _track(
-    position: Array,
-    velocity: Array,
+    people: tuple[Array, Array],
     numbers: NDArray[np.int64],
     look: int,
-    slack: float,
-    time_step: float,
-    known: Array,
-    seen: NDArray[np.int64],
+    motion: tuple[float, float],
+    memory: tuple[Array, NDArray[np.int64]],
     errors: Array,
 ) -> None:
     """Overwrite positions by estimates, and ``errors`` by the bounds of their distances.
 
     Args:
-        position: Positions (n, 2) [m], changed.
-        velocity: Velocities (n, 2) [m/s].
+        people: Positions (n, 2) [m], changed, and velocities (n, 2) [m/s].
         numbers: Person ids (n,).
         look: Number of this look.
-        slack: Largest error [m] of a step's displacement on each axis.
-        time_step: Time [s] between two looks.
-        known: State of each person by id, changed; see ``_COLUMNS``.
-        seen: Number of the last look at each person by id, changed.
+        motion: Largest error [m] of a step's displacement on each axis, and time [s] between two
+            looks.
+        memory: State of each person by id, see ``_COLUMNS``, and number of the last look at each
+            person; changed.
         errors: Largest errors (n,) [m] on each axis; filled with those of the estimates.
     """
+    (position, velocity), (slack, time_step), (known, seen) = people, motion, memory
     for row in range(len(numbers)):
         mine, error = known[numbers[row]], errors[row]
         lost = seen[numbers[row]] != look - 1

@@ -54,7 +54,7 @@ def one_by_one(lane: np.ndarray, station: float, sight: float, people: np.ndarra
     segments = len(ahead.headings) - 1
     near = people[np.hypot(*(people - front).T) <= sight]
     gap, _ = closest_in_front(
-        ahead.vertices, ahead.stations, 0, segments, near, 0.0, HALF_WIDTH, 0.0
+        ahead.vertices, ahead.stations, (0, segments), near, 0.0, HALF_WIDTH, 0.0
     )
     return gap if gap <= sight else math.inf
 
@@ -72,9 +72,7 @@ def test_the_first_in_each_cars_way_is_found(seed: int, corners: int, sight: flo
     )
     gaps = np.empty(3)
     gaps_ahead(
-        fronts,
-        stations,
-        np.arange(3),
+        (fronts, stations, np.arange(3)),
         ways,
         np.full(3, sight),
         np.full(3, HALF_WIDTH),
@@ -92,9 +90,7 @@ def test_a_car_on_no_lane_or_at_the_end_of_its_route_sees_nobody() -> None:
     people = np.array([[60.0, 0.0]])
     gaps = np.empty(2)
     gaps_ahead(
-        np.array([[40.0, 0.0], [50.0, 0.0]]),
-        np.array([40.0, 50.0]),
-        np.array([-1, 0]),
+        (np.array([[40.0, 0.0], [50.0, 0.0]]), np.array([40.0, 50.0]), np.array([-1, 0])),
         pooled([lane]),
         np.full(2, 100.0),
         np.full(2, HALF_WIDTH),

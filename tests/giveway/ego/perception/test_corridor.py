@@ -154,7 +154,7 @@ def test_the_corridor_on_a_long_path_is_that_of_the_whole_path(
     people = path.vertices[rng.integers(len(path.vertices), size=40)] + rng.normal(0, 3, (40, 2))
     now, _ = corridor(path).closest_now(people, front)
     everywhere, _ = closest_in_front(
-        path.vertices, path.stations, 0, len(path.vertices) - 2, people, front, HALF_WIDTH, 0.0
+        path.vertices, path.stations, (0, len(path.vertices) - 2), people, front, HALF_WIDTH, 0.0
     )
     if everywhere <= front + SIGHT:
         assert now == everywhere
