@@ -4,8 +4,6 @@ A class of an installed package is a controller if it can be made from a :class:
 options, if it has any) and has the method ``control``. docs/plugins.md is the guide.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 from controller.observation import Observation

@@ -7,8 +7,6 @@
 The command line is ``giveway``; ``giveway --help`` lists what it does.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 from giveway._environment import check_rooms, keep_kernels

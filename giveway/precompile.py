@@ -1,18 +1,18 @@
 """The one-time compilation of the numerical kernels, with a message for the user."""
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import os
 import shutil
 import subprocess
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from llvmlite.binding import get_host_cpu_name
+from rich.console import Console
 
 from controller import LongitudinalModel, Mpc, MpcParameters
 from controller.kernels import branch_off
@@ -22,11 +22,6 @@ from giveway.processes.interpreter import command
 from giveway.processes.processors import processors
 from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
 from pedestrian_model.vci.model import THREADS_FROM
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rich.console import Console
 
 _MARKER = "compiled-for-"
 _KEPT = 30 * 86400.0  # [s] time since the last run after which old kernels are removed

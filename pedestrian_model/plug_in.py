@@ -4,8 +4,6 @@ A class of an installed package is a pedestrian model if it can be made from a :
 (and its options, if it has any) and has the method ``step``. docs/plugins.md is the guide.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np

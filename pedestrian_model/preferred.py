@@ -1,7 +1,5 @@
 """The way to the next way-point of everybody, for models that plug in."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

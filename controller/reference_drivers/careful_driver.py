@@ -12,8 +12,6 @@ The driver does not look for gaps and does not expect anybody to step onto its w
 of a controller that uses the plug-in protocol, :mod:`controller.plug_in`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import inf, sqrt
 

@@ -12,8 +12,6 @@ The driver is an example of a controller that uses the plug-in protocol,
 :mod:`controller.plug_in`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import inf, sqrt
 

@@ -1,7 +1,5 @@
 """The positions of people along the way ahead, and their motion across it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The commands ``giveway check``: the conformance of code of other packages."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

@@ -3,16 +3,12 @@
 Names are never cut: a long name has a line of its own (as click writes definition lists).
 """
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Callable
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 JsonFlag = Annotated[
     bool, typer.Option("--json", help="Print what was found as JSON, for scripts, and no more.")

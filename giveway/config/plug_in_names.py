@@ -1,7 +1,5 @@
 """The names of controllers, pedestrian models and sensors: giveway's, a package's, module:Class."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BeforeValidator, WithJsonSchema

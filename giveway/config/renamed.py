@@ -1,7 +1,5 @@
 """Keys and flags that no longer exist, each with what to write instead."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 

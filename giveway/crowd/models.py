@@ -1,7 +1,5 @@
 """Makes the pedestrian model of a run, and that of an ego's prediction, from the configuration."""
 
-from __future__ import annotations
-
 import importlib.util
 from collections.abc import Callable
 from typing import cast

@@ -1,7 +1,5 @@
 """The routes of people who walk with a flow: start, gates, crossings and end."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Sequence

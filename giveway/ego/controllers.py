@@ -1,7 +1,5 @@
 """Makes the controller of an ego from the configuration."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar

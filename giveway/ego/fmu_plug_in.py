@@ -1,7 +1,5 @@
 """A controller FMU as a plug-in: observations become its inputs, its output becomes a command."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf
 

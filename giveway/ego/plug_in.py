@@ -1,7 +1,5 @@
 """Makes the plugged-in controller that a configuration names, with its options."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from controller import Setup

@@ -7,8 +7,6 @@ one at its first instant, with the position along it. All vehicle types are writ
 SUMO does not know those of pedestrians and egos.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from xml.sax.saxutils import quoteattr

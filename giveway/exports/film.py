@@ -5,8 +5,6 @@ encoded by the FFmpeg in the wheel imageio-ffmpeg (extra ``video``), which runs 
 process.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path

@@ -4,8 +4,6 @@ It has a line for each presence of a person or vehicle, with its times, and a po
 conflict.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -5,8 +5,6 @@ frame, x, y, z. JuPedSim's SQLite is its version 2 (JuPedSim 1.4): ``trajectory_
 and ``frame_data``, ``metadata``.
 """
 
-from __future__ import annotations
-
 import contextlib
 import sqlite3
 from pathlib import Path

@@ -5,8 +5,6 @@ SUMO's steps. In between they are interpolated linearly. An object that was away
 another name.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

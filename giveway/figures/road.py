@@ -1,11 +1,9 @@
 """The road underneath a picture: lanes, crossings, and traffic lights as coloured stop lines."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
@@ -13,11 +11,7 @@ from numpy.typing import NDArray
 from giveway.figures.style import GREY, LIGHT_GREY
 from giveway.figures.view import Box
 from giveway.run_data.road_marks import RoadMarks, Zebra, shown
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from giveway.run_data.tracks import SignalTrack
+from giveway.run_data.tracks import SignalTrack
 
 Road = Sequence[NDArray[np.float64]]
 """Lines (k, 2) [m] to draw underneath; a line that ends where it starts is a filled area."""

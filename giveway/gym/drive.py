@@ -5,8 +5,6 @@ a thread of its own, in which the environment is the controller, as a plug-in. `
 the constructor starts nothing.
 """
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Mapping
 from math import cos, sin

@@ -1,7 +1,5 @@
 """Metrics of other packages: what they declare, and what they measure of one ego's drive."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from dataclasses import dataclass, field

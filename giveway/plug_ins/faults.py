@@ -1,7 +1,5 @@
 """The faults in the code of other packages, in one line each."""
 
-from __future__ import annotations
-
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager

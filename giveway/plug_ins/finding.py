@@ -5,8 +5,6 @@ installed distribution: by its RECORD, or, if installed for development (``pip i
 the project's folder. A file that merely lies in the working folder is never imported.
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import hashlib

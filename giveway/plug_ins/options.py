@@ -1,7 +1,5 @@
 """The options of a plug-in: its class ``Options``, filled with texts and TOML values."""
 
-from __future__ import annotations
-
 import dataclasses
 import difflib
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """The wrapper of a controller of another package: it checks answers and reports errors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isfinite
 from typing import Any, NamedTuple

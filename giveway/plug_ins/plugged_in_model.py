@@ -1,7 +1,5 @@
 """The wrapper of a pedestrian model of another package: it checks and limits its answers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

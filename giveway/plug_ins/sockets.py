@@ -1,7 +1,5 @@
 """The sockets for code of other packages, and their names for users."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

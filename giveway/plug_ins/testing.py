@@ -4,8 +4,6 @@
 and list the rules that a controller or a pedestrian model breaks (docs/plugins.md).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Crossings and lights for the page: painted stripes, and the states of each stop line."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

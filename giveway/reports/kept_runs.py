@@ -1,7 +1,5 @@
 """The runs that a report keeps, so that the next report need not make them again."""
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import json

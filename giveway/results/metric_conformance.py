@@ -4,8 +4,6 @@ An ego slows down, stands and drives on past a dozen people and behind a vehicle
 words what is wrong.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import fields, replace

@@ -1,15 +1,10 @@
 """Contexts: groups of a study's cells that differ only in the level of the compared factor."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from giveway.errors import ConfigError
-
-if TYPE_CHECKING:
-    from giveway.studies.definition import Comparison
-    from giveway.studies.design import Design, Level
+from giveway.studies.definition import Comparison
+from giveway.studies.design import Design, Level
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """The Python API of studies: one call, and tables as frames."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any

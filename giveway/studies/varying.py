@@ -1,7 +1,5 @@
 """Studies without a file: the factors come from the command line or from Python."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -11,8 +11,6 @@ Giveway adds what JuPedSim lacks. People stop before the strip of a moving vehic
 too heavy to be moved. Towards a wall speeds are limited so that people stop before it.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Final, Literal, get_args
 

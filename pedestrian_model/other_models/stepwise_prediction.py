@@ -1,7 +1,5 @@
 """Predicts the crowd with any model, step by step, for given vehicle poses."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

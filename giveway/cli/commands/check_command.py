@@ -1,7 +1,5 @@
 """The command ``giveway check``: it tries a plug-in on made-up scenes, in another process."""
 
-from __future__ import annotations
-
 import multiprocessing
 from collections.abc import Sequence
 from multiprocessing.connection import Connection

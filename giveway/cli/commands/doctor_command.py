@@ -1,18 +1,13 @@
 """The command ``giveway doctor``: the findings as a table, and an exit code for scripts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.table import Table
 
 from giveway.cli.screen.printing import findings_table, print_json
 from giveway.doctor import Finding, examine_environment, examine_scenario
-
-if TYPE_CHECKING:
-    from rich.table import Table
 
 _STYLES = {"ok": "green", "note": "cyan", "warning": "yellow", "error": "bold red"}
 

@@ -1,8 +1,8 @@
 """The command ``giveway export controller``: the configured controller as an FMU."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -11,6 +11,7 @@ from fmus.errors import FmuError
 from fmus.sources.export import export_controller
 from fmus.sources.parameters import CONTROLLER_FILES, ControllerParameters
 from giveway.cli.commands.run_command import layers_of
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.loading import load
 from giveway.config.option import LANE
 from giveway.cosimulation.preflight import control_step
@@ -18,12 +19,6 @@ from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, ControlError, ResultsError
 from giveway.scenario_files import read_scenario
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from giveway.config import EgoRunConfig, RunConfig
 
 
 def export_command(

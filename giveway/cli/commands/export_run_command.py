@@ -1,7 +1,5 @@
 """The command ``giveway export run``: a results folder in other formats."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Callable
 from pathlib import Path

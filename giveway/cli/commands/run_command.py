@@ -1,29 +1,24 @@
 """The command ``giveway run``: progress bar, run, files, and a summary of one screen."""
 
-from __future__ import annotations
-
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.console import Console
 
 from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.screen.printing import escape, print_json
 from giveway.cli.screen.progress_bars import run_progress
+from giveway.config import RunConfig
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.errors import GivewayError
 from giveway.results.folder import check_folder, require_parquet
+from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from giveway.config import RunConfig
-    from giveway.results.run_result import RunResult
 
 
 @dataclass(frozen=True)

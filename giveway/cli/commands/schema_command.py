@@ -1,8 +1,8 @@
 """The command ``giveway schema``: JSON schemas, by which editors complete and check TOML files."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -16,10 +16,6 @@ from giveway.plug_ins.sockets import CONTROLLER, MODEL, SENSOR
 from giveway.results.json_text import json_text
 from giveway.studies.definition import StudyDefinition
 from pedestrian_model import PRESETS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _OURS = frozenset({"unit", "flag", "least", "because"})  # keys beside those of JSON schema

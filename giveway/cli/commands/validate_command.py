@@ -1,11 +1,9 @@
 """The command ``giveway validate``: the pedestrian model compared with recorded trajectories."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
@@ -19,9 +17,6 @@ from giveway.validation.contacts import DATA, ORDER
 from giveway.validation.evaluation import EVERYWHERE, NEAR
 from giveway.validation.output import FILES, write_validation
 from giveway.validation.predictors import VCI
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 def validate_command(

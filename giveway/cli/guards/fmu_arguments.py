@@ -1,19 +1,15 @@
 """The arguments of ``giveway fmu check`` and ``identify``: an FMU and its profile."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
 
 from fmus import FmuError
 from fmus.profile.vehicle_profile import VehicleProfile, read_profile
 from giveway.cli.screen.printing import writing
 from giveway.errors import ConfigError
 from giveway.figures import save_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def require_fmu(path: Path) -> None:

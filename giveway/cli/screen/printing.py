@@ -1,23 +1,19 @@
 """The output that several commands share: findings, a file's place, errors in writing it."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich import markup
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from giveway.cli.exit import visible
 from giveway.errors import ResultsError
 from giveway.results.json_text import json_text
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 
 def escape(text: str) -> str:

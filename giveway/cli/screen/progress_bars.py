@@ -1,22 +1,16 @@
 """The progress bars: of a run, and of things that are counted."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import perf_counter
-from typing import TYPE_CHECKING
 
+from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from rich.console import Console
-
-    from giveway.config import RunConfig
-    from giveway.run_data.progress import Progress as State
-    from giveway.run_data.progress import Watcher
+from giveway.config import RunConfig
+from giveway.run_data.progress import Progress as State
+from giveway.run_data.progress import Watcher
 
 _REFRESH = 0.1  # Wall-clock time [s] between two redraws
 

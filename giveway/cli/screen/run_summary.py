@@ -1,18 +1,14 @@
 """The summary of a run on one screen."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 from rich.table import Table
 from rich.text import Text
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from giveway.results.ego_result import EgoResult
-    from giveway.results.run_result import RunResult
+from giveway.results.ego_result import EgoResult
+from giveway.results.run_result import RunResult
 
 _SHOWN = (
     ("Time to the goal", "completion_time", "s"),

@@ -1,20 +1,14 @@
 """The table of levels in a terminal, in parts that fit its width."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from rich import box
-from rich.console import Group
+from rich.console import Console, Group
 from rich.table import Table
 
 from giveway.cli.screen.printing import escape
 from giveway.reports.tables.level_table import BETTER, WORSE, LevelTable, Mean, level_table
 from giveway.studies.folder.study_folder import StudyFolder
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _GAP = 3  # Characters between two columns: padding on both sides, and a blank of the box
 _COLOURS = {"better": "green", "worse": "red"}

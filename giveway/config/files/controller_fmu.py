@@ -1,7 +1,5 @@
 """The controller FMU that a configuration names: its file, its profile, its hash."""
 
-from __future__ import annotations
-
 import dataclasses
 from hashlib import sha256
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The declarations of controllers of other packages, written into the configuration."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

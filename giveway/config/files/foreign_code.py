@@ -1,12 +1,10 @@
 """The code of other packages that a configuration names."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from giveway.config.files.controller_fmu import fmu_described, fmu_hash, prepared
-from giveway.config.run_config import PAPER_STEP
+from giveway.config.run_config import PAPER_STEP, EgoRunConfig, RunConfig
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import find, is_fmu, load_class, shown
 from giveway.plug_ins.options import plain
@@ -20,9 +18,6 @@ from giveway.plug_ins.sockets import (
     TABLES,
     Socket,
 )
-
-if TYPE_CHECKING:
-    from giveway.config.run_config import EgoRunConfig, RunConfig
 
 
 class Named(NamedTuple):

@@ -5,8 +5,6 @@ the package is the one with which the results were made. ``module:Class`` could 
 installed, and is imported only if the user has named it, too.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path

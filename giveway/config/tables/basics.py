@@ -4,8 +4,6 @@ Defaults are the reproduction of Yang & Özgüner 2019 (arXiv 1907.05178), their
 docs/reproduction.md explains.
 """
 
-from __future__ import annotations
-
 from typing import Final, Literal
 
 from giveway.config.option import (

@@ -1,7 +1,5 @@
 """The table `[metrics]`: which metrics of other packages add columns to the summary."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from giveway.config.tables.plug_in_table import PlugInTable

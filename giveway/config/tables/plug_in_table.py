@@ -1,7 +1,5 @@
 """A table whose keys are the names of plug-ins, as `[rules]` and `[metrics]` are."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Mapping
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """The table `[rules]`: which rules of the road an ego heeds, each by its registered name."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from giveway.config.option import option

@@ -5,8 +5,6 @@ flow and the group's number. Arrivals and destinations therefore do not depend o
 controllers, pedestrian models or other flows.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Makes the predictor of the crowd for an ego: the pedestrian model that its controller uses."""
 
-from __future__ import annotations
-
 from controller import Controller
 from giveway.config import EgoRunConfig
 from giveway.crowd.models import believed_model

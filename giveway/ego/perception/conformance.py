@@ -3,8 +3,6 @@
 A dozen people walk past a car that drives by a parked car and a wall.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 

@@ -1,7 +1,5 @@
 """The crossings on an ego's path, and the stretch of the path that lies on each."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -5,8 +5,6 @@ A rule is a class of one file. It is made once for each ego, by a factory that l
 packages (entry points `giveway.rules`) keep to the same protocol; docs/plugins.md is the guide.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf

@@ -1,7 +1,5 @@
 """The context that an ego's rules are made from: route, vehicle and running simulation."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property

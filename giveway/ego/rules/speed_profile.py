@@ -6,8 +6,6 @@ v <= sqrt(a / curvature). A pass backwards from the end of the path lets the ego
 a lower limit, with the comfortable deceleration.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -4,8 +4,6 @@ A kit plays made-up scenes to plug-ins of one socket. It says how one is made an
 checks that hold for every socket are here. No scene needs SUMO.
 """
 
-from __future__ import annotations
-
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable

@@ -4,8 +4,6 @@ Each check drives one or two fresh controllers through the same made-up scenes a
 what is wrong. The scenes are one ego on a straight road, two vehicles and a dozen people.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial

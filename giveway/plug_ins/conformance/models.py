@@ -4,8 +4,6 @@ Each check walks one or two fresh crowds through the same made-up scene and says
 wrong: a dozen people from two sides, two vehicles that pass, a wall, a red light.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from functools import partial

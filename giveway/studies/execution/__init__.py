@@ -4,15 +4,10 @@ Whatever happens to a run (a native crash, a hang, lack of memory), it becomes a
 :class:`giveway.studies.record.RunRecord` like any other, and the study goes on.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from giveway.studies.execution.executor import Executor, WorkerError
 from giveway.studies.execution.limits import HANG_LIMIT, Limits
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 __all__ = ["HANG_LIMIT", "Executor", "WorkerError", "cluster_executor", "local_executor"]
 

@@ -5,27 +5,22 @@ in a separate process (:mod:`giveway.studies.execution.cluster_task`). If the co
 the runs that were under way are submitted again.
 """
 
-from __future__ import annotations
-
 import logging
 import re
 import sys
 import threading
 import time
 import uuid
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import Any, Final, Self
 
 from giveway.studies.execution.cluster_probe import reason_against
 from giveway.studies.execution.cluster_runs import ClusterRuns
 from giveway.studies.execution.executor import WorkerError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-
-    from giveway.studies.execution.limits import Limits
-    from giveway.studies.record import RunRecord, Task
+from giveway.studies.execution.limits import Limits
+from giveway.studies.record import RunRecord, Task
 
 Client = Any  # Dask's classes, whose methods mostly have no types
 Cluster = Any

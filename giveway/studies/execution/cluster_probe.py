@@ -6,8 +6,6 @@ while its objects are deleted. In a process of its own this does no harm, and th
 in a few words.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

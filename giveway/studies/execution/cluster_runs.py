@@ -1,19 +1,13 @@
 """The runs of one call on a Dask cluster: submitted, submitted again, and fetched."""
 
-from __future__ import annotations
-
 import queue
 from collections import deque
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from collections.abc import Iterable, Iterator
+from typing import Any, Final, Protocol
 
 from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS
-from giveway.studies.record import CRASHED, Computing, RunRecord
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from giveway.studies.record import Task
+from giveway.studies.record import CRASHED, Computing, RunRecord, Task
 
 Future = Any  # Class of Dask, most of whose methods have no types
 

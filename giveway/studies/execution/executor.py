@@ -1,15 +1,10 @@
 """The interface of an executor, which makes the runs of a study on this machine or on others."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Protocol, Self
+from collections.abc import Iterable, Iterator
+from typing import Protocol, Self
 
 from giveway.errors import GivewayError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from giveway.studies.record import RunRecord, Task
+from giveway.studies.record import RunRecord, Task
 
 
 class WorkerError(GivewayError):

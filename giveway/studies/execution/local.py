@@ -1,18 +1,13 @@
 """Runs in processes of this machine."""
 
-from __future__ import annotations
-
 import queue
-from typing import TYPE_CHECKING, Final, Self
+from collections.abc import Iterable, Iterator
+from typing import Final, Self
 
 from giveway.studies.execution.executor import WorkerError
+from giveway.studies.execution.limits import Limits
 from giveway.studies.execution.pool import Pool
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from giveway.studies.execution.limits import Limits
-    from giveway.studies.record import RunRecord, Task
+from giveway.studies.record import RunRecord, Task
 
 _AHEAD: Final = 2  # Runs taken from the plan per worker, so that no worker waits
 _LOOK: Final = 1.0  # Length [s] of one wait; some systems notice Ctrl-C only after it

@@ -1,14 +1,11 @@
 """One run of a study, in this process: from a task to its record."""
 
-from __future__ import annotations
-
 import math
 import os
 import socket
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,13 +16,10 @@ from giveway.errors import GivewayError
 from giveway.journal.journal import Journal
 from giveway.processes.heartbeat import Phase
 from giveway.results.folder import rounded_row
+from giveway.results.run_result import RunResult
+from giveway.run_data.tracks import Timings
 from giveway.studies.record import FAILED, Computing, RunRecord, Scalar, Task
 from sumo_scenarios import find
-
-if TYPE_CHECKING:
-    from giveway.results.run_result import RunResult
-    from giveway.run_data.tracks import Timings
-
 
 _LONGEST_FAILURE = 2000  # Largest number of characters of a failure's message
 _STATM = Path("/proc/self/statm")

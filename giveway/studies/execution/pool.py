@@ -8,8 +8,6 @@ A worker is started by the thread that uses it, because Linux ends the worker to
 thread.
 """
 
-from __future__ import annotations
-
 import os
 import queue
 import socket
@@ -17,7 +15,8 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
 from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
@@ -29,9 +28,6 @@ from giveway.studies.execution.worker_process import (
     WorkerProcess,
 )
 from giveway.studies.record import CRASHED, FAILED, Computing, RunRecord, Task
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 Delivery = Callable[[RunRecord | Exception], None]
 

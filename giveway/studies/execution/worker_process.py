@@ -1,7 +1,5 @@
 """A worker's process as its study sees it: it is given runs, watched and ended."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -12,13 +10,14 @@ import sys
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from fmus.text import printable
 from giveway.processes.causes import cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Stillness
 from giveway.studies.execution.executor import WorkerError
+from giveway.studies.execution.limits import Limits
 from giveway.studies.execution.worker_messages import (
     ERROR,
     READY,
@@ -30,11 +29,7 @@ from giveway.studies.execution.worker_messages import (
 )
 from giveway.studies.execution.worker_program import SUMO_FILE
 from giveway.studies.execution.worker_start import START_LIMIT, start
-from giveway.studies.record import RunRecord
-
-if TYPE_CHECKING:
-    from giveway.studies.execution.limits import Limits
-    from giveway.studies.record import Task
+from giveway.studies.record import RunRecord, Task
 
 _POLL: Final = 0.25  # Time [s] between two checks of a worker that sends nothing
 _ENDING: Final = 2.0  # Time [s] between the end of a connection and the end of its process

@@ -1,21 +1,17 @@
 """The start of a worker's process: an interpreter like this one, connected by a socket."""
 
-from __future__ import annotations
-
 import os
 import secrets
 import socket
 import subprocess
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
+from pathlib import Path
 from time import monotonic
-from typing import IO, TYPE_CHECKING, Final
+from typing import IO, Final
 
 from giveway.processes.interpreter import command
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
 
 # Time [s] to import everything and compile the kernels, on a busy machine
 START_LIMIT: Final = 600.0

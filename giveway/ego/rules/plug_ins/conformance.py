@@ -4,8 +4,6 @@ An ego drives 300 m along a straight road of three edges, "first", "second" and 
 long, among a dozen people and behind a vehicle. Each check describes in words what is wrong.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from copy import copy
 from functools import partial

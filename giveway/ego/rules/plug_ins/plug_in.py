@@ -1,7 +1,5 @@
 """Makes the rules of other packages that the configuration names, for one ego's route."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The wrapper of a rule of another package: it checks answers and reports errors by name."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Set
 from math import inf, isnan
 from typing import Any
