@@ -6,6 +6,7 @@ obeys.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,16 +26,17 @@ _BEFORE = 1.5  # Longitudinal reach [m] from the path to a crossing's marking
 _DECIMALS = 6  # Decimals of lengths [m]: micrometres, as in all tables
 
 
+class LawfulPlaces(NamedTuple):
+    """The places about which the law of the road may have a say."""
+
+    crossings: Sequence[Crossing]  # crossings of the network
+    lights: Sequence[Light]  # traffic lights on the path
+    junctions: Sequence[JunctionOnWay] = ()  # junctions on the path
+    stops: Sequence[Stop] = ()  # scheduled stops that the ego serves
+
+
 def way_of(
-    ego_id: str,
-    path: EgoPath,
-    departure: float,
-    length: float,
-    *,
-    crossings: Sequence[Crossing],
-    lights: Sequence[Light],
-    junctions: Sequence[JunctionOnWay] = (),
-    stops: Sequence[Stop] = (),
+    ego_id: str, path: EgoPath, departure: float, length: float, places: LawfulPlaces
 ) -> EgoWay:
     """The crossings, lights, junctions and stops on an ego's path.
 
@@ -43,18 +45,15 @@ def way_of(
         path: Path of the ego.
         departure: Station [m] of the front bumper where the ego's position is 0.
         length: Length of the ego's body [m].
-        crossings: Crossings of the network.
-        lights: Traffic lights on the path.
-        junctions: Junctions on the path.
-        stops: Scheduled stops that the ego serves.
+        places: Crossings of the network, and lights, junctions and stops on the path.
     """
     return EgoWay(
         ego=ego_id,
         points=tuple((_rounded(x), _rounded(y)) for x, y in path.vertices.tolist()),
         departure=_rounded(departure),
-        crossings=_near(path, departure - length, crossings),
+        crossings=_near(path, departure - length, places.crossings),
         lines=tuple(
-            StopLine(_rounded(light.station), light.system, light.link) for light in lights
+            StopLine(_rounded(light.station), light.system, light.link) for light in places.lights
         ),
         junctions=tuple(
             place._replace(
@@ -62,9 +61,9 @@ def way_of(
                 exit=_rounded(place.exit),
                 waiting=tuple(map(_rounded, place.waiting)),
             )
-            for place in junctions
+            for place in places.junctions
         ),
-        halts=tuple(Halt(_rounded(stop.start), _rounded(stop.end)) for stop in stops),
+        halts=tuple(Halt(_rounded(stop.start), _rounded(stop.end)) for stop in places.stops),
     )
 
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,19 +35,25 @@ from pedestrian_model import Surroundings
 _STRAIGHT = 1.0  # time [s] for which other vehicles are predicted to go straight on
 
 
+class Course(NamedTuple):
+    """The drive of an ego along its path."""
+
+    path: EgoPath
+    departure: float  # station [m] of the front bumper where the FMU's position is 0
+    goal: float  # position [m] of the FMU at which the drive is over
+    slope: Slope | None = None  # slope of the path; None if the path is level
+
+
 class Ego:
     """A vehicle on the road.
 
     Args:
         waiting: Ego before its departure; its FMU has been started.
-        path: Path of the ego.
-        departure: Station of the front bumper [m] where the FMU's position is 0.
+        course: Path of the ego, where it departs, and where its drive is over.
         shape: Length and width of its body [m].
         rules: Rules of the road that hold for it.
-        goal: Position of the FMU [m] at which the drive is over.
         time_step: Length of a control step [s].
         kerbs: Kerbs beside its path, or None if they are not needed.
-        slope: Slope of the path, or None if the path is level.
 
     Attributes:
         front: Station of the front bumper [m].
@@ -59,15 +66,13 @@ class Ego:
     def __init__(
         self,
         waiting: WaitingEgo,
-        path: EgoPath,
-        departure: float,
+        course: Course,
         shape: VehicleShape,
         rules: RuleSet,
-        goal: float,
         time_step: float,
         kerbs: Kerbs | None = None,
-        slope: Slope | None = None,
     ) -> None:
+        path, departure, goal, slope = course
         config = waiting.config
         regulation, controller = config.regulation, waiting.controller
         self.config, self.id, self.shape, self._controller = config, waiting.id, shape, controller

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
-from giveway.ego.ego import Ego
+from giveway.ego.ego import Course, Ego
 from giveway.ego.perception.truth import Truth
 from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.rules.protocol import Told
@@ -64,7 +64,7 @@ def drive(
             desired_speed=lambda _: float(config.reference_speed),
             gap=config.regulation.safe_distance,
         )
-        ego = Ego(waiting, path, DEPARTURE, shape, RuleSet([lights]), 1900.0, STEP)
+        ego = Ego(waiting, Course(path, DEPARTURE, 1900.0), shape, RuleSet([lights]), STEP)
         poses = np.zeros((waiting.horizon, 1, 7))
         poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
         for k in range(round((yellow_at + YELLOW + RED) / STEP)):

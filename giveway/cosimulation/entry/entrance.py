@@ -1,17 +1,16 @@
 """The entrance of a waiting ego: inserted where its route begins, or taken over where it is."""
 
 import math
-from collections.abc import Sequence
 
 from giveway.config.option import LANE
 from giveway.config.tables.basics import DEFAULT_SPEED
 from giveway.cosimulation.entry.joining import join
 from giveway.cosimulation.entry.stop_places import SERVING, lanes_of, on_path, placed
-from giveway.cosimulation.law_records import way_of
+from giveway.cosimulation.law_records import LawfulPlaces, way_of
 from giveway.ego.controllers import make_controller
-from giveway.ego.ego import Ego
+from giveway.ego.ego import Course, Ego
 from giveway.ego.perception.kerbs import Kerbs
-from giveway.ego.rules.route import RouteContext, Stop
+from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ScenarioError
@@ -65,10 +64,9 @@ class Entrance:
             position=settings.depart_position,
             speed=speed,
         )
-        shape = shape_of(ego, BODY)
-        return self._on_the_road(
-            ego, path, lane_path, settings.depart_position, shape, speed, math.inf
-        )
+        departure, shape = settings.depart_position, shape_of(ego, BODY)
+        route = RouteContext(ego, self._session, path, lane_path, departure, shape, self._time_step)
+        return self._on_the_road(route, speed)
 
     def take_over(self, ego: WaitingEgo) -> Ego:
         """Take over a vehicle from SUMO: one of the scenario, or an ego that SUMO inserted."""
@@ -95,16 +93,18 @@ class Entrance:
         self._remark_on_stops(ego, len(places), len(stops))
         speed = ego.config.ego.initial_speed
         speed = state.speed if speed is None else speed
-        return self._on_the_road(
+        route = RouteContext(
             ego,
+            self._session,
             path,
             joined,
             departure,
             shape,
-            speed,
+            self._time_step,
             state.fastest,
             on_path(places, stops, path, joined, self._session.lanes),
         )
+        return self._on_the_road(route, speed)
 
     def _remark_on_stops(self, ego: WaitingEgo, served: int, stops: int) -> None:
         """Add a remark on what becomes of the stops of a vehicle that is taken over."""
@@ -119,20 +119,9 @@ class Entrance:
                 "drives on"
             )
 
-    def _on_the_road(
-        self,
-        ego: WaitingEgo,
-        path: EgoPath,
-        lane_path: LanePath,
-        departure: float,
-        shape: VehicleShape,
-        speed: float,
-        capable: float,
-        stops: Sequence[Stop] = (),
-    ) -> Ego:
-        route = RouteContext(
-            ego, self._session, path, lane_path, departure, shape, self._time_step, capable, stops
-        )
+    def _on_the_road(self, route: RouteContext, speed: float) -> Ego:
+        """The ego that departs on its route at ``speed`` [m/s]."""
+        ego, path, lane_path, departure = route.ego, route.path, route.lane_path, route.departure
         if route.profile is not None and not ego.recorded:
             ego.controller = make_controller(ego.config, self._time_step, route.fastest)
         ego.start(speed)
@@ -141,29 +130,24 @@ class Entrance:
             ego.id,
             path,
             departure,
-            shape.length,
-            crossings=self._session.lanes.crossings,
-            lights=lane_path.lights,
-            junctions=[
-                JunctionOnWay(one.entry, one.exit, one.waiting, one.movement.has_stop_sign)
-                for one in route.junctions
-            ],
-            stops=stops,
+            route.shape.length,
+            LawfulPlaces(
+                self._session.lanes.crossings,
+                lane_path.lights,
+                [
+                    JunctionOnWay(one.entry, one.exit, one.waiting, one.movement.has_stop_sign)
+                    for one in route.junctions
+                ],
+                route.stops,
+            ),
         )
         slope = Slope.through(lane_path.heights)
         if slope is not None and not ego.recorded:
             self._remark_on_slope(ego, slope)
-        return Ego(
-            ego,
-            path,
-            departure,
-            shape,
-            RuleSet.on(route),
-            path.length - departure if goal is None else goal,
-            self._time_step,
-            self._kerbs(route),
-            slope,
-        )
+        goal = path.length - departure if goal is None else goal
+        course = Course(path, departure, goal, slope)
+        rules, kerbs = RuleSet.on(route), self._kerbs(route)
+        return Ego(ego, course, route.shape, rules, self._time_step, kerbs)
 
     def _remark_on_slope(self, ego: WaitingEgo, slope: Slope) -> None:
         """Add a remark if the road is steep and the vehicle model ignores slopes."""

@@ -179,23 +179,24 @@ class Crossings:
         place = self._crossings[number]
         if not len(crowd):
             return False
-        u, w = place_on(crowd.position, place.kerb, place.along)
+        kerb, along, length, half_width = place.area
+        u, w = place_on(crowd.position, kerb, along)
         sure = _SURE if number == self._waits_for else 0.0
         reach = np.maximum(self._kerb_distance, (self._kerb_time + sure) * crowd.desired_speed)
-        near = is_near(u, w, place.length, place.half_width + reach, reach)
+        near = is_near(u, w, length, half_width + reach, reach)
         if not near.any():
             return False
         rows = np.flatnonzero(near)
-        u, aside = u[rows], np.maximum(np.abs(w[rows]) - place.half_width, 0.0)
-        use = use_of(crowd, rows, u, place.along, place.length)
+        u, aside = u[rows], np.maximum(np.abs(w[rows]) - half_width, 0.0)
+        use = use_of(crowd, rows, u, along, length)
         opened = is_open(self._states.get(place.system, ""), place.link, zebra=place.zebra)
-        turning = turning_in(crowd, rows, place.kerb, place.along, place.length, reach[rows])
+        turning = turning_in(crowd, rows, kerb, along, length, reach[rows])
         coming = (aside <= 0.0) & have_priority(use, opened)
         coming |= ~use.on & (turning != 0.0) & opened
         direction = np.where(turning != 0.0, turning, np.where(use.onward >= 0.0, 1.0, -1.0))
         pace = np.maximum(crowd.desired_speed[rows], 0.1)
         if opened and (coming & ~use.on).any():
-            to_kerb = np.where(direction > 0.0, -u, u - place.length) + aside
+            to_kerb = np.where(direction > 0.0, -u, u - length) + aside
             in_time = np.maximum(self._kerb_distance, pace * self._open_for(place))
             coming &= use.on | (to_kerb <= in_time)
         to_go = np.where(direction > 0.0, place.low - u, u - place.high) + aside

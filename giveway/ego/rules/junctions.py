@@ -22,6 +22,13 @@ _ONWARDS = 10.0  # distance [m] behind a junction after which joining paths coun
 _JOINED = 2.0  # distance [m] after the merge point at which a joining vehicle becomes a leader
 
 
+class Gaps(NamedTuple):
+    """The headways that the ego accepts at a junction."""
+
+    unsignalled: Gap  # headways without a light
+    at_lights: Gap  # headways at a green or yellow light
+
+
 class PathJunction(NamedTuple):
     """A junction that a path leads through. All stations are those of the path."""
 
@@ -32,8 +39,7 @@ class PathJunction(NamedTuple):
     movements: Mapping[int, Movement]  # all movements of the junction, by number
     conflicts: Mapping[int, Conflict]  # conflicts with the path; other stations from their lines
     beside: frozenset[int]  # numbers of the movements that stay clear of the path
-    gap: Gap  # headways that the ego accepts without a light
-    gap_at_lights: Gap  # headways that the ego accepts at a green or yellow light
+    gaps: Gaps
 
 
 class Approach(NamedTuple):
@@ -91,8 +97,10 @@ def junctions_on(
                     movements,
                     conflicts,
                     frozenset(beside),
-                    gap_of(own, at_lights=False, major=_is_major(own, movements)),
-                    gap_of(own, at_lights=True, major=False),
+                    Gaps(
+                        gap_of(own, at_lights=False, major=_is_major(own, movements)),
+                        gap_of(own, at_lights=True, major=False),
+                    ),
                 )
             )
     return tuple(found)

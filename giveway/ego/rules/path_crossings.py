@@ -18,17 +18,23 @@ _GRAIN = 0.5  # largest spacing [m] of the points of the outline
 _BESIDE = 0.8  # distance [m] from the ego's side to the centre of a person who is not in its way
 
 
+class MarkedArea(NamedTuple):
+    """The rectangle of a crossing about its middle line."""
+
+    kerb: Array  # one end (2,) [m] of the crossing's middle line
+    along: Array  # unit vector (2,) from this end to the other one
+    length: float  # distance [m] between the kerbs
+    half_width: float  # half width [m] of the crossing, with the margin at its sides
+
+
 class PathCrossing(NamedTuple):
     """A crossing that a path leads over, in the crossing's own coordinates."""
 
     entry: float  # station [m] of the front bumper from which on the body is on the crossing
     exit: float  # station [m] of the rear at which the body has left the crossing
-    kerb: Array  # one end (2,) [m] of the crossing's middle line
-    along: Array  # unit vector (2,) from this end to the other one
-    length: float  # distance [m] between the kerbs
-    half_width: float  # half width [m] of the crossing, with the margin at its sides
-    low: float  # distance [m] from `kerb` at which the ego's strip begins, for a person's centre
-    high: float  # distance [m] from `kerb` at which this strip ends
+    area: MarkedArea
+    low: float  # distance [m] from the kerb at which the ego's strip begins, for a person's centre
+    high: float  # distance [m] from the kerb at which this strip ends
     zebra: bool  # whether the crossing is a zebra
     system: str  # SUMO's id of its signal system; empty without one
     link: int  # index of its light in the system's state
@@ -71,10 +77,7 @@ def crossings_on(
                 PathCrossing(
                     float(stations[visit[0]]),
                     float(stations[visit[-1]]) - shape.length,
-                    kerb,
-                    along,
-                    length,
-                    crossing.width / 2 + ASIDE,
+                    MarkedArea(kerb, along, length, crossing.width / 2 + ASIDE),
                     float(swept.min()) - _BESIDE,
                     float(swept.max()) + _BESIDE,
                     crossing.zebra,

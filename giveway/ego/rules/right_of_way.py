@@ -216,7 +216,7 @@ class RightOfWay:
         before = front <= place.entry
         if before and letter in "sw" and not (first and self._halted):
             return line
-        gap = place.gap_at_lights if letter in "gGyY" else place.gap
+        gap = place.gaps.at_lights if letter in "gGyY" else place.gaps.unsignalled
         critical, follow_up = (
             usual if wanted is None else wanted
             for usual, wanted in zip(gap, self._gap, strict=True)

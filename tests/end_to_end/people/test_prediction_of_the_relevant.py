@@ -10,7 +10,7 @@ import pytest
 from controller import Manoeuvre
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
-from giveway.ego.ego import Ego
+from giveway.ego.ego import Course, Ego
 from giveway.ego.foresight.relevance import MARGIN
 from giveway.ego.perception.truth import Truth
 from giveway.ego.preparation import make_waiting_ego
@@ -49,7 +49,8 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
             with ExitStack() as stack:
                 waiting = make_waiting_ego(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
                 waiting.start(speed)
-                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, RuleSet(), 100.0, 0.05)
+                course = Course(EgoPath.through(BEND), 50.0, 100.0)
+                ego = Ego(waiting, course, shape, RuleSet(), 0.05)
                 poses = np.zeros((waiting.horizon, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
@@ -79,7 +80,8 @@ def test_people_left_out_hardly_change_a_manoeuvres_outcome(
             with ExitStack() as stack:
                 waiting = make_waiting_ego(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
                 waiting.start(speed)
-                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, RuleSet(), 100.0, 0.05)
+                course = Course(EgoPath.through(BEND), 50.0, 100.0)
+                ego = Ego(waiting, course, shape, RuleSet(), 0.05)
                 N = waiting.horizon
                 poses = np.zeros((N, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width

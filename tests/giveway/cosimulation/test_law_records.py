@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from giveway.cosimulation.law_records import LawRecords, way_of
+from giveway.cosimulation.law_records import LawfulPlaces, LawRecords, way_of
 from giveway.crowd.roster import Roster
 from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
@@ -23,7 +23,8 @@ def crossing(name, x, y=0.0):
 
 def test_what_lies_behind_the_ego_as_it_departs_is_left_out():
     for departure, count in ((24.0, 1), (30.0, 0)):
-        way = way_of("ego", PATH, departure, 5.0, crossings=[crossing("a", 20.0)], lights=[])
+        places = LawfulPlaces([crossing("a", 20.0)], [])
+        way = way_of("ego", PATH, departure, 5.0, places)
         assert len(way.crossings) == count
 
 
@@ -33,10 +34,12 @@ def test_all_places_on_the_way_are_noted_in_its_order():
         PATH,
         5.0,
         5.0,
-        crossings=[crossing("b", 40.0), crossing("a", 20.0), crossing("c", 20.0, y=30.0)],
-        lights=[Light(17.0, "tls", 1)],
-        junctions=[JunctionOnWay(18.0, 30.0, (25.0,), stop_sign=True)],
-        stops=[Stop(48.0, 50.0, 10.0, -np.inf)],
+        LawfulPlaces(
+            crossings=[crossing("b", 40.0), crossing("a", 20.0), crossing("c", 20.0, y=30.0)],
+            lights=[Light(17.0, "tls", 1)],
+            junctions=[JunctionOnWay(18.0, 30.0, (25.0,), stop_sign=True)],
+            stops=[Stop(48.0, 50.0, 10.0, -np.inf)],
+        ),
     )
     assert [place.lane for place in way.crossings] == ["a", "b"]
     assert way.crossings[0].ends == ((20.0, 3.5), (20.0, -3.5))

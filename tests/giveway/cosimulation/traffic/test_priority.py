@@ -7,7 +7,7 @@ import pytest
 
 from giveway.cosimulation.traffic.priority import rooms_before
 from giveway.ego.rules.gap_acceptance import MINOR_STRAIGHT, PERMITTED
-from giveway.ego.rules.junctions import Approach, PathJunction
+from giveway.ego.rules.junctions import Approach, Gaps, PathJunction
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.network.junction_links import Movement
@@ -35,8 +35,8 @@ def ego(
     own = movement(OWN, "M", set(), 0 if lights else -1)
     other = movement(OTHER, "m", set(its), 1 if lights else -1)
     where = {OTHER: Conflict(55.0, 60.0, 4.0, 8.0)}
-    gaps = MINOR_STRAIGHT, PERMITTED
-    place = PathJunction(50.0, 65.0, (), own, {OWN: own, OTHER: other}, where, frozenset(), *gaps)
+    gaps = Gaps(MINOR_STRAIGHT, PERMITTED)
+    place = PathJunction(50.0, 65.0, (), own, {OWN: own, OTHER: other}, where, frozenset(), gaps)
     return SimpleNamespace(
         id="ego",
         front=front,

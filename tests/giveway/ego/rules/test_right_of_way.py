@@ -8,7 +8,7 @@ from support.situations import stop_of, tell
 
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.gap_acceptance import MINOR_STRAIGHT, PERMITTED
-from giveway.ego.rules.junctions import Approach, PathJunction
+from giveway.ego.rules.junctions import Approach, Gaps, PathJunction
 from giveway.ego.rules.right_of_way import RightOfWay
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.yielding import STOP_BEFORE
@@ -53,8 +53,8 @@ def junction(
     )
     where = Conflict(55.0, 60.0, 4.0, 8.0)
     movements, conflicts = {OWN: own, OTHER: other}, {OTHER: where}
-    gaps = MINOR_STRAIGHT, PERMITTED
-    return PathJunction(ENTRY, 65.0, waiting, own, movements, conflicts, beside, *gaps)
+    gaps = Gaps(MINOR_STRAIGHT, PERMITTED)
+    return PathJunction(ENTRY, 65.0, waiting, own, movements, conflicts, beside, gaps)
 
 
 def other(distance: float, speed: float = 10.0, standing: float = 0.0) -> Approach:
