@@ -44,13 +44,17 @@ def _load_support() -> None:
 
 _load_support()
 pytest_plugins = [
+    "support.any_scenario",
     "support.browser",
     "support.clips",
     "support.commands",
     "support.plug_ins",
+    "support.replay_pages",
     "support.running",
     "support.runs",
     "support.scenarios",
+    "support.simple_car",
+    "support.streets",
     "support.studies",
 ]
 

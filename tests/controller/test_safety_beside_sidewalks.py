@@ -18,7 +18,6 @@ from controller import (
     SafetyLayer,
     SafetyParameters,
 )
-from controller.kernels import towards_kerb
 from controller.safety.worst_motion import RECORDED
 
 DT, R, HALF = 0.05, 0.27, 1.0
@@ -181,23 +180,6 @@ def test_a_walker_along_a_kerb_is_passed_at_thirty_km_per_hour():
     assert acts(np.zeros((1, 3)))
     assert not acts(behind)
     assert acts(behind, np.array([[0.3, 1.2]]))  # who heads for the road is braked for
-
-
-@given(
-    pace=st.floats(-2.0, 2.0),
-    depth=st.floats(0.01, 3.0),
-    first=st.floats(0.0, 2.0),
-    rest=st.floats(0.0, 2.0),
-)
-def test_the_later_reachable_set_lies_in_the_earlier_one(pace, depth, first, rest):
-    """Why it stays safe: the next reachable sets lie in the present ones."""
-    limits = WORST.setting_out, WORST.acceleration
-    now = towards_kerb(first + rest, pace, depth, *limits)
-    gone = towards_kerb(first, pace, depth, *limits)
-    if gone < depth:
-        then = pace + WORST.setting_out * first
-        later = gone + towards_kerb(rest, then, depth - gone, *limits)
-        assert later == pytest.approx(now, abs=1e-6)
 
 
 def test_a_bound_of_nothing_is_refused():

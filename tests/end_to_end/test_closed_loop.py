@@ -16,7 +16,7 @@ from controller import (
     SpeedController,
 )
 from giveway.api import RunResult
-from giveway.run_data.progress import Ending, Progress
+from giveway.run_data.progress import Ending
 from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles
 
 Run = Callable[..., RunResult]
@@ -278,34 +278,3 @@ def test_the_scenarios_end_ends_the_run(run_once: Run) -> None:
     result = run_once(ego={"depart_time": 119.0}, crowd={"pedestrians": 0})
     assert result.ending is Ending.SCENARIO_END
     assert result.ego_track.time[-1] == pytest.approx(120.0)
-
-
-def test_a_departure_after_the_scenarios_end_is_refused() -> None:
-    with pytest.raises(giveway.GivewayError, match=r"--ego-depart-time 300.*ends at 120 s"):
-        giveway.run({"ego": {"depart_time": 300.0}})
-
-
-def test_a_pavement_is_no_lane_for_the_ego() -> None:
-    with pytest.raises(giveway.GivewayError, match=r"eastbound_0.*not for cars.*\[1\]"):
-        giveway.run({"scenario": "street", "ego": {"lane": 0}})
-
-
-def test_an_ego_id_that_a_pedestrian_has_is_refused() -> None:
-    with pytest.raises(giveway.GivewayError, match="ped3"):
-        giveway.run({"ego": {"id": "ped3"}})
-
-
-def test_who_has_arrived_is_gone_from_sumo_too() -> None:
-    import libsumo
-
-    mirrored: list[int] = []
-
-    def count(progress: Progress) -> None:
-        if progress.time > 0.0:
-            mirrored.append(len(libsumo.person.getIDList()) - progress.pedestrians)
-
-    result = giveway.run(
-        {"seed": 2, "crowd": {"pedestrians": 12, "walk": (0.0, 6.0)}}, watcher=count
-    )
-    assert result.manifest["pedestrians"]["arrived"] > 0
-    assert set(mirrored) == {0}

@@ -7,13 +7,10 @@ A0--B0--C0
 
 from __future__ import annotations
 
-import os
-import subprocess
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-import sumo
+from support.streets import EASTWARDS, NOBODY, ROUTE
 
 import giveway
 from giveway.errors import ScenarioError
@@ -23,40 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     Scenario = Callable[..., str]
-
-EASTWARDS = ["A0B0", "B0C0"]
-ROUTE = '<route edges="A0B0 B0C0"/>'
-NOBODY = {"crowd": {"zone": "none"}}
-
-
-@pytest.fixture(scope="module")
-def streets(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("streets")
-    home = Path(sumo.SUMO_HOME)
-    command = [home / "bin" / "netgenerate", "--grid", "--grid.number", "3"]
-    command += ["--grid.length", "100", "--default.lanenumber", "2", "-o", "net.net.xml"]
-    environment = os.environ | {"SUMO_HOME": str(home)}
-    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
-    return folder
-
-
-@pytest.fixture
-def scenario(streets: Path, tmp_path: Path) -> Scenario:
-    """Write a scenario of these routes; its path."""
-
-    def write(routes: str, *, step: float = 1.0, end: float = 120.0) -> str:
-        config = tmp_path / "streets.sumocfg"
-        (tmp_path / "routes.rou.xml").write_text(f"<routes>{routes}</routes>")
-        config.write_text(
-            f"""<configuration>
-            <net-file value="{streets / "net.net.xml"}"/>
-            <route-files value="routes.rou.xml"/>
-            <end value="{end}"/> <step-length value="{step}"/>
-            </configuration>"""
-        )
-        return str(config)
-
-    return write
 
 
 @pytest.mark.parametrize(
@@ -70,13 +33,14 @@ def scenario(streets: Path, tmp_path: Path) -> Scenario:
 )
 @pytest.mark.parametrize("departure", ["0", "stop"])
 def test_the_stops_of_a_vehicle_that_is_taken_over_are_left_out(
-    scenario: Scenario, stop: str, departure: str
+    street_scenario: Scenario, stop: str, departure: str
 ) -> None:
     if departure == "stop" and "B0C0" in stop:
         departure = "0"
     car = f'<vehicle id="car" depart="0" departPos="{departure}">{ROUTE}<stop {stop}/></vehicle>'
     result = giveway.run(
-        {"scenario": scenario(car), "ego": {"take_over": ("car",), "travel_distance": 120}} | NOBODY
+        {"scenario": street_scenario(car), "ego": {"take_over": ("car",), "travel_distance": 120}}
+        | NOBODY
     )
     assert result.completed
     assert any("'car': its 1 stop(s) are left out" in remark for remark in result.remarks)
@@ -84,20 +48,22 @@ def test_the_stops_of_a_vehicle_that_is_taken_over_are_left_out(
 
 
 @pytest.mark.parametrize("step", [0.0333, 0.0335])
-def test_a_step_is_rounded_to_milliseconds_as_by_sumo(scenario: Scenario, step: float) -> None:
+def test_a_step_is_rounded_to_milliseconds_as_by_sumo(
+    street_scenario: Scenario, step: float
+) -> None:
     ego = {"route": EASTWARDS, "travel_distance": 5}
-    result = giveway.run({"scenario": scenario("", step=step), "ego": ego} | NOBODY)
+    result = giveway.run({"scenario": street_scenario("", step=step), "ego": ego} | NOBODY)
     assert result.completed
     assert result.manifest["time_step"] == result.manifest["sumo"]["step_length"]
 
 
 def test_an_endless_scenario_waits_for_all_egos_to_be_inserted(
-    scenario: Scenario,
+    street_scenario: Scenario,
 ) -> None:
     egos = ({"ego": {"id": "first"}}, {"ego": {"id": "second", "depart_time": 40}})
     result = giveway.run(
         {
-            "scenario": scenario("", end=-1),
+            "scenario": street_scenario("", end=-1),
             "ego": {"route": EASTWARDS, "travel_distance": 10},
             "egos": egos,
         }
@@ -107,20 +73,7 @@ def test_an_endless_scenario_waits_for_all_egos_to_be_inserted(
     assert result.egos[1].track.time[0] == 40
 
 
-def test_an_endless_scenario_ends_when_the_path_stays_blocked(
-    scenario: Scenario, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("giveway.cosimulation.standstill.LONGEST", 20.0)  # an hour, in earnest
-    stop = '<stop lane="A0B0_0" endPos="40" duration="1000000"/>'
-    broken_down = f'<vehicle id="broken" depart="0" departLane="0">{ROUTE}{stop}</vehicle>'
-    ego = {"route": EASTWARDS, "lane": 0, "depart_time": 30}
-    result = giveway.run({"scenario": scenario(broken_down, end=-1), "ego": ego} | NOBODY)
-    assert result.ending is Ending.TIME_LIMIT
-    assert result.ego_track.speed[-1] == 0
-    assert any("no ego moved for 20 s" in remark for remark in result.remarks)
-
-
-def test_an_ego_cannot_have_the_name_of_a_vehicle_yet_to_depart(scenario: Scenario) -> None:
+def test_an_ego_cannot_have_the_name_of_a_vehicle_yet_to_depart(street_scenario: Scenario) -> None:
     car = f'<vehicle id="ego" depart="20">{ROUTE}</vehicle>'
     with pytest.raises(ScenarioError, match=r"--ego-id ego: .*choose another"):
-        giveway.run({"scenario": scenario(car), "ego": {"route": EASTWARDS}} | NOBODY)
+        giveway.run({"scenario": street_scenario(car), "ego": {"route": EASTWARDS}} | NOBODY)

@@ -303,26 +303,6 @@ def test_a_selection_joined_with_the_others_is_everybody(lengths, bits):
         )
 
 
-def test_a_signal_beyond_those_given_is_named_not_read():
-    crowd = at_the_kerb(2)
-    message = r"pedestrian 0: a way-point has signal 1, but surroundings.closed has 1"
-    short = Surroundings(closed=np.array([True]))
-    with pytest.raises(SurroundingsError, match=message):
-        CrowdModel().step(crowd, NOBODY, short)
-    with pytest.raises(SurroundingsError, match=message):
-        forces_apart(CrowdModel(), crowd, NOBODY, short)
-    with pytest.raises(SurroundingsError, match=message):
-        Predictor().predict(crowd, np.zeros((15, 0, 7)), short)
-    with pytest.raises(SurroundingsError, match="has 0: give one for each signal"):
-        CrowdModel().step(crowd, NOBODY, OPEN_GROUND)
-
-
-@pytest.mark.parametrize("closed", [[True], np.zeros(2), np.zeros((1, 2), dtype=bool)])
-def test_closed_is_an_array_of_bool(closed):
-    with pytest.raises(SurroundingsError, match="expected a contiguous array of bool"):
-        Surroundings(closed=closed)
-
-
 @pytest.mark.parametrize(
     ("features", "message"),
     [
@@ -343,3 +323,17 @@ def test_bad_passages_and_signals_are_refused_by_index_and_value(features, messa
 def test_a_direction_put_in_by_hand_has_length_one():
     with pytest.raises(CrowdError, match=r"waypoint_passage\[0\] has direction \[2.0, 0.0\]"):
         replace(at_the_kerb(1), waypoint_passage=np.array([(2.0, 0.0, 1.0)] + [(0.0,) * 3] * 2))
+
+
+def test_a_signal_beyond_those_given_is_named_not_read():
+    crowd = at_the_kerb(2)
+    message = r"pedestrian 0: a way-point has signal 1, but surroundings.closed has 1"
+    short = Surroundings(closed=np.array([True]))
+    with pytest.raises(SurroundingsError, match=message):
+        CrowdModel().step(crowd, NOBODY, short)
+    with pytest.raises(SurroundingsError, match=message):
+        forces_apart(CrowdModel(), crowd, NOBODY, short)
+    with pytest.raises(SurroundingsError, match=message):
+        Predictor().predict(crowd, np.zeros((15, 0, 7)), short)
+    with pytest.raises(SurroundingsError, match="has 0: give one for each signal"):
+        CrowdModel().step(crowd, NOBODY, OPEN_GROUND)

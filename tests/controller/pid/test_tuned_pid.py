@@ -20,7 +20,6 @@ from controller import (
     TunedPid,
     TunedPidParameters,
 )
-from controller.pid.speed_reference import stoppable
 from fmus import VehicleFmu, bundled_fmu
 
 DT = 0.05  # [s]
@@ -233,22 +232,6 @@ def test_reset_forgets_all():
     assert [pid.control(speed, 12.0) for speed in (3.0, 2.0, 4.0)] == first
 
 
-@pytest.mark.parametrize("profile", PROFILES)
-@given(gaps=st.tuples(st.floats(-5.0, 100.0), st.floats(-5.0, 100.0)), limit=st.floats(0.0, 9.0))
-def test_the_profile_never_falls_with_the_gap_or_passes_limits(profile, gaps, limit):
-    pid = TunedPid(TunedPidParameters(reference=ReferenceParameters(profile=profile)))
-    near, far = (pid.reference_speed(gap, limit) for gap in (min(gaps), max(gaps)))
-    assert 0.0 <= near <= far <= min(4.0, limit)
-    assert pid.reference_speed(8.0) == 0.0
-    assert pid.reference_speed(math.inf) == 4.0
-
-
-@given(room=st.floats(0.0, 1e3), rate=st.floats(0.1, 10.0), lag=st.floats(0.05, 2.0))
-def test_gipps_speed_stops_within_the_room(room, rate, lag):
-    v = stoppable(room, rate, lag)
-    assert v * lag + v * v / (2.0 * rate) == pytest.approx(room, rel=1e-6, abs=1e-9)
-
-
 @pytest.mark.parametrize("mass", [700.0, 1500.0, 12_000.0])
 def test_the_gains_scale_with_the_plant(mass):
     """Its closed loop's poles are where bandwidth and damping say, whatever it drives."""
@@ -292,12 +275,3 @@ def test_refuses_what_is_no_number(speed, gap):
 def test_refuses_senseless_parameters(name):
     with pytest.raises(ParameterError, match=f"{name} = -1.0: expected a finite number > 0"):
         TunedPidParameters(**{name: -1.0})
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("deceleration", 0.0), ("approach_lag", math.nan), ("jerk", math.inf), ("profile", "cubic")],
-)
-def test_refuses_senseless_references(name, value):
-    with pytest.raises(ParameterError, match=f"{name} = {value}: expected"):
-        ReferenceParameters(**{name: value})

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import functools
-import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-import libsumo
-import numpy as np
-import pytest
 import shapely
 
 import giveway
-from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,8 +16,6 @@ if TYPE_CHECKING:
     from giveway.walkways import WalkNetwork
 
 Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
-SQUARE = "60,60 240,60 240,240 60,240"
-NO_EGO = {"none": True}
 
 
 def adds_up(ledger: dict[str, int]) -> bool:
@@ -36,56 +28,6 @@ def share_within(area: shapely.Geometry, margin: float, result: RunResult) -> fl
     shapely.prepare(grown)
     crowd = result.crowd_track
     return float(shapely.contains_xy(grown, crowd.x, crowd.y).mean())
-
-
-@pytest.fixture(scope="module")
-def departed_alone(
-    city: Callable[[float], Path],
-    call_sumo: Callable[..., str],
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Callable[[float], set[str]]:
-    """Who sets out on foot up to a time [s] in a city that SUMO runs without us; run once each."""
-    folder = tmp_path_factory.mktemp("alone")
-
-    @functools.cache
-    def people(until: float) -> set[str]:
-        fcd = folder / "fcd.xml"
-        plain = ("sumo", "-c", city(0.1), "--end", f"{until}", "--fcd-output", fcd)
-        call_sumo(*plain, "--no-step-log", "--no-warnings", cwd=folder)
-        return set(re.findall(r'<person id="([^"]+)"', fcd.read_text()))
-
-    return people
-
-
-@pytest.mark.parametrize(
-    ("zone", "ego"),
-    [("everywhere", "car10"), ("40", "car10"), (SQUARE, "car10"), (SQUARE, ""), ("none", "")],
-)
-def test_nobody_is_lost_frozen_or_there_twice(
-    drive: Drive,
-    city: Callable[[float], Path],
-    departed_alone: Callable[[float], set[str]],
-    zone: str,
-    ego: str,
-) -> None:
-    config = {"ego": {"take_over": (ego,)} if ego else NO_EGO, "crowd": {"zone": zone}}
-    result, look = drive(city(0.1), time_limit=60.0, controller="pid-paper", **config)
-    ledger = result.manifest["pedestrians"]
-    assert adds_up(ledger)
-    assert (ledger["taken_over"] > 20) is (zone != "none")
-    assert (ledger["handed_back"] > 0) is (zone in {"40", SQUARE})
-    # Whom SUMO has is who has departed and not arrived, at every step; and it is who departs in
-    # a SUMO left alone.
-    assert max(look.departed.values()) == max(look.arrived.values(), default=1) == 1
-    present = set(look.people[-1])
-    assert present == set(look.departed) - set(look.arrived)
-    assert departed_alone(look.times[-1]) == set(look.departed)
-    assert look.ours[-1] == ledger["walking"] <= len(present)
-    # Whom we have walked for 40 s has come somewhere.
-    for name, (x, y) in look.people[-401].items():
-        if name in present and name in set(result.crowd_track.ids):
-            places = np.array([p[name] for p in look.people[-400:] if name in p])
-            assert np.hypot(*(places - (x, y)).T).max() > 0.05, name
 
 
 def test_people_stay_where_people_walk(
@@ -109,63 +51,6 @@ def test_with_walls_nobody_leaves_the_walkways(
     assert adds_up(result.manifest["pedestrians"])
 
 
-PLANS = """
-    <vehicle id="car" depart="0"><route edges="A2B2 B2C2 C2D2"/></vehicle>
-    <person id="walker" depart="0"><walk edges="A0B0 B0C0" departPos="5" arrivalPos="20"/></person>
-    <person id="shopper" depart="0"><walk edges="A1B1" arrivalPos="12"/>
-        <stop edge="A1B1" duration="15"/><walk edges="A1B1" arrivalPos="40"/></person>
-    <person id="waiting" depart="0"><stop edge="A1B1" endPos="30" duration="60"/>
-        <walk edges="A1B1" arrivalPos="70"/></person>
-    <person id="rider" depart="triggered"><ride from="A2B2" to="C2D2" lines="car"/>
-        <walk edges="C2D2" arrivalPos="70"/></person>
-    <person id="late" depart="500"><walk edges="A0B0" arrivalPos="20"/></person>
-"""
-
-
-def test_who_waits_rides_or_has_not_departed_is_left_alone(scenario: Callable[..., Path]) -> None:
-    config, ours, places = scenario(PLANS), {}, {}
-
-    def look(progress: Any) -> None:
-        now = round(libsumo.simulation.getTime(), 3)
-        for name in libsumo.person.getIDList():
-            stage = libsumo.person.getStage(name).type
-            places.setdefault(name, {})[now] = (stage, libsumo.person.getPosition(name))
-
-    result = giveway.run(
-        {"scenario": str(config), "ego": NO_EGO, "crowd": {"zone": "everywhere"}}, watcher=look
-    )
-    for k, i in zip(result.crowd_track.step, result.crowd_track.pedestrian, strict=True):
-        ours.setdefault(result.crowd_track.ids[i], set()).add(round(float(result.time[k]), 2))
-    assert set(ours) == {"walker", "shopper", "waiting", "rider"}
-    for name, times in ours.items():
-        walking = {round(t, 2) for t, (stage, _) in places[name].items() if stage == 2}
-        other = {round(t, 2) for t, (stage, _) in places[name].items() if stage != 2}
-        assert not times & other
-        assert walking
-    assert min(ours["waiting"]) >= 60.0
-    assert min(ours["rider"]) > 20.0
-    # The shopper walks, stops for 15 s by itself, and walks again.
-    pause = sorted(ours["shopper"])
-    assert max(np.diff(pause)) == pytest.approx(15.0, abs=1.0)
-    ledger = result.manifest["pedestrians"]
-    assert adds_up(ledger)
-    assert (ledger["taken_over"], ledger["arrived"], ledger["continued"]) == (5, 4, 1)
-
-
-def test_who_is_handed_back_arrives_in_the_end(drive: Drive, scenario: Callable[..., Path]) -> None:
-    people = "".join(
-        f'<person id="p{i}" depart="{i}"><walk from="A1B1" to="{goal}"/></person>'
-        for i, goal in enumerate(["C1D1", "B1B2", "C1C0", "B2C2", "B1A1", "B0B1"] * 3)
-    )
-    zone = "140,140 60,140 60,60 140,60"  # round B1
-    config = scenario(people, end=1500, step=1)
-    result, look = drive(config, ego=NO_EGO, crowd={"zone": zone}, record={"far_period": 10.0})
-    ledger = result.manifest["pedestrians"]
-    assert adds_up(ledger)
-    assert ledger["handed_back"] >= 6
-    assert look.arrived == {f"p{i}": 1 for i in range(18)}
-
-
 def test_two_runs_are_the_same_to_the_byte(city: Callable[[float], Path], tmp_path: Path) -> None:
     config = {
         "scenario": str(city(1)),
@@ -179,41 +64,3 @@ def test_two_runs_are_the_same_to_the_byte(city: Callable[[float], Path], tmp_pa
         one, other = ((tmp_path / name / f"{table}.csv").read_bytes() for name in ("one", "other"))
         assert one == other
     assert (tmp_path / "one" / "trajectories.csv").stat().st_size > 50_000
-
-
-def test_somebody_elses_move_of_our_walkers_is_noticed(city: Callable[[float], Path]) -> None:
-    seen: list[str] = []
-    native = libsumo.libsumo._libsumo
-    step = native.simulation_step
-
-    def meddle(*arguments: Any) -> Any:
-        done = step(*arguments)
-        if libsumo.simulation.getTime() > 113.0 and not seen:
-            seen.append("ped0")
-            libsumo.person.moveTo("ped0", libsumo.person.getLaneID("ped0"), 3.0)
-        return done
-
-    config = {"ego": {"take_over": ("car10",)}, "crowd": {"zone": "everywhere"}}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(native, "simulation_step", meddle)
-        with pytest.raises(giveway.GivewayError, match=r"person 'ped0' at 11.*away from our state"):
-            giveway.run({"scenario": str(city(0.1)), "time_limit": 10.0, **config})
-
-
-def test_pedestrians_of_ours_join_those_of_the_scenario(
-    drive: Drive, city: Callable[[float], Path]
-) -> None:
-    crowd = {
-        "zone": "30",
-        "pedestrians": 10,
-        "spawn_area": (120.0, 88.0, 180.0, 94.0),
-        "walk": (0.0, 18.0),
-        "host_edge": "B1C1",
-    }
-    result, look = drive(city(0.1), ego={"take_over": ("car10",)}, crowd=crowd, time_limit=20.0)
-    ledger = result.manifest["pedestrians"]
-    assert adds_up(ledger)
-    assert ledger["added"] == 10
-    assert ledger["taken_over"] > 0
-    assert result.ending is Ending.TIME_LIMIT
-    assert look.ours[-1] == ledger["walking"]

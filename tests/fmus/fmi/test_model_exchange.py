@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
-from itertools import pairwise
-from math import cos, exp, log, sin, tanh
+from math import exp, log, tanh
 
-import numpy as np
 import pytest
 
 from fmus import FmuStartError
 from fmus.fmi import cvode
-from fmus.fmi.continuous import IntegrationError, UndefinedError, locate
-from fmus.fmi.cvode import Cvode
-from fmus.fmi.runge_kutta import RungeKutta
 
 H = 0.05  # [s]
 SOLVERS = [
@@ -163,11 +157,6 @@ def test_a_gear_shifts_at_a_speed(drive):
     assert 0.5 < car.outputs[0] < 0.8
 
 
-def test_a_crossing_is_found_to_the_resolution():
-    at = locate(lambda t: t * t > 2.0, 0.0, 2.0, 1e-12)
-    assert 0.0 <= at - 2.0**0.5 <= 1e-12
-
-
 # ---- what goes wrong ----
 
 
@@ -194,105 +183,6 @@ def test_an_event_iteration_without_end(drive):
 
 
 # ---- the solvers alone ----
-
-
-class Oscillator:
-    """x'' = -x, with states x and x'."""
-
-    nx, nz = 2, 0
-    wrong_from = 99.0  # [s]
-
-    def derivatives(self, time, x, slope):
-        (a, b), out = ((ctypes.c_double * 2).from_address(p) for p in (x, slope))
-        out[0], out[1] = b, -a
-        if time > self.wrong_from:
-            raise UndefinedError("too late")
-
-    def undefined(self, slope, time):
-        return "" if np.isfinite(slope).all() else "odd"
-
-
-def integrated(solver, end):
-    solver.restart(0.0, np.array([0.0, 1.0]), np.ones(2))
-    time = 0.0
-    while time < end:
-        time = solver.step(end)
-    return solver.x
-
-
-def test_runge_kutta_is_of_order_four():
-    errors = []
-    for h in (0.2, 0.1, 0.05):
-        solver, x = RungeKutta(Oscillator(), 1e-6), np.array([0.0, 1.0])
-        for k in range(round(4.0 / h)):
-            x = solver._classical(k * h, x, h)
-        errors.append(abs(x[0] - sin(4.0)))
-    orders = [log(coarse / fine, 2) for coarse, fine in pairwise(errors)]
-    assert orders == pytest.approx([4.0, 4.0], abs=0.15)
-
-
-class Clock:
-    """x' = 4 t^3, a function of the time alone, which Runge-Kutta's weights (Simpson's) know."""
-
-    nx, nz = 1, 0
-
-    def derivatives(self, time, x, slope):
-        ctypes.c_double.from_address(slope).value = 4.0 * time**3
-
-    def undefined(self, slope, time):
-        return ""
-
-
-def test_every_stage_of_a_step_has_its_time():
-    solver = RungeKutta(Clock(), 1e-6)
-    solver.restart(1.0, np.array([1.0]), np.ones(1))
-    time = 1.0
-    while time < 3.0:
-        time = solver.step(3.0)
-        assert solver.x[0] == pytest.approx(time**4, rel=1e-13)
-
-
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
-@pytest.mark.parametrize("kind", [RungeKutta, Cvode])
-def test_the_error_follows_the_tolerance(kind, tolerance):
-    if kind is Cvode and not cvode.available():
-        pytest.skip("no SUNDIALS here")
-    solver = kind(Oscillator(), tolerance)
-    try:
-        x = integrated(solver, 4.0)
-        assert x == pytest.approx([sin(4.0), cos(4.0)], abs=10 * tolerance)
-    finally:
-        solver.close()
-
-
-@pytest.mark.parametrize("kind", [RungeKutta, Cvode])
-def test_states_between_two_steps(kind):
-    if kind is Cvode and not cvode.available():
-        pytest.skip("no SUNDIALS here")
-    solver = kind(Oscillator(), 1e-8)
-    try:
-        solver.restart(0.0, np.array([0.0, 1.0]), np.ones(2))
-        time = before = 0.0
-        for _ in range(20):
-            before, time = time, solver.step(3.0)
-        middle = 0.5 * (before + time)
-        assert solver.at(middle) == pytest.approx([sin(middle), cos(middle)], abs=1e-6)
-    finally:
-        solver.close()
-
-
-@pytest.mark.parametrize("kind", [RungeKutta, Cvode])
-def test_a_point_that_cannot_be_passed_ends_the_integration(kind):
-    if kind is Cvode and not cvode.available():
-        pytest.skip("no SUNDIALS here")
-    system = Oscillator()
-    system.wrong_from = 1.0
-    solver = kind(system, 1e-6)
-    try:
-        with pytest.raises(IntegrationError, match=r"too late; no step from (0.999|1 s)"):
-            integrated(solver, 2.0)
-    finally:
-        solver.close()
 
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])

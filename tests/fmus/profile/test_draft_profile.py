@@ -15,7 +15,6 @@ from fmus.description import units
 from fmus.description.model import Interface, Kind, Unit, Variable
 from fmus.description.reading import read_model
 from fmus.profile.draft_profile import draft_profile, require_confident
-from fmus.profile.matching import words_of
 from fmus.profile.vehicle_profile import make_profile
 
 # ---- what is sure ----
@@ -246,18 +245,3 @@ def test_a_draft_without_questions_is_a_profile(inputs, outputs):
     profile = make_profile(tomllib.loads(draft.toml), "draft")
     assert profile == require_confident(draft, PATH)
     assert "# ?" not in draft.toml
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("tractiveForce", ["tractive", "force"]),
-        ("F_x", ["f", "x"]),
-        ("v0", ["v", "0"]),
-        ("vehicle.body.v_ref", ["v", "ref"]),
-        ("APPSPosition", ["apps", "position"]),
-        ("Ego Speed (km/h)", ["ego", "speed", "km", "h"]),
-    ],
-)
-def test_words_of_a_name(name, words):
-    assert words_of(name) == words

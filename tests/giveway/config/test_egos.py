@@ -7,7 +7,6 @@ from pydantic import ValidationError
 
 from giveway.config import RunConfig
 from giveway.config.files.layers import Layer, build_config, dump_toml
-from giveway.config.files.loading import load
 from giveway.errors import ConfigError
 
 
@@ -48,23 +47,6 @@ def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
 def test_a_wrong_ego_entry_is_named(entry: dict, expected: str) -> None:
     with pytest.raises(ConfigError, match=expected):
         build_config([Layer("study.toml", {"egos": [entry]})])
-
-
-def test_contradictory_egos_are_refused_if_one_origin_names_both() -> None:
-    flags = {"ego": {"take_over": "5", "route": "a,b"}}
-    with pytest.raises(ConfigError, match="--ego and --ego-route: contradict"):
-        load([Layer("command line", flags, from_flags=True)])
-    with pytest.raises(ConfigError, match=r"take_over and .* none: contradict"):
-        load([Layer("study.toml", {"ego": {"take_over": "5", "none": True}})])
-    config, _ = load([Layer("", {"scenario": "street", "ego": {"take_over": "x"}})])
-    assert config.each_ego()[0].ego_id == "x"  # the scenario's own route gives way
-
-
-def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
-    """What is written down can be read again: the two kinds of ego would contradict each other."""
-    config, _ = load([Layer("user", {"scenario": "shared_space", "ego": {"take_over": ["car"]}})])
-    assert config.ego.route == ()
-    assert load([Layer("again", config.model_dump())])[0] == config
 
 
 def test_unfit_settings_of_one_ego_are_told_in_one_line():

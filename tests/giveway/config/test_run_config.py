@@ -1,11 +1,8 @@
 """The configuration: layers, validation in one line, and the round trip through TOML."""
 
-import tomllib
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import giveway
 from giveway.config import EgoRunConfig, RunConfig
@@ -13,14 +10,10 @@ from giveway.config.files.layers import (
     Layer,
     Option,
     build_config,
-    dump_toml,
-    flag_of,
     options,
-    read_toml,
 )
-from giveway.config.files.loading import as_layer, load
 from giveway.config.tables.controllers import PaperMpcOptions
-from giveway.errors import ConfigError, GivewayError, ScenarioError
+from giveway.errors import ConfigError, GivewayError
 
 
 def explain(values: dict, *, flags: bool = False) -> str:
@@ -39,49 +32,6 @@ def test_defaults_are_the_papers_table() -> None:
     assert (own.integral_gain, own.derivative_gain) == (10, 100)
     assert (config.reference_speed, config.regulation.safe_distance) == (4, 8)
     assert own.buffer_distance == config.buffer_distance == 10
-
-
-def test_toml_round_trip_is_exact() -> None:
-    config = RunConfig.model_validate(
-        {"seed": 7, "crowd": {"spawn_area": (0.1, 0.2, 3, 4)}, "sumo": {"step_length": 0.1}}
-    )
-    again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
-    assert again == config
-
-
-@given(
-    seed=st.integers(0, 2**31 - 1),
-    mass=st.floats(10, 1e6),
-    speed=st.floats(0, 70),
-    two_sided=st.booleans(),
-)
-def test_toml_round_trip_of_any_numbers(
-    seed: int, mass: float, speed: float, two_sided: bool
-) -> None:
-    values = {
-        "seed": seed,
-        "controller": "pid",  # the MPC's speed limits bound the initial speed
-        "vehicle": {"mass": mass},
-        "ego": {"initial_speed": speed},
-        "crowd": {"two_sided": two_sided},
-    }
-    config = RunConfig.model_validate(values)
-    assert build_config([Layer("dump", tomllib.loads(dump_toml(config)))]) == config
-
-
-def test_every_option_has_its_own_flag_and_a_meaning() -> None:
-    flags = [option.flag for option in options()]
-    assert len(flags) == len(set(flags))
-    assert all(option.field.description for option in options())
-    assert flag_of(("crowd", "pedestrians")) == "--pedestrians"
-    assert flag_of(("crowd", "sampler")) == "--sampler"
-
-
-def test_later_layers_win_key_by_key() -> None:
-    below = Layer("a", {"seed": 1, "vehicle": {"mass": 2000, "force_limit": 5000}})
-    above = Layer("b", {"vehicle": {"mass": 3000}})
-    config = build_config([below, above])
-    assert (config.seed, config.vehicle.mass, config.vehicle.force_limit) == (1, 3000, 5000)
 
 
 @pytest.mark.parametrize(
@@ -169,38 +119,6 @@ def test_a_bad_flag_is_named_as_a_flag() -> None:
     assert "--groups" in explain({"crowd": {"groups": "1.5"}}, flags=True)
 
 
-@pytest.mark.parametrize(
-    ("content", "part"),
-    [("seed = ", "not valid TOML"), ("\xff\xfe", "not UTF-8"), (None, "no such file")],
-)
-def test_an_unreadable_file_is_named(tmp_path: Path, content: str | None, part: str) -> None:
-    path = tmp_path / "study.toml"
-    if content is not None:
-        path.write_bytes(content.encode("latin-1"))
-    with pytest.raises(ConfigError, match=part) as caught:
-        read_toml(path)
-    assert str(path) in str(caught.value)
-
-
-def test_the_scenarios_settings_lie_beneath_the_users() -> None:
-    config, scenario = load([Layer("", {"scenario": "shared_space", "seed": 5})])
-    assert scenario.name == "shared_space"
-    assert config.seed == 5
-    assert config.crowd.host_edge
-    assert config.ego.route
-
-
-def test_a_run_config_object_overrides_only_what_it_sets() -> None:
-    config, _ = load([as_layer(RunConfig(seed=9))])
-    assert config.seed == 9
-    assert config.ego.route
-
-
-def test_an_unknown_scenario_is_guessed_at() -> None:
-    with pytest.raises(ScenarioError, match="shared_space"):
-        load([Layer("", {"scenario": "shared_spce"})])
-
-
 def test_a_contradiction_between_keys_names_their_table() -> None:
     values = {"crowd": {"spawn_area": (5, 0, 1, 1)}}
     assert explain(values).startswith("study.toml: [crowd] spawn_area: expected x_min < x_max")
@@ -218,42 +136,6 @@ def test_speeds_outside_of_the_mpcs_limits_are_refused() -> None:
     build_config([Layer("", {"controller": "pid", "ego": {"initial_speed": 30}})])
 
 
-def test_the_api_takes_names_and_files_and_refuses_the_rest(tmp_path: Path) -> None:
-    assert as_layer("street").values == {"scenario": "street"}
-    (tmp_path / "study.toml").write_bytes(b"\xef\xbb\xbfseed = 3\n")  # as Windows' editor saves it
-    assert as_layer(tmp_path / "study.toml").values == {"seed": 3}
-    for nonsense in (None, 3, ["street"]):
-        with pytest.raises(ConfigError, match="expected a RunConfig"):
-            as_layer(nonsense)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("given", ["lane", 6.5, "6.5"])
-def test_the_reference_speed_is_a_number_or_the_lane_s(given: object) -> None:
-    entry = {"regulation": {"reference_speed": given}}
-    config = build_config([Layer("file", {"egos": [entry], **entry})])
-    expected = "lane" if given == "lane" else 6.5
-    assert config.regulation.reference_speed == expected
-    assert config.each_ego()[0].regulation.reference_speed == expected
-    again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
-    assert again.regulation == config.regulation
-
-
-@pytest.mark.parametrize(
-    ("given", "expected"),
-    [
-        ("lanes", "expected a number or 'lane' "),
-        (61, "should be less than or equal to 60 "),
-        (0.05, "should be at least 0.1 "),
-    ],
-)
-def test_another_reference_speed_is_refused(given: object, expected: str) -> None:
-    entry = {"regulation": {"reference_speed": given}}
-    with pytest.raises(ConfigError, match=rf"^file: \[regulation\] reference_speed = .*{expected}"):
-        build_config([Layer("file", entry)])
-    with pytest.raises(ConfigError, match=rf"egos\[0\]: regulation.reference_speed = .*{expected}"):
-        build_config([Layer("file", {"egos": [entry]})])
-
-
 def test_a_radius_may_be_a_number() -> None:
     assert RunConfig.model_validate({"crowd": {"zone": 30}}).crowd.zone == "30"
 
@@ -269,19 +151,6 @@ def test_a_radius_may_be_a_number() -> None:
 def test_texts_that_sumo_could_not_use_are_refused(settings: dict, expected: str) -> None:
     with pytest.raises(ConfigError, match=expected):
         build_config([Layer("study.toml", settings)])
-
-
-def test_a_long_clock_keeps_its_fractions_on_the_way_to_sumo() -> None:
-    from giveway.cosimulation.assembly import _start_options
-
-    config = RunConfig.model_validate({"sumo": {"end": 54012.35}})
-    assert _start_options(config, True, None).extra == ("--end", "54012.350")
-
-
-@pytest.mark.parametrize("profile", [{"a": 1}, ["car.toml"], 3])
-def test_a_profile_that_is_no_text_is_the_keys_fault(profile: object) -> None:
-    with pytest.raises(ConfigError, match=r"run\.toml: \[vehicle\] profile.*string"):
-        load([Layer("run.toml", {"vehicle": {"profile": profile}})])
 
 
 @pytest.mark.parametrize(
@@ -305,10 +174,3 @@ def test_a_file_name_that_is_too_long_is_one_line(settings: dict, tmp_path: Path
     with pytest.raises(GivewayError) as refused:
         giveway.run(file)
     assert "\n" not in str(refused.value)
-
-
-def test_settings_from_python_may_be_dotted() -> None:
-    dotted, _ = load([as_layer({"crowd.pedestrians": 7, "crowd": {"two_sided": True}, "seed": 3})])
-    assert (dotted.crowd.pedestrians, dotted.crowd.two_sided, dotted.seed) == (7, True, 3)
-    with pytest.raises(ConfigError, match=r"\[crowd\] pedestrains: unknown key; did you mean"):
-        load([as_layer({"crowd.pedestrains": 7})])

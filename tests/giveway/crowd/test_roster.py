@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from giveway.crowd.roster import Roster
+from giveway.config.tables.crowd import CrowdConfig
+from giveway.config.tables.people import PeopleConfig
+from giveway.crowd.generation.spawn import spawn
+from giveway.crowd.roster import Roster, Trait
+from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
 
 
@@ -36,3 +40,29 @@ def test_the_ledger_adds_up() -> None:
     ledger = roster.ledger
     left = ledger["handed_back"] + ledger["arrived"] + ledger["continued"]
     assert ledger["added"] + ledger["taken_over"] == left + ledger["walking"] == 3
+
+
+AXIS = EgoPath.through([(-20, 0), (100, 0)])
+
+
+def test_mixed_people_stand_where_an_unmixed_crowd_does() -> None:
+    mixed = spawn(CrowdConfig(pedestrians=40, people=PeopleConfig(elderly=0.5)), AXIS, 3)
+    plain = spawn(CrowdConfig(pedestrians=40), AXIS, 3)
+    assert np.array_equal(mixed.position, plain.position)
+    assert set(mixed.kinds) == {"adult", "elderly"}
+    assert plain.kinds == ("",) * 40
+    assert plain.traits == {}
+    assert mixed.traits["ped0"] == Trait(mixed.kinds[0], "")
+
+
+def test_the_roster_knows_distracted_people_and_groups() -> None:
+    crowd = Crowd.create([(0, 0), (1, 0), (2, 0)], [(0, 0)] * 3, 1.0, [[(9, 9)]] * 3)
+    traits = {"a": Trait("distracted", "a"), "b": Trait("adult", "a")}
+    roster = Roster(["a", "b", "c"], crowd, traits)
+    assert roster.distracted.tolist() == [True, False, False]
+    assert roster.groups.tolist() == [0, 0, -1]
+    roster.release(np.array([True, False, False]))
+    late = Crowd.create([(5, 5)], [(0, 0)], 1.0, [[(9, 9)]])
+    roster.add(["d"], late, {"d": Trait("distracted")})
+    assert roster.distracted.tolist() == [False, False, True]
+    assert roster.groups.tolist() == [0, -1, -1]

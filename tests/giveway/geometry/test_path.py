@@ -215,3 +215,13 @@ def test_a_place_is_found_again_from_a_rough_station(
     found, lateral = path.locate(x, y, near=station + wrong)
     assert abs(lateral) < 1e-6
     assert path.pose(found)[:2] == pytest.approx((x, y), abs=1e-6)
+
+
+def test_angles_convert_between_the_conventions() -> None:
+    from giveway.geometry.path import angle_to_heading, heading_to_angle
+
+    assert heading_to_angle(0.0) == 90.0
+    assert heading_to_angle(math.pi / 2) == pytest.approx(0.0)
+    assert heading_to_angle(math.pi) == pytest.approx(270.0)
+    for angle in (0.0, 45.0, 133.0, 359.0):
+        assert heading_to_angle(angle_to_heading(angle)) == pytest.approx(angle)

@@ -1,31 +1,12 @@
 """Measures of crowds whose density, speed and flow are known by hand."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pytest
+from support.steady_crowd import STEP, steady_crowd
 
 from giveway.config.tables.measures import MeasureConfig, read_measures
-from giveway.measures import FRUIN, HCM, density_map, level_of_service, measure_table
+from giveway.measures import measure_table
 from giveway.run_data.tracks import CrowdTrack
-
-STEP = 0.05  # [s]
-
-
-def _crowd(starts: np.ndarray, velocity: Sequence[float], time: np.ndarray) -> CrowdTrack:
-    """Everybody walks with one velocity."""
-    people, instants = len(starts), len(time)
-    places = starts[None] + time[:, None, None] * np.asarray(velocity)
-    flat = np.full(people * instants, 1.0)
-    return CrowdTrack(
-        step=np.repeat(np.arange(instants), people),
-        pedestrian=np.tile(np.arange(people), instants),
-        x=places[..., 0].ravel(),
-        y=places[..., 1].ravel(),
-        vx=flat * velocity[0],
-        vy=flat * velocity[1],
-        ids=tuple(f"ped{i}" for i in range(people)),
-    )
 
 
 def _measure(**settings: object) -> MeasureConfig:
@@ -37,7 +18,7 @@ def test_flow_of_a_file_through_a_line() -> None:
     time = STEP * np.arange(401)
     starts = np.column_stack([0.6 - 1.25 * np.arange(40), np.zeros(40)])
     line = _measure(line=[[1.0, -1.0], [1.0, 1.0]], interval=10)
-    table = measure_table([line], time, _crowd(starts, (1.25, 0.0), time))
+    table = measure_table([line], time, steady_crowd(starts, (1.25, 0.0), time))
     assert table["crossings"].to_list() == [10, 10]
     assert table["crossed"].to_list() == [10, 20]
     assert table["flow"].to_list() == pytest.approx([1.0, 1.0])
@@ -53,7 +34,7 @@ def test_density_of_a_standing_grid() -> None:
     along = 0.8 * np.arange(11)
     starts = np.array([(x, y) for x in along for y in along])
     area = _measure(area=[[2.0, 2.0], [6.0, 2.0], [6.0, 6.0], [2.0, 6.0]], interval=1)
-    table = measure_table([area], time, _crowd(starts, (0.0, 0.0), time))
+    table = measure_table([area], time, steady_crowd(starts, (0.0, 0.0), time))
     assert len(table) == 2
     assert table["density"].to_list() == pytest.approx([1 / 0.64] * 2, rel=1e-6)
     assert table["peak_density"].to_list() == pytest.approx([1 / 0.64] * 2, rel=1e-6)
@@ -68,7 +49,7 @@ def test_speed_in_an_area() -> None:
     time = STEP * np.arange(101)
     starts = np.array([(0.0, 0.0), (1.0, 2.0), (2.0, 1.0)])
     area = _measure(area=[[-1, -1], [9, -1], [9, 9], [-1, 9]])
-    table = measure_table([area], time, _crowd(starts, (0.6, 0.8), time))
+    table = measure_table([area], time, steady_crowd(starts, (0.6, 0.8), time))
     assert table["speed"].to_list() == pytest.approx([1.0])
     assert table["classic_density"].to_list() == pytest.approx([0.03])
 
@@ -97,22 +78,3 @@ def test_who_was_away_does_not_jump_over_the_line() -> None:
     crowd = CrowdTrack(step, np.zeros(40, dtype=int), x, zeros, zeros, zeros, ("ped0",))
     line = _measure(line=[[3.0, -1.0], [3.0, 1.0]])
     assert measure_table([line], time, crowd)["crossings"].to_list() == [0]
-
-
-def test_mean_density_on_a_grid_counts_everybody_once() -> None:
-    time = STEP * np.arange(50)
-    starts = np.array([(0.1, 0.1), (3.3, 2.2), (5.1, 4.4)])
-    found = density_map(_crowd(starts, (0.0, 0.0), time), len(time))
-    assert found.density.sum() * 0.25 == pytest.approx(3.0)
-    row = int((found.top - 2.2) / 0.5)
-    column = int((3.3 - found.left) / 0.5)
-    assert found.density[row, column] == pytest.approx(4.0)
-
-
-@pytest.mark.parametrize(
-    ("density", "fruin", "hcm"),
-    [(0.0, "A", "A"), (0.25, "A", "B"), (0.5, "C", "D"), (1.0, "D", "E"), (2.5, "F", "F")],
-)
-def test_levels_of_service_by_space(density: float, fruin: str, hcm: str) -> None:
-    assert level_of_service(FRUIN, density=density) == fruin
-    assert level_of_service(HCM, density=density) == hcm

@@ -77,3 +77,14 @@ def test_a_terminal_and_a_supervisor_interrupt_once() -> None:
         os.kill(os.getpid(), signal.SIGINT)
         os.kill(os.getpid(), signal.SIGHUP)
     assert (who_ended(raised.value), exit_code_of(raised.value)) == ("interrupted", 130)
+
+
+def test_an_impatient_ctrl_c_is_noted_and_python_goes_on() -> None:
+    import signal
+
+    with DeferredInterrupt() as interrupt:
+        assert not interrupt.requested
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+        assert interrupt.requested
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

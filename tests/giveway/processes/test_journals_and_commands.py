@@ -10,23 +10,11 @@ from pathlib import Path
 import psutil
 import pytest
 
-from giveway.processes.child import JOURNAL_VARIABLE, take_journal_folder
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import in_use
-from giveway.processes.supervisor import journal_folder, journals, own_command, supervise
+from giveway.processes.supervisor import journal_folder, journals, supervise
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
-
-
-def test_only_the_supervised_process_takes_the_journal(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    assert take_journal_folder() is None
-    monkeypatch.setenv(JOURNAL_VARIABLE, str(tmp_path))
-    assert take_journal_folder() == tmp_path
-    assert take_journal_folder() is None  # nor do the processes that it starts
-    monkeypatch.setenv(JOURNAL_VARIABLE, str(tmp_path / "of a run long gone"))
-    assert take_journal_folder() is None
 
 
 def test_the_folder_of_a_journal_is_gone_afterwards(
@@ -78,20 +66,6 @@ def test_open_files_reach_the_child(tmp_path: Path, journal: Path) -> None:
         os.set_inheritable(opened.fileno(), True)
         code = f"import os, sys; sys.exit(5 if os.read({opened.fileno()}, 9) == b'seed = 7' else 6)"
         assert supervise([sys.executable, "-c", code], journal).code == 5
-
-
-def test_we_start_again_as_we_were_started() -> None:
-    script = "from giveway.processes.supervisor import own_command; print(own_command())"
-    done = subprocess.run(
-        [sys.executable, "-X", "utf8", "-c", script, "run", "--seed", "1"],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=180,
-    )
-    expected = [sys.executable, "-X", "utf8", "-c", script, "run", "--seed", "1"]
-    assert done.stdout.strip() == str(expected)
-    assert own_command()[0] == sys.executable
 
 
 def test_supervising_imports_nothing_heavy() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import shutil
 from typing import TYPE_CHECKING, Any
@@ -12,11 +11,8 @@ import pandas as pd
 import pytest
 
 from giveway import run
-from giveway.cli.commands.replay_command import replay_command
 from giveway.errors import ResultsError
 from giveway.replays import write_replay
-from giveway.replays.events import events, why
-from giveway.replays.packed_tracks import Frame, pack_tracks, thinning
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -170,144 +166,3 @@ def test_a_page_that_cannot_be_written_is_one_clear_line(folder: Path, refused: 
 def test_the_same_run_makes_the_same_bytes(folder: Path, page: Path, tmp_path: Path) -> None:
     again = write_replay(folder, tmp_path / "again.html")
     assert again.read_bytes() == page.read_bytes()
-
-
-def walk(times: list[float], who: str) -> pd.DataFrame:
-    """Somebody who walks along x at 1 m/s."""
-    rows = {"time": times, "id": who, "x": times, "y": 0.0, "vx": 1.0, "vy": 0.0, "angle": 90.0}
-    return pd.DataFrame(rows)
-
-
-def numbers(text: str, dtype: str) -> list[float]:
-    import base64
-
-    return np.frombuffer(base64.b64decode(text), dtype).tolist()
-
-
-def test_a_return_makes_two_tracks_and_far_people_stay_on() -> None:
-    near = walk([0.0, 0.05, 0.1], "near")
-    back = walk([0.0, 1.0, 8.0, 9.0], "back")
-    rows = pd.concat([near, back]).sort_values("time", kind="stable", ignore_index=True)
-    frame = Frame(0.0, 0.0, np.array([0.0, 0.05, 0.1, 1.0, 8.0, 9.0, 9.5]))
-    tracks = pack_tracks(rows, frame, hold=0.05, gap=1.5, thin=0.0)
-    assert sorted(tracks["names"]) == ["back", "near"]
-    assert len(numbers(tracks["who"], "<u4")) == 3
-    until = sorted(numbers(tracks["until"], "<f8"))
-    assert until == pytest.approx([0.15, 1.05, 9.55])
-
-
-def test_thinning_keeps_the_ends_of_tracks_and_far_people_whole() -> None:
-    times = [round(0.05 * k, 6) for k in range(201)]
-    rows = pd.concat([walk(times, "near"), walk([0.0, 1.0, 2.0, 3.0], "far")], ignore_index=True)
-    assert thinning(rows, 0.05, most=1000) == 0.0
-    thin = thinning(rows, 0.05, most=60)
-    frame = Frame(0.0, 0.0, np.array(times))
-    tracks = pack_tracks(rows, frame, hold=0.05, gap=1.5, thin=thin)
-    start = [int(s) for s in numbers(tracks["start"], "<u4")]
-    x = numbers(tracks["x"], "<i4")
-    assert len(x) <= 60
-    ends = sorted((x[a], x[b - 1], b - a) for a, b in itertools.pairwise(start))
-    assert ends[0] == (0, 3000, 4)
-    assert ends[1][:2] == (0, 10000)
-
-
-@pytest.mark.parametrize(
-    ("reason", "text"),
-    [
-        ("clear", "nobody is in the way"),
-        ("drive on", "driving on costs least"),
-        ("as planned", "keeps to its plan"),
-        ("+0 m/s^2 to 0 m/s", "keeping the speed costs least"),
-        ("-2.5 m/s^2 to 1.4 m/s", "slowing down to 1.4 m/s at 2.5 m/s^2 costs least"),
-        ("safety layer", "the safety layer brakes"),
-    ],
-)
-def test_what_the_planning_mpc_chose_is_told_in_words(reason: str, text: str) -> None:
-    told = why(reason, "solved")
-    assert text in told["text"]
-    assert not told["infeasible"]
-
-
-def test_events_are_stops_fallbacks_and_encounters(recorded: Path) -> None:
-    from giveway.config import EgoRunConfig
-
-    time = np.arange(6) * 0.5
-    rows = pd.DataFrame(
-        {
-            "time": time,
-            "speed": [1.0, 0.1, 0.1, 1.0, 1.0, 0.0],
-            "controller": ["mpc", "pid", "pid", "mpc", "mpc", "mpc"],
-            "reason": ["optimal", "infeasible", "infeasible", "optimal", "optimal", "optimal"],
-            "solver_status": ["solved", *2 * ["infeasible: too close"], *3 * ["solved"]],
-        }
-    )
-    people = pd.DataFrame(
-        {
-            "id": ["p", "q"],
-            "minimum_clearance": [-0.1, 0.4],
-            "time_of_minimum_clearance": [1.0, 2.0],
-        }
-    )
-    told = [(e["kind"], e["from"], e["to"]) for e in events(rows, people, EgoRunConfig())]
-    assert told == [
-        ("pid", 0.5, 1.5),
-        ("stop", 0.5, 1.5),
-        ("overlap", 1.0, 1.0),
-        ("stop", 2.5, 2.5),
-    ]
-
-
-@pytest.mark.parametrize("controller", ["pid-tuned", "mpc-paper"])
-def test_the_safety_layers_braking_is_an_event_whoever_drives(controller: str) -> None:
-    from giveway.config import EgoRunConfig
-
-    acting = ["pid", "safety", "safety", "pid", "safety", "safety"]
-    rows = pd.DataFrame(
-        {
-            "time": np.arange(6) * 0.5,
-            "speed": 1.0,
-            "controller": acting,
-            "reason": ["", *2 * ["safety layer"], "", *2 * ["unavoidable"]],
-            "solver_status": "infeasible: too close",
-        }
-    )
-    found = events(rows, pd.DataFrame(), EgoRunConfig(controller=controller))
-    assert [(e["from"], e["to"], e["text"]) for e in found if e["kind"] == "safety"] == [
-        (0.5, 1.5, "the safety layer brakes: a stop must stay possible"),
-        (2.0, 2.5, "the safety layer brakes: no braking is surely enough"),
-    ]
-
-
-def test_the_command_makes_the_run_again_for_its_predictions(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    recorded = (folder / "predictions.csv").read_bytes()
-    (folder / "predictions.csv").unlink()
-    assert replay_command(folder) == 0
-    assert "replay.html" in capsys.readouterr().out
-    made = content(folder / "replay.html")
-    (folder / "predictions.csv").write_bytes(recorded)
-    assert made["egos"] == content(write_replay(folder, folder / "own.html"))["egos"]
-
-
-def test_predictions_of_a_run_that_differed_are_not_shown(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "predictions.csv").unlink()
-    rows = (folder / "ego.csv").read_text().splitlines(keepends=True)
-    rows[5] = rows[6]
-    (folder / "ego.csv").write_text("".join(rows))
-    assert replay_command(folder) == 0
-    assert "went differently" in capsys.readouterr().err
-    made = content(folder / "replay.html")
-    assert made["egos"][0]["predicted"] is None
-    assert any("went differently" in note for note in made["notes"])
-
-
-def test_no_rerun_makes_no_run(folder: Path) -> None:
-    (folder / "predictions.csv").unlink()
-    (folder / "config.toml").write_text((folder / "config.toml").read_text() + "# as it was\n")
-    assert replay_command(folder, rerun=False) == 0
-    made = content(folder / "replay.html")
-    assert made["egos"][0]["predicted"] is None
-    assert any("--record-predictions" in note for note in made["notes"])

@@ -13,9 +13,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from giveway.errors import ConfigError, GivewayError, ResultsError
+from giveway.errors import GivewayError, ResultsError
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.study import StudyInterruptedError, StudyOptions
+from giveway.studies.study import StudyInterruptedError
 
 
 def test_an_interrupted_study_goes_on_where_it_was(
@@ -146,123 +146,6 @@ def test_more_seeds_can_be_added_later(study_of, small_study_text, tmp_path):
     grown = study_of(few.replace("= 2\n[run]", "= 4\n[run]"), folder, states.append, resume=True)
     assert (states[-1].kept, states[-1].made) == (8, 8)
     assert len(grown.runs) == 16
-
-
-def test_a_study_is_not_overwritten_unasked(small_study, study_of, small_study_text):
-    with pytest.raises(ResultsError, match="a study is there; go on with it by --resume"):
-        study_of(small_study_text, small_study.path)
-
-
-def test_a_folder_with_somebody_elses_files_is_left_alone(study_of, small_study_text, tmp_path):
-    (tmp_path / "thesis.tex").touch()
-    with pytest.raises(ResultsError, match=r"holds 'thesis\.tex'"):
-        study_of(small_study_text, tmp_path, force=True)
-    assert list(tmp_path.iterdir()) == [tmp_path / "thesis.tex"]
-
-
-def test_two_processes_do_not_work_on_one_study(study_of, small_study_text, tmp_path):
-    def second(progress):
-        if progress.made == 1:
-            with pytest.raises(ResultsError, match="another giveway study is at work"):
-                study_of(small_study_text, tmp_path / "one", resume=True)
-
-    study_of(small_study_text.replace("= 5", "= 1"), tmp_path / "one", second)
-
-
-def test_a_full_disk_keeps_what_is_there(
-    study_of, small_study_text, tables_of, tmp_path, monkeypatch
-):
-    real = Path.replace
-    written = []
-
-    def full(self, target):
-        if self.parent.parent.name == "records":
-            written.append(self)
-            if len(written) > 4:
-                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self))
-        return real(self, target)
-
-    monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises(ResultsError, match=r"No space left.*go on with --resume"):
-        study_of(small_study_text, tmp_path / "full")
-    monkeypatch.undo()
-    states = []
-    study_of(small_study_text, tmp_path / "full", states.append, resume=True)
-    assert states[-1].kept == 4
-
-
-def test_a_comparison_of_half_a_study_is_not_taken_for_the_whole(
-    small_study, study_of, small_study_text, tables_of, tmp_path
-):
-    """Somebody has the report written while the study is at work."""
-    from giveway.studies.folder.table_files import write_tables
-
-    def look(progress):
-        if progress.made == 17:
-            write_tables(StudyFolder.open(tmp_path / "out"), whole=True)
-
-    study = study_of(small_study_text, tmp_path / "out", look)
-    assert tables_of(study.path) == tables_of(small_study.path)
-
-
-@pytest.mark.parametrize("name", ["runs.csv", "study.toml", "manifest.json", "datapackage.json"])
-def test_a_study_killed_while_writing_a_file_can_be_resumed(
-    small_study, study_of, small_study_text, tables_of, tmp_path, monkeypatch, name
-):
-    import shutil
-
-    class KilledError(BaseException):
-        pass
-
-    def killed(self, target):
-        if target.name == name:
-            raise KilledError
-        return real(self, target)
-
-    folder = shutil.copytree(small_study.path, tmp_path / "copy")
-    real = Path.replace
-    monkeypatch.setattr(Path, "replace", killed)
-    with pytest.raises(KilledError):
-        study_of(small_study_text, folder, resume=True)
-    monkeypatch.undo()
-    study_of(small_study_text, folder, resume=True)
-    assert tables_of(folder) == tables_of(small_study.path)
-
-
-def test_definition_and_manifest_of_two_studies_are_not_mixed(
-    study_of, small_study_text, tmp_path, monkeypatch
-):
-    folder = study_of(small_study_text.replace("= 5", "= 1"), tmp_path / "mixed").path
-    text = (folder / "study.toml").read_text(encoding="utf-8")
-    (folder / "study.toml").write_text(text.replace("[3, 2]", "[2, 3]"), encoding="utf-8")
-    with pytest.raises(
-        ResultsError, match=r"study\.toml.*manifest\.json is about another.*--resume"
-    ):
-        StudyFolder.open(folder)
-
-
-def test_another_study_does_not_go_on_in_this_folder(study_of, small_study_text, small_study):
-    other = small_study_text.replace('"small"', '"other"')
-    with pytest.raises(ResultsError, match="holds the study 'small'; expected 'other'"):
-        study_of(other, small_study.path, resume=True)
-
-
-def test_a_note_beside_a_study_does_no_harm(small_study, study_of, small_study_text, tmp_path):
-    import shutil
-
-    folder = shutil.copytree(small_study.path, tmp_path / "noted")
-    (folder / "note.txt").touch()
-    study_of(small_study_text, folder, resume=True)
-    with pytest.raises(ResultsError, match=r"holds 'note\.txt'"):
-        study_of(small_study_text, folder, force=True)
-    assert (folder / "note.txt").is_file()
-
-
-def test_what_contradicts_itself_is_refused():
-    with pytest.raises(ConfigError, match="--resume and --force"):
-        StudyOptions(resume=True, force=True)
-    with pytest.raises(ConfigError, match="--jobs and --cluster"):
-        StudyOptions(jobs=2, cluster="local:2")
 
 
 def test_a_cluster_that_is_not_there_costs_nothing(

@@ -13,7 +13,7 @@ import pytest
 from giveway.cosimulation.counterfactual import counterfactual
 from giveway.studies.design import design
 from giveway.studies.repeated_run import rerun
-from giveway.studies.statistics.fronts import fronts, on_front
+from giveway.studies.statistics.fronts import fronts
 from giveway.studies.study import StudyInterruptedError
 
 TEXT = """
@@ -133,11 +133,6 @@ def test_cells_with_the_same_people_share_the_crowd_among_itself(study_of, tmp_p
     study_of(TEXT, tmp_path / "shared")
     assert len(made) == 2 * 3  # crowds and seeds; not controllers
     assert len(counterfactual._alone) <= counterfactual._KEPT
-
-
-def test_the_front_is_who_nobody_beats_on_both_sides():
-    x, y = np.array([1.0, 2.0, 3.0, 2.0, 1.0]), np.array([5.0, 3.0, 4.0, 3.0, 6.0])
-    assert on_front(x, y).tolist() == [True, True, False, True, False]
 
 
 def test_who_did_not_always_arrive_is_on_no_front(study):

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
 import json
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-import pytest
 import shapely
 import sumo
 
@@ -128,3 +134,30 @@ def _trips(network: Path, folder: Path) -> Path:
     ]
     subprocess.run(command, check=True, capture_output=True, cwd=folder)
     return trips
+
+
+EDGES = """<net>
+    <location convBoundary="0.00,0.00,100.00,50.00"/>
+    <edge id=":J" function="internal"><lane id=":J_0" length="1" shape="0,0 1,0"/></edge>
+    <edge id="road" from="a" to="b">
+        <lane id="road_0" index="0" disallow="pedestrian" length="50" width="3" shape="0,0 50,0"/>
+        <lane id="road_1" index="1" allow="pedestrian bicycle" length="50" shape="0,3 50,3"/>
+        <lane id="road_2" index="2" allow="pedestrian" length="60" width="2" shape="0,6,1 50,6,1"/>
+    </edge>
+    <edge id="motorway" from="a" to="b">
+        <lane id="motorway_0" index="0" allow="passenger" length="50" shape="0,20 50,20"/>
+    </edge>
+    <edge id="lane" from="a" to="b">
+        <lane id="lane_0" index="0" length="50" shape="0,30 50,30"/>
+    </edge>
+</net>"""
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[[str | bytes], Path]:
+    def write(content: str | bytes) -> Path:
+        file = tmp_path / "town.net.xml"
+        file.write_bytes(content.encode() if isinstance(content, str) else content)
+        return file
+
+    return write

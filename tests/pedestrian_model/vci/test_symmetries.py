@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from crowd_forces import forces_apart
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -110,15 +109,6 @@ def test_the_order_of_the_pedestrians_matters_to_rounding_only(
     np.testing.assert_allclose(b.velocity, a.velocity[order], rtol=0.0, atol=1e-11)
 
 
-@few
-@given(seeds, st.floats(0.001, 3.0), st.integers(2, 200))
-def test_the_cell_list_finds_the_same_neighbours(random_crowd, seed, density, n):
-    crowd = random_crowd(n, seed, density)
-    all_pairs = forces_apart(CrowdModel(cell_list_from=10**6), crowd, Vehicles.empty())
-    cells = forces_apart(CrowdModel(cell_list_from=0), crowd, Vehicles.empty())
-    np.testing.assert_allclose(cells.total, all_pairs.total, rtol=1e-9, atol=1e-7)
-
-
 coordinate = st.one_of(
     st.sampled_from([0.0, 1.0, 2.7151011, -2.7151011, 1.2151011, 1e-300, 1e-7, 1e9, -1e9]),
     st.floats(-1e9, 1e9),
@@ -143,16 +133,6 @@ def test_nothing_makes_a_state_that_is_not_finite(people, cars, cell_list_from):
         crowd = model.step(crowd, vehicles)
         assert np.isfinite(crowd.position).all()
         assert (np.hypot(*crowd.velocity.T) <= 2.5 + 1e-9).all()
-
-
-@pytest.mark.parametrize("cell_list_from", [0, 1000])
-def test_a_pile_of_people_at_one_point_comes_apart(cell_list_from):
-    crowd = Crowd.create(np.zeros((20, 2)), np.zeros((20, 2)), 1.0, [[(0.0, 0.0)]] * 20)
-    model = CrowdModel(cell_list_from=cell_list_from)
-    for _ in range(200):
-        crowd = model.step(crowd, Vehicles.empty())
-    gaps = np.linalg.norm(crowd.position[:, None] - crowd.position[None], axis=2)
-    assert gaps[~np.eye(20, dtype=bool)].min() > 0.4
 
 
 @few

@@ -52,17 +52,6 @@ def walker(y, target=10.0, x=22.0, speed=1.4):
     return Crowd.create([[x, y]], [velocity], speed, [[(x, target)]])
 
 
-def test_the_stretch_of_the_path_that_lies_on_it():
-    ends = np.array([[22.0, NORTHERN_KERB], [22.0, SOUTHERN_KERB]])
-    path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
-    (place,) = crossings_on(path, SHAPE, [Crossing(":j_c0_0", ends, 4.0, True, "", -1)])
-    assert (place.entry, place.exit) == pytest.approx((20.0, 24.0), abs=0.11)
-    # from the northern kerb: the lane's middle at 5.25 m, half a width and a body beside it
-    assert (place.low, place.high) == pytest.approx((5.25 - 1.8, 5.25 + 1.8))
-    beside = EgoPath.through([(0.0, 9.0), (60.0, 9.0)])
-    assert crossings_on(beside, SHAPE, [Crossing(":j_c0_0", ends, 4.0, True, "", -1)]) == ()
-
-
 @pytest.mark.parametrize(
     ("crowd", "stops"),
     [

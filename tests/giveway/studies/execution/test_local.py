@@ -168,19 +168,6 @@ def test_workers_that_cannot_start_are_an_error_that_says_why(script):
     assert "--jobs" in line
 
 
-@pytest.mark.parametrize(
-    ("options", "named"),
-    [
-        ({"jobs": 0}, "jobs = 0"),
-        ({"jobs": 1, "hang_limit": 0.0}, "hang_limit = 0.0"),
-        ({"jobs": 1, "run_limit": float("nan")}, "run_limit = nan"),
-    ],
-)
-def test_numbers_that_cannot_be_used(options, named, refused):
-    with refused(WorkerError, named, "expected"):
-        local_executor(**options)
-
-
 def test_a_file_that_changes_while_the_study_is_at_work_ends_it(
     tmp_path, task, refused, left_behind
 ):
