@@ -59,7 +59,7 @@ def test_select_and_concatenate_keep_routes_and_progress():
 
 
 @pytest.mark.parametrize("mask", [[True, False, True], [False, True, True]])
-def test_a_selection_into_the_room_of_another_is_as_one_of_its_own(mask):
+def test_a_selection_into_given_arrays_equals_a_new_one(mask):
     room = three().select(np.array([True, True, False]))
     crowd = Crowd.create(
         [(1, 0), (2, 1), (4, 1)],

@@ -54,7 +54,7 @@ SHARES = {"repulsion_anisotropy", "navigation_anisotropy", "vehicle_anisotropy"}
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(SIM)])
-def test_no_parameter_takes_a_number_that_is_no_quantity_of_a_person(name):
+def test_no_parameter_takes_a_number_that_no_person_has(name):
     """A force of 1e9 N, a gap of 1e-9 m: what was meant is another unit, or another key."""
     with pytest.raises(ParameterError, match=rf"{name} = 1000000000.0, expected .*: \w+"):
         replace(SIM, **{name: 1e9})
@@ -63,7 +63,7 @@ def test_no_parameter_takes_a_number_that_is_no_quantity_of_a_person(name):
             replace(SIM, **{name: 1e-9})
 
 
-def test_a_parameter_that_may_be_zero_says_so_and_why_its_range_is_that():
+def test_a_parameter_that_may_be_zero_says_so_with_the_reason():
     with pytest.raises(ParameterError) as refused:
         replace(SIM, navigation_strength=1e9)
     assert str(refused.value) == (

@@ -153,7 +153,7 @@ def test_a_crowd_goes_through_a_passage_side_by_side(angle):
     assert steps_until_through(abreast(lateral, 0.0, direction))[0] > steps + 20
 
 
-def test_beyond_the_half_width_or_before_the_line_nothing_is_passed():
+def test_beside_or_before_a_line_nothing_is_passed():
     at = [(7.9, 0.0), (8.1, 1.9), (8.1, 2.1), (8.1, -1.9), (12.0, 0.0)]
     passed = [False, True, False, True, True]
     crowd = Crowd.create(
@@ -168,7 +168,7 @@ def test_beyond_the_half_width_or_before_the_line_nothing_is_passed():
     np.testing.assert_array_equal(after.waypoint_index == 1, passed)
 
 
-def test_the_aim_is_the_nearest_point_of_the_line_a_body_away_from_its_ends():
+def test_the_aim_is_the_nearest_point_a_body_from_the_ends():
     crowd = abreast([-9.0, -1.0, 0.3, 2.0], 2.0)
     target = forces_apart(CrowdModel(), crowd, NOBODY).target
     np.testing.assert_allclose(target, [(8.0, -1.73), (8.0, -1.0), (8.0, 0.3), (8.0, 1.73)])

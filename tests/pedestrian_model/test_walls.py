@@ -134,7 +134,7 @@ def test_where_two_blocks_touch_each_corner_is_its_own():
 
 
 @pytest.mark.parametrize("swap", [False, True])
-def test_where_two_sharp_blocks_touch_no_place_is_on_the_wrong_side(swap):
+def test_where_sharp_blocks_touch_each_place_has_its_side(swap):
     west, east = [(0, 0), (-4, -1), (-4, 1)], [(0, 0), (4, 3), (3, 0)]
     houses = [east, west] if swap else [west, east]
     walls = Walls.create(np.concatenate([ring(house) for house in houses]))  # clockwise
@@ -161,7 +161,7 @@ def test_a_city_far_from_the_origin_or_very_wide_is_found_too():
         np.testing.assert_allclose(distance, [0.4, 0.7, -0.5], atol=1e-6)
 
 
-def test_somebody_walking_into_a_wall_is_stopped_before_the_body_overlaps_much():
+def test_a_wall_stops_a_walker_before_the_body_overlaps_much():
     start = np.stack([np.arange(20) * 9.0 - 90.0, np.linspace(3.0, 3.0 + V0 * 0.05, 20)], axis=1)
     wall = Surroundings(Walls.create([(-99.0, 0.0, 99.0, 0.0)]))
     crowd = Crowd.create(
@@ -207,7 +207,7 @@ def pushing_crowd():
     )
 
 
-def test_nobody_leaves_a_corridor_when_a_crowd_pushes_through_its_bend():
+def test_no_crowd_pushes_anybody_out_of_a_corridors_bend():
     crowd, walls, model = pushing_crowd(), Surroundings(Walls.create(ring(bend()))), CrowdModel()
     for _ in range(1200):
         model.advance(crowd, NOBODY, walls)
@@ -217,7 +217,7 @@ def test_nobody_leaves_a_corridor_when_a_crowd_pushes_through_its_bend():
     assert len(crowd) == 0
 
 
-def test_whoever_is_squeezed_over_the_line_of_a_dead_end_comes_back_when_there_is_room():
+def test_who_is_squeezed_beyond_a_dead_end_comes_back():
     """80 people press on for 50 s and nobody arrives; then most are taken away."""
     crowd, walls, model = pushing_crowd(), Surroundings(Walls.create(ring(bend()))), CrowdModel()
     deepest = 0.0

@@ -87,7 +87,7 @@ def compared(name, dt):
 
 
 @pytest.mark.parametrize(("name", "dt"), [(SPEEDS, DT), (FORCES, 0.01)])
-def test_people_built_anew_in_each_step_walk_as_those_who_are_kept(name, dt):
+def test_people_built_anew_each_step_walk_as_those_kept(name, dt):
     """Speeds of the first differ as bodies do: nobody changes by more than 5 m/s^2."""
     off, aside = compared(name, dt)
     assert aside.max() > 0.7
@@ -102,7 +102,7 @@ def test_models_that_remember_a_direction_would_not(kind):
 
 
 @pytest.mark.parametrize("name", JUPEDSIM_MODELS)
-def test_they_stop_before_a_car_that_comes_too_soon_and_go_on_behind_it(name):
+def test_they_stop_before_a_close_car_and_go_on_behind_it(name):
     crowd = people((0.0, -5.0), (0.0, 8.0))
     places = walk(name, crowd, 14.0, lambda t: Vehicles.create(-18.5 + 3.0 * t, 0.0, 0.0, 3.0))
     passed = round((18.5 + 2.5) / 3.0 / DT)
@@ -122,7 +122,7 @@ def test_nobody_walks_through_a_standing_car_or_a_wall(name):
     assert places[:, 1, 1].max() < 6.0
 
 
-def test_vehicles_far_from_everybody_and_faster_than_jupedsim_takes_do_nothing():
+def test_a_far_vehicle_too_fast_for_jupedsim_changes_nothing():
     cars = Vehicles.create([300.0, 8.0], [0.0, 14.0], [0.0, 0.0], [30.0, 25.0])
     alone, beside = people((0.0, 0.0), (9.0, 0.0)), people((0.0, 0.0), (9.0, 0.0))
     for name in JUPEDSIM_MODELS:

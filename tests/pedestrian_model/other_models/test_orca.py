@@ -74,7 +74,7 @@ def test_out_of_a_vehicles_way_people_get_alone():
             assert off >= RADIUS - 1e-6
 
 
-def test_the_linear_programme_finds_the_closest_permitted_velocity():
+def test_the_linear_programme_finds_the_closest_velocity():
     random = np.random.default_rng(5)
     grid = np.stack(np.meshgrid(*[np.linspace(-2.0, 2.0, 201)] * 2), -1).reshape(-1, 2)
     solved = 0

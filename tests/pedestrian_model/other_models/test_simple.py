@@ -46,7 +46,7 @@ def car(speed, start, y=0.0):
 
 
 @pytest.mark.parametrize("name", PLAIN_MODELS)
-def test_somebody_alone_takes_up_the_pace_within_half_a_second_and_arrives(name):
+def test_somebody_alone_is_at_pace_in_half_a_second_and_arrives(name):
     crowd = people((0.0, 0.0), (20.0, 0.0), moving=False)
     places = walk(name, crowd, 10)
     assert crowd.velocity[0, 0] == pytest.approx(1.4 * (1.0 - 0.9**10), rel=2e-3)
@@ -56,7 +56,7 @@ def test_somebody_alone_takes_up_the_pace_within_half_a_second_and_arrives(name)
 
 
 @pytest.mark.parametrize("name", PLAIN_MODELS)
-def test_neither_rows_nor_frames_matter_and_nobody_is_faster_than_people_are(name):
+def test_order_and_frame_do_not_matter_and_speeds_are_bounded(name):
     vehicles = car(3.0, -8.0)
     usual = walk(name, group(), 120, vehicles)
     crowd = group()

@@ -21,7 +21,7 @@ def test_a_walker_gets_round_a_standing_car(walkers, clearance, across, start):
     np.testing.assert_allclose(crowd.position[0], (across, 8.0), atol=0.2)
 
 
-def test_a_walker_gets_round_a_standing_car_lengthwise_at_any_heading(walkers, clearance):
+def test_a_walker_gets_round_a_car_lengthwise_at_any_heading(walkers, clearance):
     for heading in (0.0, 0.6, 2.0, -1.2):
         car = Vehicles.create(0.0, 0.0, heading, 0.1)
         ahead = np.array([np.cos(heading), np.sin(heading)])
@@ -84,14 +84,14 @@ def test_a_destination_beside_the_standing_car_is_reached(walkers, clearance):
     assert np.hypot(*(crowd.position[0] - (0.5, 1.75))) < 0.6
 
 
-def test_whoever_is_inside_the_car_or_wants_in_just_gets_a_finite_way(walkers):
+def test_inside_the_car_or_on_the_way_in_ways_are_finite(walkers):
     car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
     crowd = walkers([(0.3, 0.2), (0.0, -5.0)], [(0.0, 9.0), (0.1, 0.1)])
     target = forces_apart(CrowdModel(), crowd, car).target
     np.testing.assert_array_equal(target, [(0.0, 9.0), (0.1, 0.1)])
 
 
-def test_without_the_detour_a_walker_stays_at_the_side_of_a_standing_car(walkers):
+def test_without_the_detour_a_walker_stays_beside_the_car(walkers):
     """The published forces alone have a local minimum there; the switch is the detour and no more.
 
     Where no car stands, both models take the same step to the bit.

@@ -40,7 +40,7 @@ def test_golden_values(x, v, u, force, distance):
         (4.0, (13258, 8209, 4706, 2698, 887, 58, 0)),
     ],
 )
-def test_the_influence_in_front_grows_with_speed_as_in_the_papers_figure_2(u, sizes):
+def test_influence_in_front_grows_with_speed_as_in_figure_2(u, sizes):
     ahead = np.array([3, 4, 5, 6, 8, 10, 12])
     points = np.stack([15.0 + ahead, np.full(7, 15.4)], axis=1)
     f, _ = vehicle_influence(points, np.zeros((7, 2)), car(u))
@@ -60,7 +60,7 @@ def test_agrees_with_the_reference_all_round_the_car(reference, u, psi):
         assert s[k] == pytest.approx(s_k, abs=1e-12)
 
 
-def test_below_the_static_speed_the_speed_does_not_shape_the_contour():
+def test_below_the_static_speed_the_contour_keeps_its_shape():
     points = np.array([[18.2, 15.3], [12.0, 15.0], [15.0, 16.6]])
     _, at_rest = vehicle_influence(points, np.zeros((3, 2)), car(0.0))
     _, creeping = vehicle_influence(points, np.zeros((3, 2)), car(0.1999))
@@ -88,7 +88,7 @@ def test_several_vehicles_add_up_and_the_nearest_contour_counts():
     np.testing.assert_array_equal(s_both, np.minimum(s, t))
 
 
-def test_whoever_is_inside_beside_the_body_is_pushed_sideways_never_forward():
+def test_who_is_beside_the_body_is_pushed_sideways_only():
     points = np.stack([np.linspace(12.3, 17.7, 40), 15.0 + np.linspace(-1.2, 1.2, 40)], axis=1)
     f, s = vehicle_influence(points, np.zeros((40, 2)), car(4.0))
     assert (s < 0.0).all()

@@ -69,7 +69,7 @@ def test_no_size_of_crowd_loses_a_pair(reference, random_crowd, n):
         )
 
 
-def test_beta_takes_the_destination_force_away_as_the_vehicle_comes_near():
+def test_beta_removes_the_destination_force_near_a_vehicle():
     car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
     y = np.array([1.3, 1.7, 2.4, 9.0])
     crowd = Crowd.create(

@@ -52,7 +52,7 @@ def test_a_curved_path_is_followed(random_crowd):
     np.testing.assert_array_equal(predicted[-1], now.position)
 
 
-def test_the_buffer_is_reused_and_the_size_of_the_crowd_may_change(random_crowd, random_vehicles):
+def test_the_buffer_is_reused_when_the_crowd_changes_its_size(random_crowd, random_vehicles):
     vehicles = random_vehicles(0)
     predictor = Predictor(horizon=5)
     poses = constant_speed(vehicles, 0.05, 5)
@@ -89,7 +89,7 @@ def test_bad_trajectories_horizons_and_states_are_named(random_crowd):
         predictor.predict(crowd, np.zeros((4, 0, 7)))
 
 
-def test_a_longer_step_takes_somebody_alone_where_two_of_the_crowds_do(walkers):
+def test_alone_one_long_step_leads_where_two_short_ones_do(walkers):
     crowd = walkers([(0.0, 0.0)], [(20.0, 0.0)])
     crowd.velocity[:] = 0.7, 0.1  # the limit of the acceleration does not act
     free = Vehicles.empty()
@@ -103,7 +103,7 @@ def test_a_longer_step_takes_somebody_alone_where_two_of_the_crowds_do(walkers):
 
 
 @pytest.mark.parametrize("speed", [0.0, 2.0, 4.0])
-def test_a_longer_step_is_near_two_of_the_crowds_among_others_and_a_car(walkers, speed):
+def test_among_others_one_long_step_is_near_two_short_ones(walkers, speed):
     car, g = Vehicles.create(-6.0, 0.0, 0.0, speed), np.random.default_rng(0)
     x, y = (a.ravel() + g.uniform(-0.5, 0.5, 20) for a in np.mgrid[0.0:10.0:2.5, -5.0:5.0:2.0])
     crowd = walkers(np.column_stack([x, y]), np.column_stack([x, -3.0 * y]))
@@ -116,7 +116,7 @@ def test_a_longer_step_is_near_two_of_the_crowds_among_others_and_a_car(walkers,
     assert error[-1].mean() < 0.08
 
 
-def test_a_step_of_the_crowds_length_is_the_crowds_whatever_is_allowed(random_crowd):
+def test_a_step_of_the_crowds_length_is_the_crowds_own(random_crowd):
     crowd, poses = random_crowd(20, 1), constant_speed(Vehicles.empty(), 0.05, 10)
     usual = Predictor(horizon=10).predict(crowd, poses)
     allowed = Predictor(horizon=10, longest_step=0.1).predict(crowd, poses)
@@ -149,7 +149,7 @@ def test_what_people_wish_at_the_end_of_a_prediction():
     assert turned[2] == pytest.approx(np.hypot(1.0 - end[3, 0], 99.0 - end[3, 1]) / 1.2)
 
 
-def test_who_is_where_they_want_to_be_or_has_no_speed_wishes_nothing():
+def test_who_has_arrived_or_has_no_speed_wishes_nothing():
     crowd = Crowd.create(
         [(0.0, 0.0), (500.0, 0.0)], np.zeros((2, 2)), [1.2, 0.0], [[(0, 0)], [(9, 9)]]
     )

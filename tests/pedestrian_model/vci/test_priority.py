@@ -50,7 +50,7 @@ def pushed_back(places):
     return (np.maximum.accumulate(places[:, 1]) - places[:, 1]).max()
 
 
-def test_a_car_that_gives_way_pushes_somebody_back_but_nobody_with_priority():
+def test_a_car_that_gives_way_pushes_nobody_with_priority_back():
     alone = crossing(0.0, lambda _: Vehicles.empty())
     held, free = crossing(0.0, gives_way), crossing(1.0, gives_way)
     assert pushed_back(held) > 0.3
@@ -59,7 +59,7 @@ def test_a_car_that_gives_way_pushes_somebody_back_but_nobody_with_priority():
 
 
 @pytest.mark.parametrize("x", [8.3, 9.0, 11.0])
-def test_straight_on_past_the_bumper_of_a_car_that_stands_before_the_crossing(x):
+def test_a_car_before_the_crossing_turns_nobody_from_their_way(x):
     places = crossing(1.0, lambda _: car(STOP, 0.0), x=x)
     np.testing.assert_allclose(places[:, 0], x, atol=1e-9)
     assert pushed_back(places) == 0.0

@@ -41,7 +41,7 @@ def test_head_on_pairs_pass_without_overlap(walkers, offset, speed):
     assert after.position[1, 0] < 0.0
 
 
-def test_exactly_head_on_shoulders_touch_under_sim_and_bodies_merge_under_table2(walkers):
+def test_exactly_head_on_shoulders_touch_under_sim_alone(walkers):
     """At full speed and without any offset the soft bodies are compressed by 4 cm under SIM;
     under TABLE2 people walk through each other, which is why SIM is the preset to simulate."""
     slow, fast = (
@@ -65,7 +65,7 @@ def test_a_standing_crowd_makes_way_for_a_car(walkers, clearance, u, seed):
         crowd = model.step(crowd, car)
 
 
-def test_a_creeping_car_counts_as_standing_for_the_angle_of_its_force_if_it_is_to(walkers):
+def test_a_creeping_car_may_count_as_standing_for_its_angle(walkers):
     """Its contour does in any case; at 0.2 m/s and above both models take the same step."""
     crowd = walkers([(1.0, -2.0), (-1.0, 3.0)], [(1.0, 9.0), (-1.0, -9.0)])
 

@@ -48,7 +48,7 @@ def test_a_step_is_exact_under_constant_force():
     assert after.position[0, 0] == pytest.approx(-0.02 + 2.5 * 0.02**2, rel=1e-14)
 
 
-def test_a_free_walker_reaches_the_desired_speed_and_stops_at_the_destination(walkers):
+def test_a_free_walker_reaches_desired_speed_and_destination(walkers):
     crowd = walkers([(0.0, 0.0)], [(30.0, 0.0)], speed=1.3, walking=False)
     model = CrowdModel()
     speeds = []
@@ -70,9 +70,7 @@ def test_the_same_state_gives_the_same_bytes(random_crowd, random_vehicles):
     assert bytes_of(a) == bytes_of(b)
 
 
-def test_step_leaves_the_old_state_and_advance_does_the_same_in_place(
-    random_crowd, random_vehicles
-):
+def test_step_leaves_the_old_state_and_advance_replaces_it(random_crowd, random_vehicles):
     crowd, vehicles = random_crowd(30, 1), random_vehicles(1)
     before = bytes_of(crowd)
     model = CrowdModel(time_step=0.3)
@@ -96,7 +94,7 @@ def test_a_long_step_is_short_steps_with_the_vehicle_driving_on(random_crowd, ti
     np.testing.assert_allclose(long.position, crowd.position, rtol=0.0, atol=1e-9)
 
 
-def test_waypoints_are_passed_one_after_the_other_but_never_the_last():
+def test_waypoints_are_passed_in_order_but_never_the_last():
     route = np.array([(3.0, 0.0), (3.0, 4.0), (8.0, 4.0)])
     crowd = Crowd.create([(0.0, 0.0)], [(1.0, 0.0)], 1.3, [route])
     model = CrowdModel()

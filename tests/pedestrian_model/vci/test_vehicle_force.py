@@ -56,7 +56,7 @@ def test_the_long_nose_of_a_fast_car_reaches_far(random_crowd):
     )
 
 
-def test_between_steps_the_vehicles_drive_on_for_those_they_come_to_reach(random_crowd):
+def test_between_steps_vehicles_drive_on_towards_people(random_crowd):
     """A car that drives 3 m in a step of 0.2 s is felt where it is in each sub-step."""
     crowd, cars = random_crowd(200, 4, density=0.1), traffic(12, 4, side=45.0)
     cells, ring = (

@@ -58,7 +58,7 @@ def test_head_on_both_give_way_to_their_right():
     np.testing.assert_array_equal(navigation[0], -navigation[1])
 
 
-def test_two_at_the_same_velocity_do_not_navigate_round_each_other():
+def test_two_at_one_velocity_do_not_walk_round_each_other():
     two = Crowd.create(
         [(0.0, 0.0), (1.0, 0.3)], [(1.0, 0.0), (1.0, 0.0009)], 1.0, [[(9.0, 0.0)]] * 2
     )
@@ -66,7 +66,7 @@ def test_two_at_the_same_velocity_do_not_navigate_round_each_other():
 
 
 @pytest.mark.parametrize("cell_list_from", [0, 1000])
-def test_coincident_pedestrians_are_parted_in_opposite_directions(cell_list_from):
+def test_people_at_one_place_are_parted_in_opposite_ways(cell_list_from):
     model = CrowdModel(cell_list_from=cell_list_from)
     place = np.array([[3.0, 3.0], [3.0, 3.0], [3.0 + 5e-7, 3.0], [9.0, 3.0]])
     crowd = Crowd.create(place, np.zeros((4, 2)), 1.0, [[(3.0, 3.0)]] * 4)
