@@ -35,13 +35,13 @@ def test_a_twin_that_fails_or_dies_loses_no_row_of_its_run(
     def fail(*_: object) -> None:
         raise SumoError("SUMO failed at 3.0 s")
 
+    whole = run_once(twin=True, **OPEN)
     journal = tmp_path / "journal"
     journal.mkdir()
     monkeypatch.setattr("giveway.api.simulation.twin_of", fail)
     checked = preflight(*load([as_layer(OPEN | {"twin": True})]))
     with refused(SumoError, "in the twin", "SUMO failed at 3.0 s") as caught:
         run_checked(checked, results=tmp_path / "kept", pictures=False, journal=journal)
-    whole = run_once(twin=True, **OPEN)
     partial = caught.value.result
     assert partial.summary == {name: whole.summary[name] for name in partial.summary}
     assert columns(tmp_path / "kept" / "pedestrians.csv")
