@@ -1,7 +1,8 @@
 """Fixtures for the tests of packages that plug into giveway; pytest finds them by itself.
 
 ``require_sound_controller(Class, **options)`` and ``require_sound_model(Class, **options)`` fail
-and list the rules that a controller or a pedestrian model breaks (docs/plugins.md).
+and list the rules that a controller or a pedestrian model breaks (docs/plugins.md). The fixtures
+for rules of the road and sensors stand in ``giveway.ego.testing``.
 """
 
 from collections.abc import Callable
@@ -16,7 +17,7 @@ def require_sound_controller() -> Callable[..., None]:
     from controller import Setup
     from giveway.plug_ins.conformance import check_controller
 
-    return _check(check_controller, Setup(0.05, 1000.0, 100.0, 4.0, 2.0, 5000.0, 2.0))
+    return check_of(check_controller, Setup(0.05, 1000.0, 100.0, 4.0, 2.0, 5000.0, 2.0))
 
 
 @pytest.fixture
@@ -25,11 +26,16 @@ def require_sound_model() -> Callable[..., None]:
     from giveway.plug_ins.conformance import check_model
     from pedestrian_model import ModelSetup
 
-    return _check(check_model, ModelSetup(0.05, 0.27, 5.0, 2.5, 1))
+    return check_of(check_model, ModelSetup(0.05, 0.27, 5.0, 2.5, 1))
 
 
-def _check(findings_of: Callable[..., Any], setup: Any) -> Callable[..., None]:
-    """Return the check of one socket, which makes plug-ins in the way giveway does."""
+def check_of(findings_of: Callable[..., Any], setup: Any) -> Callable[..., None]:
+    """Return the check of one socket, which makes plug-ins in the way giveway does.
+
+    Args:
+        findings_of: Battery of the socket, called with a maker and ``setup``.
+        setup: Setup that a plug-in is made with.
+    """
     from giveway.plug_ins.finding import maker_of
     from giveway.plug_ins.options import read_options
 
