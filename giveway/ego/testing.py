@@ -18,7 +18,7 @@ def require_sound_rule() -> Callable[..., None]:
     """Return a check that fails unless a rule of the road (with its ``Options``) is sound."""
     from giveway.ego.rules.plug_ins.conformance import check_rule, made_up_route
 
-    return check_of(check_rule, made_up_route())
+    return check_of(check_rule, made_up_route(), factory="on")
 
 
 @pytest.fixture

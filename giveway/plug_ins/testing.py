@@ -29,19 +29,22 @@ def require_sound_model() -> Callable[..., None]:
     return check_of(check_model, ModelSetup(0.05, 0.27, 5.0, 2.5, 1))
 
 
-def check_of(findings_of: Callable[..., Any], setup: Any) -> Callable[..., None]:
+def check_of(findings_of: Callable[..., Any], setup: Any, factory: str = "") -> Callable[..., None]:
     """Return the check of one socket, which makes plug-ins in the way giveway does.
 
     Args:
         findings_of: Battery of the socket, called with a maker and ``setup``.
         setup: Setup that a plug-in is made with.
+        factory: Name of the class method that makes a plug-in where its class has one; empty if
+            the class itself always does.
     """
     from giveway.plug_ins.finding import maker_of
     from giveway.plug_ins.options import read_options
 
     def require(kind: Any, **options: Any) -> None:
         own = read_options(kind.__name__, getattr(kind, "Options", None), options)
-        findings = findings_of(maker_of(kind, own), setup)
+        make = getattr(kind, factory, kind) if factory else kind
+        findings = findings_of(maker_of(make, own), setup)
         broken = [f"{finding.rule}: {finding.problem}" for finding in findings if finding.problem]
         if broken:
             pytest.fail("\n".join([f"{kind.__name__} breaks rules:", *broken]), pytrace=False)

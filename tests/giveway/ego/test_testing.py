@@ -19,8 +19,11 @@ class Options:
 
 class Slow:
     Options = Options
-    def __init__(self, route, options):
-        self.limit = options.limit
+    def __init__(self, limit):
+        self.limit = limit
+    @classmethod
+    def on(cls, route, options):
+        return cls(options.limit)
     def demand(self, situation):
         return Demand(speed=self.limit)
 

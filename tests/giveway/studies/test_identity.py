@@ -12,7 +12,7 @@ def test_other_settings_make_other_keys(small_study, small_study_text):
 
     changed = parse_definition(
         small_study_text.replace(
-            "time_limit = 2.0", "time_limit = 2.0\n[run.pid]\nintegral_gain = 11.0"
+            "time_limit = 2.0", "time_limit = 2.0\n[run.vehicle]\nmass = 1100.0"
         ),
         "s",
         Path(),
