@@ -4,6 +4,9 @@ Every message is one line: the file, key or id, the value, what was expected, an
 ``exit_code`` is the command line's: 2 for a request that cannot be run, 1 for a run that failed.
 """
 
+import difflib
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -77,3 +80,31 @@ class ResultsError(GivewayError):
     """The results cannot be written, or would replace existing files."""
 
     exit_code = 2
+
+
+@contextmanager
+def retold(theirs: type[Exception], ours: type[Exception]) -> Iterator[None]:
+    """Tell an error of another package as one of giveway's in this context, in the same words.
+
+    Args:
+        theirs: Class of the other package's error.
+        ours: Class of the error that is raised instead.
+    """
+    try:
+        yield
+    except theirs as error:
+        raise ours(str(error)) from error
+
+
+def suggestion(name: str, known: Collection[str], otherwise: str = "", cutoff: float = 0.5) -> str:
+    """Return the known name that is meant in words, or what is expected if none is close.
+
+    Args:
+        name: Unknown name.
+        known: Known names.
+        otherwise: Words if no name is close; empty if they are to list the known names.
+        cutoff: Least similarity, from 0 to 1.
+    """
+    close = difflib.get_close_matches(name, known, n=1, cutoff=cutoff)
+    expected = otherwise or f"expected one of {', '.join(known)}"
+    return f"did you mean '{close[0]}'?" if close else expected

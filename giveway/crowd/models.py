@@ -12,7 +12,7 @@ from giveway.config.files.presets import parameters_of
 from giveway.crowd.motion.attention import Inattentive
 from giveway.crowd.motion.cohesion import BY_FORCES, Cohesive
 from giveway.crowd.roster import Roster
-from giveway.errors import CrowdError
+from giveway.errors import CrowdError, retold
 from giveway.plug_ins.finding import load_maker
 from giveway.plug_ins.plugged_in_model import PluggedInModel
 from giveway.plug_ins.sockets import MODEL
@@ -98,10 +98,8 @@ def _hosted(
     person_keys: Callable[[], NDArray[np.int64]] | None = None,
 ) -> PluggedInModel:
     make, setup = maker(name, config), setup_of(config, time_step)
-    try:
+    with retold(PlugInError, CrowdError):
         return PluggedInModel(f"'{name}'", lambda: make(setup), setup, parameters, person_keys)
-    except PlugInError as error:
-        raise CrowdError(str(error)) from error
 
 
 def maker(name: str, config: RunConfig) -> Callable[[ModelSetup], object]:

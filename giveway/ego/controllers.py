@@ -27,7 +27,7 @@ from giveway.config.option import LANE, Section
 from giveway.config.tables.controllers import PaperPidOptions, PlannerOptions
 from giveway.ego.plug_in import plugged_in
 from giveway.ego.vehicle import model_margin
-from giveway.errors import ControlError
+from giveway.errors import ControlError, retold
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -53,12 +53,10 @@ def make_controller(
         speed = config.reference_speed
     regulation = config.regulation.model_copy(update={"reference_speed": speed})
     config = config.model_copy(update={"regulation": regulation})
-    try:
+    with retold(ControllerError, ControlError):
         if config.plugged_in:
             return plugged_in(config, time_step)
         return _CONTROLLERS[config.controller](config, time_step)
-    except ControllerError as error:
-        raise ControlError(str(error)) from error
 
 
 def filled(kind: type[Parameters], *tables: Section, **own: Any) -> Parameters:

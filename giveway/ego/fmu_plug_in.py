@@ -5,6 +5,7 @@ from math import inf
 
 from controller import Acceleration, Force, Observation, PlugInError, Speed
 from fmus import FmuError, IsolatedController, PreparedController
+from giveway.errors import retold
 
 _TOLD: dict[str, Callable[[Observation], float]] = {
     "speed": lambda seen: seen.speed,
@@ -57,10 +58,8 @@ class FmuPlugIn:
             ahead += (self.horizon - len(ahead)) * [inf]
             told += ahead[: self._positions]
             told += [station - seen.position for station in ahead[: self._gaps]]
-        try:
+        with retold(FmuError, PlugInError):
             value = self._fmu.ask(told)
-        except FmuError as error:
-            raise PlugInError(str(error)) from error
         if self._answer == "force":
             return Force(value)
         if self._answer == "acceleration":

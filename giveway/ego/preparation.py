@@ -12,7 +12,7 @@ from giveway.ego.people_assumed import people_at_worst
 from giveway.ego.recorded_ego import NoController, RecordedVehicle
 from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
 from giveway.ego.waiting_ego import WaitingEgo
-from giveway.errors import VehicleError
+from giveway.errors import VehicleError, retold
 from giveway.run_data.tracks import EgoTrack
 
 _MARGIN = 0.05  # least distance [m] between the front bumper and a person; docs/safety.md
@@ -38,10 +38,8 @@ def make_waiting_ego(
     """
     crowd = parameters_of(config.crowd.preset)
     expected = parameters_of(config.perception.preset or config.crowd.preset)
-    try:
+    with retold(FmuError, VehicleError):
         vehicle, description = open_for(config, time_step, stack)
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
     predictor = predictor_of(config, controller, time_step, expected)
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None

@@ -28,7 +28,7 @@ from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.tables.basics import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
 from giveway.config.tables.controllers import PaperPidOptions
-from giveway.errors import VehicleError
+from giveway.errors import VehicleError, retold
 from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EGO_COLUMNS
 
@@ -58,10 +58,8 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
     """
     for config in egos:
         path, profile = fmu_path(config.vehicle), _profile(config.vehicle)
-        try:
+        with retold(FmuError, VehicleError):
             prepare(path, step_size=time_step, profile=profile)
-        except FmuError as error:
-            raise VehicleError(str(error)) from error
         taken = {ROAD_GRADE[0], *(column.name for column in EGO_COLUMNS)}
         for name in () if profile is None else profile.record:
             if name in taken:
@@ -253,10 +251,8 @@ def _other_size(config: EgoRunConfig) -> str:
 
 
 def _model(config: EgoRunConfig) -> FittedModel | None:
-    try:
+    with retold(FmuError, VehicleError):
         profile = _profile(config.vehicle)
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
     return None if profile is None else profile.model
 
 

@@ -7,7 +7,7 @@ from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
 from giveway.ego.people_assumed import people_at_worst
 from giveway.ego.recorded_ego import RecordedVehicle
-from giveway.errors import VehicleError
+from giveway.errors import VehicleError, retold
 from giveway.plug_ins.plugged_in_controller import PluggedIn
 from pedestrian_model import CrowdPredictor
 
@@ -53,10 +53,8 @@ class WaitingEgo:
         Raises:
             VehicleError: the FMU cannot be started.
         """
-        try:
+        with retold(FmuError, VehicleError):
             self.vehicle.start(position=0.0, speed=speed)
-        except FmuError as error:
-            raise VehicleError(str(error)) from error
 
     @property
     def warnings(self) -> list[str]:

@@ -1,14 +1,13 @@
 """The options of a plug-in: its class ``Options``, filled with texts and TOML values."""
 
 import dataclasses
-import difflib
 from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 
-from giveway.errors import ConfigError, ControlError
+from giveway.errors import ConfigError, ControlError, suggestion
 from giveway.plug_ins.sockets import CONTROLLER, Socket
 
 
@@ -34,9 +33,7 @@ def read_options(
     known = [] if kind is None else _names(name, kind, socket)
     for key in values:
         if key not in known:
-            close = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
-            expected = f"one of {', '.join(known)}" if known else "none: it has no options"
-            hint = f"did you mean '{close[0]}'?" if close else f"expected {expected}"
+            hint = suggestion(key, known, "" if known else "expected none: it has no options")
             raise ConfigError(f"{table} {key}: '{name}' has no such option; {hint}")
     if kind is None:
         return None

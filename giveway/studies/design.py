@@ -1,6 +1,5 @@
 """The design of a study: factors and levels become cells, the settings of each combination."""
 
-import difflib
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +8,7 @@ from typing import Any
 
 from giveway.config.files.layers import PLUGGED, Layer, merge, options, results_of
 from giveway.config.renamed import RENAMED, advice
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, suggestion
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.plug_ins.sockets import TABLES
@@ -247,8 +246,7 @@ def _option_factor(name: str, values: list[Any], place: str, definition: StudyDe
     if gone is not None:
         raise ConfigError(f"{place}: no longer exists; {advice(gone, as_flag=False)}")
     if name not in known and not plugged_in:
-        close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-        hint = f"did you mean '{close[0]}'?" if close else "giveway config lists the options"
+        hint = suggestion(name, known, "giveway config lists the options")
         raise ConfigError(
             f"{place}: no such option; {hint} (a factor of your own has named levels)"
         )

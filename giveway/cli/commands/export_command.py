@@ -17,7 +17,7 @@ from giveway.config.option import LANE
 from giveway.cosimulation.preflight import control_step
 from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_margin
-from giveway.errors import ConfigError, ControlError, ResultsError
+from giveway.errors import ConfigError, ControlError, ResultsError, retold
 from giveway.scenario_files import read_scenario
 
 
@@ -50,10 +50,8 @@ def export_command(
     time_step = control_step(effective, read_scenario(found.config_file))
     parameters = _of_all(effective, time_step)
     _check_file(out, force=force)
-    try:
+    with retold(FmuError, ControlError):
         export_controller(out, parameters, fmi_version=version)
-    except FmuError as error:
-        raise ControlError(str(error)) from error
     _show(out, version, parameters)
     return 0
 
@@ -86,7 +84,7 @@ def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
         raise ConfigError(f"{msg}; leave it out with --no-safety")
     pid = own.pid.parameters
     model = config.vehicle if own.mpc is None else own.mpc.model
-    try:
+    with retold(FmuError, ControlError):
         return ControllerParameters(
             mass=model.mass,
             friction=model.friction,
@@ -104,8 +102,6 @@ def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
             horizon=config.model_steps,
             mpc=own.mpc is not None,
         )
-    except FmuError as error:
-        raise ControlError(str(error)) from error
 
 
 def _check_file(out: Path, *, force: bool) -> None:

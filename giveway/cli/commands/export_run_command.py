@@ -1,6 +1,5 @@
 """The command ``giveway export run``: a results folder in other formats."""
 
-import difflib
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -8,7 +7,7 @@ from typing import NamedTuple
 from rich.console import Console
 
 from giveway.cli.screen.printing import print_place, writing
-from giveway.errors import ConfigError, ResultsError
+from giveway.errors import ConfigError, ResultsError, suggestion
 from giveway.exports.fcd import write_fcd
 from giveway.exports.geojson import write_geojson
 from giveway.exports.people import write_jupedsim, write_pedpy
@@ -55,9 +54,7 @@ def export_run_command(
     """
     found = FORMATS.get(to)
     if found is None:
-        close = difflib.get_close_matches(to, FORMATS, n=1, cutoff=0.5)
-        hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(FORMATS)}"
-        raise ConfigError(f"--format {to}: no such format; {hint}")
+        raise ConfigError(f"--format {to}: no such format; {suggestion(to, FORMATS)}")
     run = RunFolder.read(folder)
     file = out or Path(f"{folder.absolute().name}{found.suffix}")
     _check(file, found.suffix, force=force)

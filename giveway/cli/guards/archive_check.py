@@ -10,7 +10,7 @@ from typing import Any
 
 from giveway.config.files.layers import Layer, merge, read_toml
 from giveway.config.tables.basics import BUNDLED_VEHICLES
-from giveway.errors import VehicleError
+from giveway.errors import VehicleError, retold
 from giveway.plug_ins.finding import is_fmu
 
 
@@ -36,10 +36,8 @@ def require_archives(config: Path | None, settings: Mapping[str, Any]) -> None:
     from fmus.errors import FmuError
 
     for path in paths:
-        try:
+        with retold(FmuError, VehicleError):
             open_archive(path)
-        except FmuError as error:
-            raise VehicleError(str(error)) from error
 
 
 def _named(settings: Mapping[str, Any]) -> Iterator[Path]:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from fmus import FmuError
 from fmus.profile.vehicle_profile import VehicleProfile, read_profile
 from giveway.cli.screen.printing import writing
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, retold
 from giveway.figures import save_figure
 
 
@@ -43,10 +43,8 @@ def profile_in(path: Path | None) -> VehicleProfile | None:
     """
     if path is None:
         return None
-    try:
+    with retold(FmuError, ConfigError):
         return read_profile(path)
-    except FmuError as error:
-        raise ConfigError(str(error)) from error
 
 
 def save_picture(figure: Figure, path: Path) -> None:

@@ -17,7 +17,7 @@ from fmus import (
 )
 from giveway.config.run_config import EgoRunConfig
 from giveway.config.tables.basics import DEFAULT_SPEED
-from giveway.errors import ControlError
+from giveway.errors import ControlError, retold
 
 
 def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
@@ -50,7 +50,7 @@ def prepared(config: EgoRunConfig, time_step: float) -> PreparedController:
     Raises:
         ControlError: the file or its profile cannot be read, or the two do not fit each other.
     """
-    try:
+    with retold(FmuError, ControlError):
         return prepare_controller(
             Path(config.controller),
             step_size=time_step,
@@ -58,8 +58,6 @@ def prepared(config: EgoRunConfig, time_step: float) -> PreparedController:
             profile=_profile(config),
             start_values=_start_values(config),
         )
-    except FmuError as error:
-        raise ControlError(str(error)) from error
 
 
 def fmu_hash(path: str) -> str:
@@ -83,7 +81,7 @@ def fmu_described(config: EgoRunConfig) -> dict[str, Any]:
         ControlError: the file cannot be read.
     """
     path = Path(config.controller)
-    try:
+    with retold(FmuError, ControlError):
         profile = choose_controller_profile(path, _profile(config))
         return {
             **dataclasses.asdict(describe(path)),
@@ -91,8 +89,6 @@ def fmu_described(config: EgoRunConfig) -> dict[str, Any]:
             "profile": profile.model_dump(exclude_unset=True),
             "options": dict(config.controller_options),
         }
-    except FmuError as error:
-        raise ControlError(str(error)) from error
 
 
 def _start_values(config: EgoRunConfig) -> dict[str, Any]:

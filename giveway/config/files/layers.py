@@ -1,6 +1,5 @@
 """Layers of settings (scenario, TOML file, flags), merged into one validated configuration."""
 
-import difflib
 import os
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,7 +17,7 @@ from giveway.config.option import Section, declared, expectation
 from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
 from giveway.config.tables.controllers import OWN_OPTIONS
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, suggestion
 from giveway.plug_ins.finding import same_name
 from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES
 
@@ -246,8 +245,7 @@ def _did_you_mean(location: Location) -> str:
         {o.location[len(location) - 1] for o in options() if o.location[:-1] == location[:-1]}
         | ({o.location[0] for o in options()} if len(location) == 1 else set())
     )
-    close = difflib.get_close_matches(location[-1], siblings, n=1, cutoff=0.5)
-    return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(siblings)}"
+    return suggestion(location[-1], siblings)
 
 
 def dump_toml(config: RunConfig) -> str:

@@ -11,7 +11,7 @@ from giveway.config.files.layers import Layer, build_config, merge, read_toml, u
 from giveway.config.files.presets import parameters_of
 from giveway.config.files.trust import require_trusted
 from giveway.config.run_config import RunConfig
-from giveway.errors import ConfigError, ScenarioError, VehicleError
+from giveway.errors import ConfigError, ScenarioError, VehicleError, retold
 from sumo_scenarios import Scenario, available, find
 from sumo_scenarios import ScenarioError as UnknownScenario
 
@@ -35,10 +35,8 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
     wanted = merge(layers).get("scenario", RunConfig.model_fields["scenario"].default)
     if not isinstance(wanted, str) or not wanted:
         build_config(layers)  # raises an error that names the layer and what was expected
-    try:
+    with retold(UnknownScenario, ScenarioError):
         scenario = find(wanted)
-    except UnknownScenario as error:
-        raise ScenarioError(str(error)) from error
     for layer in layers:
         _require_one_ego(layer)
     own = []
@@ -95,10 +93,8 @@ def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfi
 
 def _model_in(profile: object) -> dict[str, float]:
     """Return the identified M and alpha of a profile; empty if they have not been identified."""
-    try:
+    with retold(FmuError, VehicleError):
         model = read_profile(Path(str(profile))).model
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
     return {} if model is None else {"mass": model.mass, "friction": model.friction}
 
 

@@ -11,7 +11,7 @@ import tomlkit
 
 from giveway.config.files.schema_names import PRESET, with_schema
 from giveway.config.files.toml import read_toml_file
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, suggestion
 from pedestrian_model import PRESETS, ParameterError, VciParameters, require_steady
 
 SUFFIX = ".toml"
@@ -86,8 +86,7 @@ def require_parameter(name: str, where: str) -> None:
         ConfigError: it is none; the message begins with ``where``.
     """
     if name not in NAMES:
-        close = difflib.get_close_matches(name, NAMES, n=1)
-        hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(NAMES)}"
+        hint = suggestion(name, NAMES, cutoff=0.6)
         raise ConfigError(f"{where} {name}: unknown parameter; {hint}")
 
 

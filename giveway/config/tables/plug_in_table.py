@@ -1,12 +1,12 @@
 """A table whose keys are the names of plug-ins, as `[rules]` and `[metrics]` are."""
 
-import difflib
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import ConfigDict, JsonValue, model_validator
 
 from giveway.config.option import Section
+from giveway.errors import suggestion
 from giveway.plug_ins.finding import declared_names, is_reference
 from giveway.plug_ins.sockets import Socket
 
@@ -42,7 +42,6 @@ class PlugInTable(Section):
 
 def _unknown(name: str, known: list[str], what: str) -> ValueError:
     """Return the error for a key that is no plug-in's name."""
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     some = f"one of {', '.join(known)}, or " if known else ""
-    hint = f"did you mean '{close[0]}'?" if close else f"expected {some}module:Class of a package"
+    hint = suggestion(name, known, f"expected {some}module:Class of a package")
     return ValueError(f"{name}: no {what} has this name; {hint}")

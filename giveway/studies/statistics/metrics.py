@@ -1,10 +1,9 @@
 """The metrics of a run that studies compare, and which direction is better."""
 
-import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, suggestion
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.run_data.columns import Column, Direction
@@ -96,9 +95,7 @@ def metric(name: str) -> Metric:
     for known in METRICS:
         if known.name == name:
             return known
-    names = [known.name for known in METRICS]
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"
+    hint = suggestion(name, [known.name for known in METRICS])
     raise ConfigError(f"metric '{name}': no such number to compare; {hint}")
 
 

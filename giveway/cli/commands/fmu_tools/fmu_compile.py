@@ -9,7 +9,7 @@ from fmus.description.binaries import this_platform
 from fmus.sources.foreign import compile_fmu
 from giveway.cli.guards.fmu_arguments import require_fmu
 from giveway.cli.screen.printing import print_place, writing
-from giveway.errors import ConfigError, VehicleError
+from giveway.errors import ConfigError, VehicleError, retold
 
 
 def compile_command(path: Path, out: Path | None = None, *, force: bool = False) -> int:
@@ -33,11 +33,9 @@ def compile_command(path: Path, out: Path | None = None, *, force: bool = False)
     if out.exists() and (not force or out.samefile(path)):
         raise ConfigError(f"{out}: exists; name another file with -o, or replace it with --force")
     console = Console()
-    try:
-        with console.status("Compiling ..."), writing(out, "name another with -o"):
-            made = compile_fmu(path, out)
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
+    compiling, saving = console.status("Compiling ..."), writing(out, "name another with -o")
+    with retold(FmuError, VehicleError), compiling, saving:
+        made = compile_fmu(path, out)
     for name in made:
         console.print(f"Compiled {name}", highlight=False, markup=False)
     print_place(console, "FMU", out)

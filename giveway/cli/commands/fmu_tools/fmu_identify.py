@@ -19,7 +19,7 @@ from fmus.text import printable
 from giveway.cli.guards.fmu_arguments import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.screen.printing import escape, print_place, writing
 from giveway.config.files.schema_names import PROFILE, with_schema
-from giveway.errors import ConfigError, VehicleError
+from giveway.errors import ConfigError, VehicleError, retold
 
 
 def identify_command(
@@ -64,12 +64,10 @@ def identify_command(
         raise ConfigError(f"{out}: exists; name another file with -o, or replace it with --force")
     given = profile_in(profile)
     console = Console()
-    try:
+    with retold(FmuError, VehicleError):
         chosen = choose_profile(path, given)
         fmu_step = prepare(path, step_size=step, profile=chosen).step_plan.step
         found = _identified(console, path, chosen, step, fmu_step, horizon, force_limit, speeds)
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
     console.print(_summary(path, found))
     for remark in found.remarks:
         console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False, soft_wrap=True)
