@@ -37,7 +37,7 @@ RUNS: dict[str, dict[str, Any]] = {
     "pid-paper": {
         "controller": "pid-paper",
         "crowd": {"pedestrians": 60},
-        "vehicle": {"fmu": "fmi3", "exact": True},
+        "vehicle": {"fmu": "fmi3-exact"},
         "seed": 2,
     },
     "street, SUMO steps of 1 s": {

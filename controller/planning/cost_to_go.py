@@ -9,12 +9,10 @@ time that this policy loses is added to the manoeuvre's cost (rollout, Bertsekas
 import numpy as np
 
 from controller._jit import Array, inner
+from controller.driving_constants import COMFORTABLE, DRIVE_ON, FIRM
 
 _SPAN = 6.0  # time [s] beyond the horizon for which the base policy drives
 _STEP = 0.25  # time step [s] of the base policy
-_COMFORT = 2.0  # deceleration [m/s^2] of a stop before a person who stays
-_BRAKING = 3.0  # largest deceleration [m/s^2] of the base policy
-_DRIVING_OFF = 2.5  # largest acceleration [m/s^2] of the base policy
 _DISTANCE = 1.0  # distance [m] that the base policy keeps to people
 
 
@@ -40,11 +38,11 @@ def time_to_go(crossers: Array, speed: float, wanted: float) -> float:
                 continue
             ahead = max(ahead - _DISTANCE, 0.0)
             if crossers[p, 3] - t > _SPAN:
-                behind = np.sqrt(2.0 * _COMFORT * ahead)
+                behind = np.sqrt(2.0 * COMFORTABLE * ahead)
             else:
                 behind = ahead / (crossers[p, 3] - t)
             goal = min(goal, max(along, 0.0) + behind)
-        v = max(0.0, v + min(max(goal - v, -_BRAKING * _STEP), _DRIVING_OFF * _STEP))
+        v = max(0.0, v + min(max(goal - v, -FIRM * _STEP), DRIVE_ON * _STEP))
         at += v * _STEP
         lost += _STEP * max(0.0, 1.0 - v / wanted)
     return lost

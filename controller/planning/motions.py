@@ -3,14 +3,11 @@
 import numpy as np
 
 from controller._jit import Array, inner, kernel
+from controller.driving_constants import FIRM, SOFT_STOP
 
 _EASING = 0.4  # time constant [s] with which an acceleration ends at standstill or wanted speed
-_COMFORT = 1.5  # deceleration [m/s^2] of a stop at the end of the way
 _CREEPING = 0.6  # time constant [s] of the last metres before a stop, against a jolt
 _JERK = 8.0  # jerk [m/s^3] of a branch
-# Deceleration [m/s^2] from a speed above the wanted one: below the limit of adaptive cruise control
-# (ISO 15622: 3.5 m/s^2 at speed). Manoeuvres for obstacles brake harder.
-_SLOWING = 3.0
 
 Motion = tuple[Array, Array, Array]
 """Distances [m], speeds [m/s] and accelerations [m/s^2] of a manoeuvre, or of k of them."""
@@ -46,7 +43,7 @@ def aim(
         for k in range(count):
             wanted, v, a = goals[k, 0], speeds[k, i], asked_for[k]
             if wanted > 0.0 or v > fastest:
-                goal = min(wanted, max((fastest - v) / _EASING, -_SLOWING))
+                goal = min(wanted, max((fastest - v) / _EASING, -FIRM))
             else:
                 goal = max(wanted, min(0.0, (goals[k, 1] - v) / _EASING))
             a += min(max(goal - a, -most), most)
@@ -85,8 +82,8 @@ def approach(
         distance[i], speeds[i] = s, v
         # The car drives on until its acceleration has changed. This distance is not left to brake.
         left = max(end - s - 0.75 * (_EASING + 2.0 * max(a, 0.0) / jerk) * v, 0.0)
-        aimed_at = min(fastest, np.sqrt(2.0 * _COMFORT * left), left / _CREEPING)
-        goal = min(max((aimed_at - v) / _EASING, -_SLOWING), wanted)
+        aimed_at = min(fastest, np.sqrt(2.0 * SOFT_STOP * left), left / _CREEPING)
+        goal = min(max((aimed_at - v) / _EASING, -FIRM), wanted)
         a += min(max(goal - a, -most), most)
         after = max(v + time_step * a, 0.0)
         accelerations[i] = (after - v) / time_step

@@ -14,6 +14,7 @@ from controller.defaults import (
     SAFE_DISTANCE,
     SPEED_MAX,
 )
+from controller.driving_constants import FIRM
 from controller.parameters import require, require_not_negative, require_positive
 
 
@@ -64,9 +65,6 @@ class ManoeuvreParameters:
             require_not_negative(name, getattr(self, name), "-")
         require_not_negative("calm_time", self.calm_time, "s")
 
-
-_SLOW = 4.0  # reference speed [m/s] v_r of Yang & Özgüner 2019
-_GENTLE = 3.0  # largest deceleration [m/s^2] that passengers accept
 
 _WEIGHTS = (
     "time_weight",
@@ -128,7 +126,7 @@ class PlannerParameters:
     @property
     def calm_time(self) -> float:
         """The time [s] for which a plan keeps threat-free speeds; it grows with v_r."""
-        return self.manoeuvres.calm_time + max(0.0, self.reference_speed - _SLOW) / _GENTLE
+        return self.manoeuvres.calm_time + max(0.0, self.reference_speed - REFERENCE_SPEED) / FIRM
 
     @property
     def calm_braking(self) -> float:
@@ -136,7 +134,7 @@ class PlannerParameters:
 
         It is inf at low reference speeds, up to v_r of the paper.
         """
-        return _GENTLE if self.reference_speed > _SLOW else math.inf
+        return FIRM if self.reference_speed > REFERENCE_SPEED else math.inf
 
 
 class Weights(NamedTuple):

@@ -167,6 +167,10 @@ Preset = Annotated[str, AfterValidator(_preset)]
 OptionList = Annotated[tuple[str, ...], BeforeValidator(_words)]
 
 
+SumoOutput = Literal["fcd", "tripinfo", "ssm", "summary"]
+SumoOutputs = Annotated[tuple[SumoOutput, ...], BeforeValidator(_split)]
+
+
 SumoSeed = Annotated[
     Annotated[int, Field(ge=0, le=2**31 - 1)] | Literal["scenario", "run"], BeforeValidator(_seed)
 ]

@@ -62,6 +62,21 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
             "calm_time",
         )
     },
+    ("regulation", "comfortable_deceleration"): "leave it out: it is always 2 m/s^2",
+    ("regulation", "kerb_distance"): "leave it out: it is always 1.5 m",
+    ("regulation", "kerb_time"): "leave it out: it is always 2.5 s",
+    ("regulation", "follow_up_gap"): "leave it out: it is the Highway Capacity Manual's",
+    ("crowd", "desired_speed_min"): "leave it out: it is always 0.5 m/s",
+    ("crowd", "desired_speed_max"): "leave it out: it is always 2.2 m/s",
+    ("crowd", "detour"): ("model_options", "detour"),
+    ("crowd", "creep"): ("model_options", "creep"),
+    ("vehicle", "exact"): "for true write [vehicle] fmu = 'fmi2-exact' (--vehicle fmi2-exact)",
+    ("safety", "reaction_time"): "leave it out: it is what the vehicle's profile identified",
+    ("sumo", "end"): "write [sumo] options = '--end SECONDS' (--sumo-options '--end SECONDS')",
+    **{
+        ("sumo", name): f"write [sumo] outputs = ['{name}'] (--sumo-outputs {name})"
+        for name in ("fcd", "tripinfo", "ssm", "summary")
+    },
     ("regulation", "traffic_lights"): ("rules", "traffic_lights"),
     ("regulation", "vehicles"): ("rules", "following"),
     ("regulation", "priority"): "write [rules] crossings, right_of_way and merging, true or false "
@@ -75,6 +90,12 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
 
 FLAGS: Final[Mapping[str, Location]] = {
     "attitude": ("planner", "attitude"),
+    "fcd": ("sumo", "fcd"),
+    "tripinfo": ("sumo", "tripinfo"),
+    "ssm": ("sumo", "ssm"),
+    "kerb-distance": ("regulation", "kerb_distance"),
+    "kerb-time": ("regulation", "kerb_time"),
+    "follow-up-gap": ("regulation", "follow_up_gap"),
     "obey-lights": ("regulation", "traffic_lights"),
     "respect-vehicles": ("regulation", "vehicles"),
     "priority": ("regulation", "priority"),

@@ -34,7 +34,7 @@ from giveway.config.tables.controllers import (
     SafetyConfig,
     TunedPidOptions,
 )
-from giveway.config.tables.crowd import CrowdConfig
+from giveway.config.tables.crowd import VCI, CrowdConfig, VciOptions
 from giveway.config.tables.measures import MeasureConfig, read_measures
 from giveway.config.tables.metrics import MetricsConfig
 from giveway.config.tables.perception import PerceptionConfig
@@ -42,6 +42,7 @@ from giveway.config.tables.regulation import RegulationConfig
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.plug_ins.finding import is_fmu, shown
 from giveway.plug_ins.options import read_options
+from giveway.plug_ins.sockets import MODEL
 
 PAPER_STEP = 0.05
 """Default control step [s] (Yang & Özgüner 2019, table 1)."""
@@ -131,8 +132,7 @@ class RunConfig(Section):
         default_factory=dict, description="the controller's own options"
     )
     model_options: dict[str, JsonValue] = Field(
-        default_factory=dict,
-        description="the options of a pedestrian model that is not giveway's own",
+        default_factory=dict, description="the options of the pedestrian model"
     )
     sensor_options: dict[str, JsonValue] = Field(
         default_factory=dict, description="the options of a sensor that is not giveway's own"
@@ -155,7 +155,8 @@ class RunConfig(Section):
     def _check_egos(self) -> RunConfig:
         for ego in self.each_ego():
             ego.require_sound()
-        if self.model_options and not self.crowd.plugged_in:
+        self.vci_options  # noqa: B018 - they are read, and refused if they cannot be used
+        if self.model_options and not self.crowd.plugged_in and self.crowd.model != VCI:
             key = next(iter(self.model_options))
             raise ValueError(
                 f"[model_options] {key}: '{self.crowd.model}' has no options there; the "
@@ -217,6 +218,17 @@ class RunConfig(Section):
         from controller import DECLARED, Defaults  # imported here, since numba comes with it
 
         return DECLARED.get(self.controller, Defaults())
+
+    @property
+    def vci_options(self) -> VciOptions:
+        """The options of the VCI model; its defaults if another model moves the people.
+
+        Raises:
+            ConfigError: One is unknown, or its value cannot be used.
+        """
+        own = self.model_options if self.crowd.model == VCI else {}
+        read: VciOptions = read_options(VCI, VciOptions, own, MODEL)
+        return read
 
     @property
     def reference_speed(self) -> float | Literal["lane"]:

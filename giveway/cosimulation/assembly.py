@@ -217,29 +217,23 @@ def _priority(
     config: RunConfig, egos: Sequence[EgoRunConfig], sumo: SumoSession
 ) -> PriorityOnFoot | None:
     """Make the part that tells people of their priority, or None if no ego gives way."""
-    heeding = [driver for driver in egos or (config,) if driver.heeds("crossings")]
-    if not heeding:
+    if not any(driver.heeds("crossings") for driver in egos or (config,)):
         return None
-    kerb_distance = max(driver.regulation.kerb_distance for driver in heeding)
-    priority = PriorityOnFoot(sumo.lanes.crossings, sumo.light_state, kerb_distance)
+    priority = PriorityOnFoot(sumo.lanes.crossings, sumo.light_state)
     return priority if len(priority) else None
 
 
 def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:
     sumo = config.sumo
     seed = config.seed if sumo.seed == "run" else sumo.seed
-    extra = sumo.options if sumo.end is None else ("--end", f"{sumo.end:.3f}", *sumo.options)
     return StartOptions(
         seed=None if seed == "scenario" else int(seed),
         fallback_seed=config.seed,
         step_length=sumo.step_length,
         interact=moved,
         outputs=outputs,
-        fcd=sumo.fcd,
-        tripinfo=sumo.tripinfo,
-        ssm=sumo.ssm,
-        summary=sumo.summary,
-        extra=extra,
+        written=sumo.outputs,
+        extra=sumo.options,
     )
 
 

@@ -20,7 +20,7 @@ class Standstill:
         """The remark for the user."""
         return (
             f"no ego moved for {LONGEST:g} s in a scenario without an end, so that the run was "
-            "ended; set its end with --time-limit or --sumo-end"
+            "ended; set its end with --time-limit"
         )
 
     def too_long(self, egos: Sequence[Ego], time: float) -> bool:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd, targets
 
+KERB_DISTANCE = 1.5  # distance [m] to the kerb within which people are about to enter; own choice
 ASIDE = 0.5  # distance [m] beside a crossing's marking, within which people count as on it
 _ONWARD = 0.5  # least cosine (60 degrees) of the angle between walking direction and crossing
 _WAITING = 1.5  # distance [m] to the waiting point, within which people wait

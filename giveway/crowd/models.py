@@ -63,9 +63,7 @@ def _plain_model_of(
     if crowd.plugged_in or crowd.model in JUPEDSIM_MODELS:
         return _hosted(crowd.model, config, time_step, parameters, lambda: roster.keys)
     if crowd.model == "vci":
-        return CrowdModel(
-            parameters, time_step, detour=crowd.detour, creep=crowd.creep, threads=threads
-        )
+        return CrowdModel(parameters, time_step, threads=threads, **dict(config.vci_options))
     return PlainModel(cast(PlainName, crowd.model), parameters, time_step)
 
 

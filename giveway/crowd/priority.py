@@ -9,11 +9,20 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.crowd.crossings import ASIDE, have_priority, is_near, is_open, place_on, use_of
+from giveway.crowd.crossings import (
+    ASIDE,
+    KERB_DISTANCE,
+    have_priority,
+    is_near,
+    is_open,
+    place_on,
+    use_of,
+)
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from pedestrian_model import Crowd
 
 _FADE = 1.0  # distance [m] behind a crossing over which priority fades
+_REACH = max(KERB_DISTANCE, _FADE)  # distance [m] from a crossing at which people are examined
 _CELL = 16.0  # cell size [m] of the grid in which crossings are found
 _MOST_CELLS = 2**20  # largest number of cells; larger networks have larger cells
 
@@ -24,15 +33,12 @@ class PriorityOnFoot:
     Args:
         crossings: Crossings of the network.
         light_state: Function that returns the state of a traffic light by its id.
-        kerb_distance: Distance [m] to the kerb, within which a pedestrian who walks towards a
-            crossing is about to enter it.
     """
 
     def __init__(
         self,
         crossings: Sequence[Crossing],
         light_state: Callable[[str], str],
-        kerb_distance: float,
     ) -> None:
         own = [crossing for crossing in crossings if crossing.zebra]
         ends = np.array([crossing.ends for crossing in own]).reshape(-1, 2, 2)
@@ -45,8 +51,6 @@ class PriorityOnFoot:
         width = np.array([crossing.width for crossing in self._crossings])
         self._half_width = width / 2.0 + ASIDE
         self._light_state = light_state
-        self._kerb_distance = kerb_distance
-        self._reach = max(kerb_distance, _FADE)
         if len(self._crossings):
             self._sort()
 
@@ -58,7 +62,7 @@ class PriorityOnFoot:
         """Sort the crossings into the cells of a grid that they reach into."""
         middle = self._kerb + self._along * self._length[:, None] / 2.0
         along = np.abs(self._along)
-        half = along * (self._length[:, None] / 2.0 + self._reach)
+        half = along * (self._length[:, None] / 2.0 + _REACH)
         half += along[:, ::-1] * self._half_width[:, None]
         low, high = middle - half, middle + half
         self._origin = low.min(axis=0)
@@ -90,14 +94,14 @@ class PriorityOnFoot:
         if not len(rows):
             return
         u, w = place_on(crowd.position[rows], self._kerb[which], self._along[which])
-        near = is_near(u, w, self._length[which], self._half_width[which], self._reach)
+        near = is_near(u, w, self._length[which], self._half_width[which], _REACH)
         if not near.any():
             return
         rows, which, u = rows[near], which[near], u[near]
         length = self._length[which]
         use = use_of(crowd, rows, u, self._along[which], length)
         outside = np.maximum(-u, u - length)
-        own = have_priority(use, self._are_open(which)) & (outside <= self._kerb_distance)
+        own = have_priority(use, self._are_open(which)) & (outside <= KERB_DISTANCE)
         fading = np.where(use.leaving, np.maximum(0.0, 1.0 - outside / _FADE), 0.0)
         np.maximum.at(crowd.priority, rows, np.where(own, 1.0, fading))
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from controller import Decision, Observation
+from controller.driving_constants import COMFORTABLE, STANDING
 from giveway.config.tables.controllers import PaperPidOptions
 from giveway.ego.people_in_front import PeopleInFront
 from giveway.ego.percept import Perceived
@@ -28,7 +29,6 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
 from giveway.geometry.slope import Slope
 from giveway.run_data.outputs import ROAD_GRADE
-from giveway.run_data.rows import STOP_SPEED
 from giveway.run_data.tracks import EgoRow
 from pedestrian_model import Surroundings
 
@@ -107,7 +107,7 @@ class Ego:
         self._following = Following(
             regulation.safe_distance,
             self._origin,
-            regulation.comfortable_deceleration,
+            COMFORTABLE,
             plans=controller.foresees,
             tuned=config.defaults.smooths,
         )
@@ -287,7 +287,7 @@ class Ego:
         """Return the row of this instant for the tables."""
         front, cause = self.front, ""
         origin = front + self._origin
-        if self.vehicle.speed < STOP_SPEED:
+        if self.vehicle.speed < STANDING:
             cause = waits_for(front, self._kept, seen, decision, self._eases_off)
         return EgoRow(
             time=time,

@@ -70,7 +70,6 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
     """
     safety, walking = config.safety, parameters_of(config.crowd.preset)
     worst = people_at_worst(safety.people, config.crowd.preset)
-    reaction = safety.reaction_time
     return SafetyParameters(
         walking_acceleration=worst.acceleration,
         walking_speed=worst.speed,
@@ -79,5 +78,5 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         margin=_MARGIN + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,
         force_limit=config.vehicle.force_limit,
-        reaction_time=identified_reaction_time(config) if reaction is None else reaction,
+        reaction_time=identified_reaction_time(config),
     )

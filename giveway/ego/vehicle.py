@@ -26,7 +26,7 @@ from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.tables.basics import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
+from giveway.config.tables.basics import BUNDLED_VEHICLES, DEFAULT_SPEED, EXACT, VehicleConfig
 from giveway.config.tables.controllers import PaperPidOptions
 from giveway.errors import VehicleError, retold
 from giveway.run_data.outputs import ROAD_GRADE
@@ -92,7 +92,7 @@ def open_for(
         start_values = {
             "M": settings.mass,
             "alpha": settings.friction,
-            "exact": settings.exact,
+            "exact": settings.fmu.endswith(EXACT),
         }
     isolated = {"auto": None, "process": True, "none": False}[settings.isolation]
 

@@ -25,7 +25,6 @@ from giveway.metrics.severity import SEVERITIES, SEVERITY_FIELDS, severities
 from giveway.metrics.standing import stops, waiting_times
 from giveway.metrics.summary import SUMMARY_FIELDS, Summary, summarise
 from giveway.metrics.vehicles import VehicleContact, vehicle_contacts
-from giveway.run_data.rows import STOP_SPEED
 
 __all__ = [
     "CRITICAL_TTC",
@@ -38,7 +37,6 @@ __all__ = [
     "SEVERITIES",
     "SEVERITY_FIELDS",
     "SIDE",
-    "STOP_SPEED",
     "SUMMARY_FIELDS",
     "WALK_SUMMARY_FIELDS",
     "Anticipation",

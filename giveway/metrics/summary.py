@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import DECLARED, Defaults, WorstMotion
+from controller.driving_constants import STANDING
 from giveway.metrics.anticipation import Anticipation
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
@@ -17,7 +18,6 @@ from giveway.metrics.slowing import slowed
 from giveway.metrics.standing import waiting_times
 from giveway.metrics.vehicles import VehicleContact
 from giveway.run_data.columns import Quantity, columns_of
-from giveway.run_data.rows import STOP_SPEED
 from giveway.run_data.tracks import EgoTrack
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ def summarise(
     goal: float,
     safe_distance: float,
     reference_speed: float | None = None,
-    stop_speed: float = STOP_SPEED,
+    stop_speed: float = STANDING,
     controller: str,
     people: WorstMotion | None = None,
     hasty: NDArray[np.int64] = _NOBODY,

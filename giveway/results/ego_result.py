@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import WorstMotion
+from controller.driving_constants import COMFORTABLE
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.presets import parameters_of
 from giveway.config.option import LANE
@@ -125,7 +126,7 @@ class EgoResult:
             people=self.law.people,
             signals=self.law.signals,
             vehicles=self.law.vehicles,
-            comfortable=self.config.regulation.comfortable_deceleration,
+            comfortable=COMFORTABLE,
             goal=self.goal,
             stop_speed=self.config.record.stop_speed,
             undisturbed=self._undisturbed,

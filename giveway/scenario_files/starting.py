@@ -4,6 +4,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 from urllib.parse import unquote
 
@@ -15,6 +16,17 @@ from giveway.scenario_files.outputs import OutputFolder, is_file
 _VALIDATION: Final = ("xml-validation", "xml-validation.net", "xml-validation.routes")
 _WINDOW_ONLY: Final = ("osg-view",)  # options that only a SUMO with OpenSceneGraph knows
 _SAVING_STATES: Final = ("save-state.times", "save-state.period")
+
+
+WRITTEN: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "fcd": "fcd-output",
+        "tripinfo": "tripinfo-output",
+        "summary": "summary-output",
+        "ssm": "device.ssm.file",
+    }
+)
+"""The option of SUMO for each output that a user can ask for by name."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +41,7 @@ class StartOptions:
         interact: True if persons or vehicles are to be moved. Otherwise SUMO simulates the scenario
             exactly as without giveway.
         outputs: Folder for SUMO's output files, or None to drop them.
-        fcd, tripinfo, summary, ssm: True to write this output even if the scenario does not.
+        written: Keys of ``WRITTEN``: outputs that are written even if the scenario does not.
         extra: Further options as on SUMO's command line, which override giveway's.
     """
 
@@ -38,10 +50,7 @@ class StartOptions:
     step_length: float | None = None
     interact: bool = True
     outputs: Path | None = None
-    fcd: bool = False
-    tripinfo: bool = False
-    summary: bool = False
-    ssm: bool = False
+    written: tuple[str, ...] = ()
     extra: tuple[str, ...] = ()
 
 
@@ -274,18 +283,12 @@ class _Preparation:
 
     def _wanted_outputs(self) -> None:
         """Add the outputs that the user wants and the scenario does not have."""
-        wanted = self._wanted
-        for option, file, is_wanted in (
-            ("fcd-output", "fcd.xml", wanted.fcd),
-            ("tripinfo-output", "tripinfo.xml", wanted.tripinfo),
-            ("summary-output", "summary.xml", wanted.summary),
-            ("device.ssm.file", "ssm.xml", wanted.ssm),
-        ):
-            if is_wanted and option not in self._options:
-                self._options[option] = self._placed(file)
-        if wanted.ssm and not any(
-            name.startswith("device.ssm.") for name in self._scenario.options
-        ):
+        wanted = self._wanted.written
+        for name in wanted:
+            if WRITTEN[name] not in self._options:
+                self._options[WRITTEN[name]] = self._placed(f"{name}.xml")
+        own = self._scenario.options
+        if "ssm" in wanted and not any(name.startswith("device.ssm.") for name in own):
             self._options["device.ssm.probability"] = "1"
 
     def _placed_extra(self, value: str) -> str:

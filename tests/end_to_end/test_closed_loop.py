@@ -168,11 +168,14 @@ def test_the_pids_steady_state_error_delays_it_on_an_empty_plaza() -> None:
 
 def test_people_cross_before_a_standing_car_but_for_the_detour() -> None:
     """The car stops; who cannot see a way round it does not walk before it, and it waits less."""
-    settings = {"controller": "pid-paper", "seed": 3, "time_limit": 20.0}
+    settings = {
+        "controller": "pid-paper",
+        "seed": 3,
+        "time_limit": 20.0,
+        "crowd": {"pedestrians": 30},
+    }
     waits = [
-        giveway.run({**settings, "crowd": {"pedestrians": 30, "detour": detour}}).summary[
-            "longest_wait"
-        ]
+        giveway.run({**settings, "model_options": {"detour": detour}}).summary["longest_wait"]
         for detour in (True, False)
     ]
     assert waits[0] > waits[1] > 1.0

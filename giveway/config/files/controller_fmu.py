@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from controller import Setup
+from controller.driving_constants import COMFORTABLE
 from fmus import (
     ControllerProfile,
     FmuError,
@@ -36,7 +37,7 @@ def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
         reference_speed=DEFAULT_SPEED if isinstance(speed, str) else speed,
         safe_distance=regulation.safe_distance,
         force_limit=config.vehicle.force_limit,
-        comfortable_deceleration=regulation.comfortable_deceleration,
+        comfortable_deceleration=COMFORTABLE,
     )
 
 

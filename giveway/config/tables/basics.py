@@ -10,6 +10,7 @@ from giveway.config.option import (
     NameList,
     OptionList,
     Section,
+    SumoOutputs,
     SumoSeed,
     TimeOrWindow,
     option,
@@ -19,7 +20,15 @@ from giveway.config.reasons import FORCE
 _SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # Pattern of the ids that SUMO accepts
 SUMO_TIME = "SUMO counts milliseconds"
 
-BUNDLED_VEHICLES: Final[dict[str, Literal["2.0", "3.0"]]] = {"fmi2": "2.0", "fmi3": "3.0"}
+EXACT: Final = "-exact"
+"""The end of a bundled vehicle's name if its FMU solves exactly."""
+
+BUNDLED_VEHICLES: Final[dict[str, Literal["2.0", "3.0"]]] = {
+    "fmi2": "2.0",
+    "fmi3": "3.0",
+    f"fmi2{EXACT}": "2.0",
+    f"fmi3{EXACT}": "3.0",
+}
 """The FMI versions of the vehicle FMUs that are named by a word."""
 
 DEFAULT_SPEED = 4.0
@@ -86,7 +95,8 @@ class VehicleConfig(Section):
     fmu: str = option(
         "fmi2",
         None,
-        "vehicle FMU: 'fmi2' or 'fmi3' (bundled), or a path",
+        "vehicle FMU: a path, or a bundled one: fmi2, fmi3, or fmi2-exact and fmi3-exact, which "
+        "solve exactly instead of by the paper's forward Euler",
         flag="--vehicle",
         min_length=1,
     )
@@ -143,9 +153,6 @@ class VehicleConfig(Section):
         least=0.1,
         because="slower than that nobody says whether it drives; no car is faster",
     )
-    exact: bool = option(
-        False, None, "the bundled FMU solves exactly instead of by the paper's forward Euler"
-    )
     length: float | None = option(
         None,
         "m",
@@ -194,19 +201,12 @@ class SumoConfig(Section):
     seed: SumoSeed = option(
         "scenario", None, "SUMO's seed: a number, 'scenario' (its own) or 'run' (the run's)"
     )
-    end: float | None = option(
+    outputs: SumoOutputs = option(
+        (),
         None,
-        "s",
-        "SUMO's end; none: the scenario's own",
-        gt=0,
-        le=1e7,
-        least=0.001,
-        because=SUMO_TIME,
+        "SUMO's own outputs to be written, comma-separated: fcd (floating car data), tripinfo "
+        "(trips), ssm (surrogate safety measures), summary (of each step)",
     )
-    fcd: bool = option(False, None, "write SUMO's floating car data", flag="--fcd")
-    tripinfo: bool = option(False, None, "write SUMO's trip information", flag="--tripinfo")
-    ssm: bool = option(False, None, "write SUMO's surrogate safety measures", flag="--ssm")
-    summary: bool = option(False, None, "write SUMO's summary of each step")
     options: OptionList = option(
         (), None, "more options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
     )

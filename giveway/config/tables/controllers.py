@@ -280,14 +280,6 @@ class SafetyConfig(Section):
         "responsible, 2.2 m/s^2, once in 100; on a sidewalk these two: 0.6 m/s^2 towards the road",
         flag="--safety-people",
     )
-    reaction_time: float | None = option(
-        None,
-        "s",
-        "within which the vehicle does what it is told; none: as its profile identified, else 0",
-        ge=0,
-        le=5,
-        because="a vehicle that answers later cannot be driven",
-    )
 
 
 class NoOptions(Section):

@@ -24,10 +24,20 @@ from giveway.config.reasons import GAP, MILLIMETRE
 from giveway.config.tables.flows import FlowConfig, read_flows
 from giveway.config.tables.people import DISTRACTED, SHARE, PeopleConfig
 
-WALKING = "the model's people walk with 2.5 m/s at most, and somebody below 0.01 m/s stands"
+DESIRED_SPEEDS: Final = (0.5, 2.2)
+"""The bounds [m/s] of desired speeds; our reading of Yang & Özgüner 2019 (docs/reproduction.md)."""
+
 ENCOUNTERS: Final = "encounters"
+VCI: Final = "vci"
 _NEAREST = 0.01  # Smallest side of an area, and smallest walk [m]
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
+
+
+class VciOptions(Section):
+    """Options of the VCI model of people, in [model_options]; docs/pedestrian_model.md."""
+
+    detour: bool = True
+    creep: bool = True
 
 
 class CrowdConfig(Section):
@@ -62,7 +72,12 @@ class CrowdConfig(Section):
         False, None, "every second pedestrian comes from the other side", flag="--two-sided"
     )
     desired_speed_mean: float = option(
-        1.394, "m/s", "mean desired speed", gt=0, le=2.5, least=0.01, because=WALKING
+        1.394,
+        "m/s",
+        "mean desired speed",
+        ge=DESIRED_SPEEDS[0],
+        le=DESIRED_SPEEDS[1],
+        because="nobody's desired speed is outside of these bounds",
     )
     desired_speed_sd: float = option(
         0.26,
@@ -71,12 +86,6 @@ class CrowdConfig(Section):
         ge=0,
         le=2,
         because="the speeds of people who walk are closer to each other",
-    )
-    desired_speed_min: float = option(
-        0.5, "m/s", "its lower truncation", gt=0, le=2.5, least=0.01, because=WALKING
-    )
-    desired_speed_max: float = option(
-        2.2, "m/s", "its upper truncation", gt=0, le=2.5, least=0.01, because=WALKING
     )
     groups: float = option(
         0.0,
@@ -128,16 +137,6 @@ class CrowdConfig(Section):
         None,
         "the edges of sidewalks, crossings and walkingareas hold people back",
         flag="--walls",
-    )
-    detour: bool = option(
-        True,
-        None,
-        "people see the way round a standing car; else they may walk into its side and stay there",
-    )
-    creep: bool = option(
-        True,
-        None,
-        "below 0.2 m/s the angle of a car's force has its true speed; else it stands for that too",
     )
     threads: int = option(
         1,
@@ -201,9 +200,5 @@ class CrowdConfig(Section):
             raise ValueError(
                 f"walk = {self.walk}: expected at least {_NEAREST:g} m, or 0,0 for people who "
                 "stand: a shorter way is no walk"
-            )
-        if not self.desired_speed_min <= self.desired_speed_mean <= self.desired_speed_max:
-            raise ValueError(
-                "desired_speed_mean: expected between desired_speed_min and _max [m/s]"
             )
         return self

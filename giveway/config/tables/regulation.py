@@ -1,7 +1,7 @@
 """The table of the configuration about the road: how fast, how close, and who goes first."""
 
 from giveway.config.option import Section, SpeedOrLane, option
-from giveway.config.reasons import MILLIMETRE, TYRES
+from giveway.config.reasons import MILLIMETRE
 from giveway.config.tables.basics import DEFAULT_SPEED
 
 CORRIDOR_MARGIN = 0.25
@@ -28,26 +28,6 @@ class RegulationConfig(Section):
         least=MILLIMETRE,
         because="a gap is a millimetre at least, and nobody is seen half a kilometre ahead",
     )
-    kerb_distance: float = option(
-        1.5,
-        "m",
-        "who heads for a crossing and is this close to its kerb is about to enter it",
-        flag="--kerb-distance",
-        ge=0,
-        le=10,
-        least=MILLIMETRE,
-        because="farther away nobody can tell",
-    )
-    kerb_time: float = option(
-        2.5,
-        "s",
-        "who heads for a crossing and is this soon at its kerb is about to enter it as well",
-        flag="--kerb-time",
-        ge=0,
-        le=10,
-        least=0.001,
-        because="longer before nobody can tell",
-    )
     critical_gap: float | None = option(
         None,
         "s",
@@ -57,22 +37,4 @@ class RegulationConfig(Section):
         ge=0.5,
         le=60,
         because="nobody crosses in half a second, and nobody waits for a minute's gap",
-    )
-    follow_up_gap: float | None = option(
-        None,
-        "s",
-        "after the vehicle before it has gone through the same gap; none: likewise",
-        flag="--follow-up-gap",
-        ge=0.1,
-        le=60,
-        because="it is a headway of vehicles that start one after the other",
-    )
-    comfortable_deceleration: float = option(
-        2.0,
-        "m/s^2",
-        "of the approach to a red light, a slower vehicle, a lower limit or a bend",
-        gt=0,
-        le=10,
-        least=0.1,
-        because=TYRES,
     )

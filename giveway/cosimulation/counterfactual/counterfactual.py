@@ -155,8 +155,6 @@ def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
             sorted(code_hashes(config, (MODEL,)).items()),
             sorted(config.model_options.items()),
             config.seed if settings.plugged_in else None,
-            settings.detour,
-            settings.creep,
             time_step,
             noise,
             config.seed if noise else None,

@@ -9,7 +9,7 @@ is in the junction already stops before the two paths cross.
 
 from collections.abc import Mapping
 
-from giveway.ego.driving_style import FIRM, PULL_AWAY_OTHERS
+from controller.driving_constants import FIRM, PULL_AWAY_USUAL
 from giveway.ego.ego import Ego
 from giveway.ego.rules.gap_acceptance import travel_time
 from giveway.ego.rules.junctions import RED, SIGHT, Approach, PathJunction, Traffic, letter_of
@@ -75,7 +75,7 @@ def _gives_way(
     goes = travel_time(where.leave + ego.shape.length - front, speed, _LEAVING, max(speed, 4.0))
     fastest = max(USUAL_SPEED, other.speed)
     enters, clears = (
-        travel_time(other.distance + station, other.speed, PULL_AWAY_OTHERS, fastest)
+        travel_time(other.distance + station, other.speed, PULL_AWAY_USUAL, fastest)
         for station in (where.other_enter, where.other_leave + other.length)
     )
     return clears + AFTER > comes and goes + BEFORE > enters

@@ -19,9 +19,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from controller.driving_constants import STANDING
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
 from giveway.cosimulation.traffic.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
-from giveway.ego.driving_style import STANDING
 from giveway.ego.ego import Ego
 from giveway.ego.rules.merge_points import FollowingConstraint
 from giveway.geometry.kernel import Array

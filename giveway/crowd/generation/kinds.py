@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from giveway.config.tables.crowd import CrowdConfig
+from giveway.config.tables.crowd import DESIRED_SPEEDS, CrowdConfig
 from giveway.config.tables.people import ADULT, PeopleConfig
 from giveway.geometry.kernel import Array
 
@@ -42,11 +42,11 @@ def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.
     """Draw desired speeds (n,) [m/s] by kind: normal, drawn again until they are in the bounds.
 
     Args:
-        config: Distribution for adults, and the bounds for all.
+        config: Distribution for adults.
         kinds: Kind (n,) of each person; empty counts as adult.
         random: Generator of the draws.
     """
-    low, high = config.desired_speed_min, config.desired_speed_max
+    low, high = DESIRED_SPEEDS
     about = [_distribution(config, kind) for kind in kinds]
     mean, deviation = np.array(about, dtype=np.float64).reshape(-1, 2).T
     speeds = random.normal(mean, deviation)

@@ -11,13 +11,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from controller import driving_constants
 from controller.kernels import Trials, branch_off
 
 # Duration [s] of the common first part. A person who yields slows by about 1 m/s in this time,
 # which reveals the intent.
 _COMMON = 0.5
-_BRAKING = (-2.5, -5.0)  # accelerations [m/s^2] of the branches; another branch goes on
-BRANCHES = 1 + len(_BRAKING)
+BRANCHES = 1 + len(driving_constants.BRANCHES)  # number of branches; the first one goes on
 
 Cost = Callable[[Trials, list[int], bool], float]
 
@@ -53,7 +53,7 @@ def hedged(
             break
         for array, given in zip(branches, trials, strict=True):
             array[:] = given[row]
-        for k, braking in enumerate(_BRAKING, start=1):
+        for k, braking in enumerate(driving_constants.BRANCHES, start=1):
             branch_off(branches.of(k), first, braking, wanted, time_step)
         other = cost(branches, every, True)
         whole = likely * costs[row] + (1.0 - likely) * other

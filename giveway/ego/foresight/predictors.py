@@ -37,7 +37,7 @@ def predictor_of(
     if not horizon:
         return None
     if believed in {"vci", "constant-velocity"}:
-        readings = {"detour": config.crowd.detour, "creep": config.crowd.creep}
+        readings = dict(config.vci_options)
         if believed != "vci":
             parameters, readings["detour"] = unmoved(parameters), False
         make = plan_predictor if controller.foresees else Predictor

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from controller.driving_constants import STANDING
 from controller.kernels import towards_kerb
 from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import Array, inner
 
-_SLOW = 0.2  # speed [m/s] at which the ego is no danger (Yang & Özgüner 2019: an obstacle)
 _HALVINGS = 5  # number of bisections in the search for the threat-free speed
 _WHOLE = 1e-6  # tolerance [steps] when a stopping time is rounded up to whole steps
 _ROUNDING = 1e-6  # tolerance [m] of distances that exclude a person
@@ -59,7 +59,7 @@ def conflicts_and_calm(
     here, before, after = people
     front_x, front_y, heading, braking_heading = pose
     (half_length, half_width), (interval, conflict_time, time_step) = body, times
-    if speed <= _SLOW:
+    if speed <= STANDING:
         return 0.0, np.inf
     c, s = np.cos(heading), np.sin(heading)
     turn = braking_heading - heading

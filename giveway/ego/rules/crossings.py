@@ -14,7 +14,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from controller.driving_constants import FIRM, PULL_AWAY
 from giveway.crowd.crossings import (
+    KERB_DISTANCE,
     have_priority,
     is_near,
     is_open,
@@ -22,7 +24,6 @@ from giveway.crowd.crossings import (
     turning_in,
     use_of,
 )
-from giveway.ego.driving_style import FIRM, PULL_AWAY
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.path_crossings import PathCrossing, crossings_on
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
@@ -42,6 +43,9 @@ _PATIENCE = 4.5  # time [s]: a pedestrian who reaches the ego's path within it a
 _CLEAR = 0.3  # least distance [m] between a stop and the crossing
 _LAST = 2.0  # distance [m]; farther away, a stop at the very edge of the crossing is early enough
 _SURE = 1.0  # additional time margin [s] before the ego starts again, so that it does not creep
+# Walking time [s] to the kerb within which a pedestrian is about to enter the crossing: the brake
+# reaction time of AASHTO's Green Book (2011, section 3.2) on stopping sight distance
+KERB_TIME = 2.5
 _SIGHT = 60.0  # sight distance [m] ahead of a crossing
 
 
@@ -68,8 +72,8 @@ class Crossings:
         *,
         length: float,
         gap: float,
-        kerb_distance: float,
-        kerb_time: float,
+        kerb_distance: float = KERB_DISTANCE,
+        kerb_time: float = KERB_TIME,
         change_of: ChangeOf = untold,
     ) -> None:
         self._change_of = change_of
@@ -98,8 +102,6 @@ class Crossings:
             found,
             length=route.shape.length,
             gap=route.standing_gap,
-            kerb_distance=route.config.regulation.kerb_distance,
-            kerb_time=route.config.regulation.kerb_time,
             change_of=route.change_of,
         )
 

@@ -2,7 +2,7 @@
 
 from math import inf, sqrt
 
-from giveway.ego.driving_style import FIRM
+from controller.driving_constants import FIRM
 from giveway.ego.perception.leader import Leader
 from giveway.geometry.kernel import Array
 

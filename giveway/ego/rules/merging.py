@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from giveway.ego.driving_style import COMFORTABLE, FIRM, STANDING
+from controller.driving_constants import COMFORTABLE, FIRM, STANDING
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.merge_points import (
     FollowingConstraint,

@@ -18,7 +18,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence, Set
 
-from giveway.ego.driving_style import FIRM, PULL_AWAY, PULL_AWAY_BRISK, STANDING
+from controller.driving_constants import (
+    APPROACH_OTHERS,
+    FIRM,
+    PULL_AWAY,
+    PULL_AWAY_BRISK,
+    STANDING,
+    STOPS_AT_YELLOW,
+)
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.gap_acceptance import travel_time
 from giveway.ego.rules.junctions import (
@@ -44,7 +51,6 @@ from giveway.ego.rules.yielding import (
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.network.junction_links import Movement
 
-_COMING = 1.0  # acceleration [m/s^2] with which other vehicles approach
 _GOING = 0.3  # time margin [s] to a vehicle that passes after an ego that has decided to go
 _STAYS = 3.0  # time [s] after which a vehicle that stands without need is assumed to stay
 _BOXED_IN = 1.0  # time [s] after which this is assumed of a vehicle without room to go on
@@ -52,7 +58,6 @@ _CLOSE = 3.0  # gap [m] to a standing vehicle ahead, below which a vehicle has n
 _BRIEFLY = 1.0  # time [s] of driving at the present speed, by which a moving vehicle's gap shrinks
 _AT_LINE = 4.0  # distance [m] before the line, within which a vehicle stands at it
 _DECIDED = 10.0  # distance [m] before the line, within which the ego keeps its decision to go
-_STOPS_AT_YELLOW = 2.5  # deceleration [m/s^2] with which others stop at yellow
 # Letters of movements that yield to no vehicle: priority, and zippers (see the rule Merging)
 _NOBODY = frozenset("GZ")
 
@@ -67,7 +72,6 @@ class RightOfWay:
         gap: Distance [m] that it keeps behind a standing vehicle.
         fastest: Highest speed [m/s] of the ego.
         critical_gap: Critical headway [s], or None for the Highway Capacity Manual's.
-        follow_up_gap: Follow-up headway [s], or None for the Highway Capacity Manual's.
 
     Attributes:
         needs: Needs of the rule: junctions, their signal systems, and keep-clear zones.
@@ -83,13 +87,12 @@ class RightOfWay:
         gap: float,
         fastest: float,
         critical_gap: float | None = None,
-        follow_up_gap: float | None = None,
     ) -> None:
         self._junctions = tuple(junctions)
         self._name = name
         self._length, self._room = length, length + gap
         self._fastest = fastest
-        self._gap = critical_gap, follow_up_gap
+        self._critical_gap = critical_gap
         self._next = 0
         self._followed = -math.inf  # time [s] at which the vehicle before it crossed the next line
         self._stop = math.inf
@@ -111,15 +114,13 @@ class RightOfWay:
         """The rule on one ego's route; None without junctions or if the ego heeds no priority."""
         if not (route.heeds("right_of_way") and route.junctions):
             return None
-        regulation = route.config.regulation
         return cls(
             route.junctions,
             name=route.config.ego_id,
             length=route.shape.length,
             gap=route.standing_gap,
             fastest=route.fastest,
-            critical_gap=regulation.critical_gap,
-            follow_up_gap=regulation.follow_up_gap,
+            critical_gap=route.config.regulation.critical_gap,
         )
 
     def _pass(self, front: float) -> None:
@@ -217,10 +218,9 @@ class RightOfWay:
         if before and letter in "sw" and not (first and self._halted):
             return line
         gap = place.gaps.at_lights if letter in "gGyY" else place.gaps.unsignalled
-        critical, follow_up = (
-            usual if wanted is None else wanted
-            for usual, wanted in zip(gap, self._gap, strict=True)
-        )
+        critical, follow_up = gap
+        if self._critical_gap is not None:
+            critical = self._critical_gap
         if first and before and letter not in "GMyY" and self._time - self._followed < follow_up:
             return line
         margin = AFTER
@@ -291,7 +291,7 @@ class RightOfWay:
             if its in RED:
                 return False
             needed = other.speed**2 / (2.0 * other.distance)
-            return its not in YELLOW or needed > _STOPS_AT_YELLOW
+            return its not in YELLOW or needed > STOPS_AT_YELLOW
         if letter == "w":
             return other.distance < _AT_LINE and other.standing > self._stood
         return True
@@ -315,7 +315,7 @@ class RightOfWay:
         enter = travel_time(where.enter - front, speed, PULL_AWAY_BRISK, fastest)
         to_enter = other.distance + where.other_enter
         to_leave = other.distance + where.other_leave + other.length
-        comes = travel_time(to_enter, other.speed, _COMING, max(USUAL_SPEED, other.speed))
+        comes = travel_time(to_enter, other.speed, APPROACH_OTHERS, max(USUAL_SPEED, other.speed))
         goes = math.inf
         if other.speed >= STANDING:  # inside the junction it keeps its lanes' speed limit
             inside = min(other.speed, place.movements[other.number].speed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from giveway.ego.driving_style import STANDING
+from controller.driving_constants import STANDING
 from giveway.ego.rules.protocol import STOP, Demand, Situation
 from giveway.ego.rules.route import RouteContext, Stop
 from giveway.ego.rules.yielding import needed_braking

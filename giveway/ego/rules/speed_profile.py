@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from controller import LongitudinalModel, SafetyLayer
+from controller.driving_constants import COMFORTABLE
 from giveway.config.option import LANE
 from giveway.ego.perception.path_ahead import HALF, PathView
 from giveway.ego.waiting_ego import WaitingEgo
@@ -149,7 +150,7 @@ def profile_of(
         limits,
         length=length,
         capable=capable,
-        deceleration=min(config.regulation.comfortable_deceleration, hardest),
+        deceleration=min(COMFORTABLE, hardest),
         departure=departure,
     )
 

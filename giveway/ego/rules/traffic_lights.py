@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
+from controller.driving_constants import COMFORTABLE
 from giveway.ego.rules.junctions import RED, YELLOW
 from giveway.ego.rules.protocol import LIGHT, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
@@ -79,7 +80,7 @@ class TrafficLights:
             return None
         return cls(
             lights,
-            comfortable=route.config.regulation.comfortable_deceleration,
+            comfortable=COMFORTABLE,
             hardest=route.hardest_braking,
             arrows=route.heeds("right_of_way"),
             greens_of=route.session.signal_plans.greens if route.heeds("signal_advice") else None,

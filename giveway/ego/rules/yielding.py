@@ -2,7 +2,7 @@
 
 import math
 
-from giveway.ego.driving_style import COMFORTABLE
+from controller.driving_constants import COMFORTABLE
 from giveway.ego.perception.leader import Leader
 
 STOP_BEFORE = 1.0  # distance [m] of a stop before a line or a crossing

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from controller.driving_constants import COMFORTABLE, STANDING
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
-from giveway.run_data.rows import STOP_SPEED
 from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PeopleTrack, SignalTrack
 from giveway.run_data.way import EgoWay
 
@@ -54,9 +54,9 @@ class Drive:
     people: PeopleTrack
     signals: SignalTrack
     vehicles: BackgroundTrack
-    comfortable: float = 2.0
+    comfortable: float = COMFORTABLE
     goal: float = np.inf
-    stop_speed: float = STOP_SPEED
+    stop_speed: float = STANDING
     undisturbed: Undisturbed | None = None
 
     @cached_property

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from controller.driving_constants import FIRM, PULL_AWAY_USUAL
 from giveway.geometry.kernel import Array
 from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive, runs
@@ -16,15 +17,9 @@ from giveway.metrics.law.walks import Walk
 AHEAD = 4.0
 """Largest time [s] in which a person reaches the ego's path and is met."""
 
-BRAKING = 3.0
-"""Deceleration [m/s^2] up to which the ego has to brake for a person."""
-
 AFTER = 5.0
 """Time [s] after which a person who has left the ego's path is no longer met: the largest
 post-encroachment time that SSAM considers (Gettman & Head 2003, FHWA)."""
-
-PULL_AWAY = 2.0
-"""Acceleration [m/s^2] with which the ego could come nearer."""
 
 TOUCHES, NOSE = 2.0, 1.4
 """Distance [m] to the ego's body, and time [s] of its driving, within which it may push a person.
@@ -74,7 +69,7 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
     speed, room = drive.ego.speed[walk.steps], area.entry - drive.front[walk.steps]
     there = walk.priority & (to_leave > 0.0)
     meets = there & (to_go <= AHEAD * walk.desired_speed)
-    meets &= (room > 0.0) & (speed**2 <= 2.0 * BRAKING * room)
+    meets &= (room > 0.0) & (speed**2 <= 2.0 * FIRM * room)
     meets &= room <= _comes(speed, drive.ego.speed.max(), to_leave / walk.desired_speed + AFTER)
     if not meets.any():
         return []
@@ -91,8 +86,8 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
 
 def _comes(speed: Array, fastest: float, time: Array) -> Array:
     """Return the distance [m] that the ego drives in ``time`` [s], accelerating to ``fastest``."""
-    faster = np.clip((fastest - speed) / PULL_AWAY, 0.0, np.maximum(time, 0.0))
-    return speed * faster + PULL_AWAY / 2.0 * faster**2 + fastest * (time - faster)
+    faster = np.clip((fastest - speed) / PULL_AWAY_USUAL, 0.0, np.maximum(time, 0.0))
+    return speed * faster + PULL_AWAY_USUAL / 2.0 * faster**2 + fastest * (time - faster)
 
 
 def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:

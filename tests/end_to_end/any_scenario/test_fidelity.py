@@ -21,7 +21,17 @@ if TYPE_CHECKING:
 Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
 Give = Callable[..., Any]  # a completed process
 _HEADER = re.compile(rb"<!-- generated on .*?-->", re.DOTALL)
-ALONE = ("--no-ego", "--zone", "none", "--pedestrians", "0", "--fcd", "--no-pictures", "-q")
+ALONE = (
+    "--no-ego",
+    "--zone",
+    "none",
+    "--pedestrians",
+    "0",
+    "--sumo-outputs",
+    "fcd",
+    "--no-pictures",
+    "-q",
+)
 OWN_SEED = ("--sumo-seed", "scenario")
 
 
@@ -46,7 +56,7 @@ def test_without_control_the_traffic_is_sumos_own_to_the_byte(
 ) -> None:
     made = {"city": city(0.1), "demonstration": demonstration}
     config = made[name] if name in made else find(name).config_file
-    end = ("--sumo-end", until)
+    end = ("--sumo-options", f"--end {until}")
     done = type_here("run", config, *ALONE, *OWN_SEED, *end, "--out", "ours", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     fcd = tmp_path / "plain.xml"
@@ -74,7 +84,17 @@ def test_a_scenario_in_a_read_only_folder_runs_unchanged(
     unchanged(folder)
     folder.chmod(0o555)
     out = tmp_path / "out"
-    words = ("--ego", "car10", "--zone", "everywhere", "--walls", "--time-limit", 5, "--fcd")
+    words = (
+        "--ego",
+        "car10",
+        "--zone",
+        "everywhere",
+        "--walls",
+        "--time-limit",
+        5,
+        "--sumo-outputs",
+        "fcd",
+    )
     try:
         done = type_here("run", folder / "city_1.sumocfg", *words, "--out", out, cwd=tmp_path)
     finally:
@@ -108,7 +128,11 @@ def test_no_file_of_a_scenario_is_touched(
 def test_begin_end_and_step_are_the_scenarios(
     drive: Drive, city: Callable[[float], Path], step: float, time_step: float
 ) -> None:
-    config = {"ego": {"none": True}, "crowd": {"zone": "none"}, "sumo": {"end": 100.0}}
+    config = {
+        "ego": {"none": True},
+        "crowd": {"zone": "none"},
+        "sumo": {"options": ["--end", "100"]},
+    }
     result, look = drive(city(step), **config)
     assert (result.time[0], result.time[-1]) == (90.0, pytest.approx(100.0))
     assert result.ending is Ending.SCENARIO_END

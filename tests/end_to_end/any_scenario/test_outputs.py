@@ -27,7 +27,7 @@ def written(city: Callable[[float], Path], tmp_path_factory: pytest.TempPathFact
             "ego": {"take_over": ("car10", "car12")},
             "crowd": {"zone": "everywhere"},
             "record": {"near": 1e6},
-            "sumo": {"fcd": True, "tripinfo": True, "ssm": True, "summary": True},
+            "sumo": {"outputs": ["fcd", "tripinfo", "ssm", "summary"]},
             "time_limit": 20.0,
         },
         results=folder,

@@ -90,9 +90,8 @@ def test_a_value_that_makes_no_sense_is_refused_with_the_reason(
 
 def test_no_length_or_duration_or_force_may_be_a_billionth() -> None:
     free = {  # where next to nothing is as good as nothing
-        "depart_time", "depart_position", "friction", "calm_time", "reaction_time", "near",
-        "effort_weight", "jerk_weight", "proportional_gain", "integral_gain", "derivative_gain",
-        "position_noise", "initial_speed", "speed_min", "desired_speed_sd",
+        "depart_time", "depart_position", "friction", "near",
+        "position_noise", "initial_speed", "desired_speed_sd",
         "acceleration_noise",
     }  # fmt: skip
     for option in options():

@@ -19,14 +19,14 @@ def walker(y, x=22.0, to=(22.0, 10.0), **route):
     return Crowd.create([[x, y]], [[0.0, 1.4]], 1.4, [[to]], **route)
 
 
-def priority_of(crowd, *crossings, light="", kerb_distance=1.5):
+def priority_of(crowd, *crossings, light=""):
     asked = []
 
     def state(system):
         asked.append(system)
         return light
 
-    PriorityOnFoot(crossings or [zebra()], state, kerb_distance).update(crowd)
+    PriorityOnFoot(crossings or [zebra()], state).update(crowd)
     assert len(asked) == len(set(asked)), "each light is asked once"
     return crowd.priority[0]
 
@@ -68,7 +68,7 @@ def test_a_light_decides_who_may_enter_and_people_on_it_finish(light, at_the_ker
 def test_where_people_have_to_wait_for_a_gap_nobody_has_priority():
     gap = zebra(zebra=False)
     assert priority_of(walker(0.0), gap) == 0.0
-    assert len(PriorityOnFoot([gap], str, 1.5)) == 0
+    assert len(PriorityOnFoot([gap], str)) == 0
 
 
 @pytest.mark.parametrize(("light", "priority"), [("r", 0.0), ("G", 1.0)])
@@ -100,11 +100,11 @@ def test_among_many_crossings_everybody_finds_the_own_one():
     position = np.column_stack([random.uniform(-30.0, 2030.0, n), random.uniform(-8.0, 40.0, n)])
     goal = position + random.normal(0.0, 20.0, (n, 2))
     crowd = Crowd.create(position, np.zeros((n, 2)), 1.4, list(goal[:, None]))
-    PriorityOnFoot(crossings, str, 1.5).update(crowd)
+    PriorityOnFoot(crossings, str).update(crowd)
     found = crowd.priority.copy()
     alone = np.zeros(n)
     for crossing in crossings:
-        PriorityOnFoot([crossing], str, 1.5).update(crowd)
+        PriorityOnFoot([crossing], str).update(crowd)
         alone = np.maximum(alone, crowd.priority)
     np.testing.assert_array_equal(found, alone)
     assert (found > 0.0).sum() > 100
@@ -113,6 +113,6 @@ def test_among_many_crossings_everybody_finds_the_own_one():
 def test_what_was_is_forgotten():
     somebody = walker(0.0)
     somebody.priority[:] = 1.0
-    PriorityOnFoot([zebra(x=500.0)], str, 1.5).update(somebody)
+    PriorityOnFoot([zebra(x=500.0)], str).update(somebody)
     assert somebody.priority[0] == 0.0
-    PriorityOnFoot([], str, 1.5).update(Crowd.empty())
+    PriorityOnFoot([], str).update(Crowd.empty())

@@ -36,7 +36,7 @@ def same_fcd(
             cwd=tmp_path,
         )
         out = tmp_path / "out"
-        run_started(config, until=until, interact=False, fcd=True, outputs=out, **options)
+        run_started(config, until=until, interact=False, written=("fcd",), outputs=out, **options)
         ours, theirs = content(out / "fcd.xml"), content(fcd)
         assert ours == theirs
         return ours

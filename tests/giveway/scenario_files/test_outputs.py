@@ -177,9 +177,9 @@ def test_the_users_outputs_are_added_and_the_scenarios_kept(
     small_scenario: Callable[..., Path], tmp_path: Path, run_started: Callable[..., dict[str, Any]]
 ) -> None:
     config = small_scenario('<fcd-output value="own.xml"/>')
-    wanted = {"fcd": True, "tripinfo": True, "summary": True, "ssm": True}
+    wanted = ("fcd", "tripinfo", "summary", "ssm")
     extra = ["--tripinfo-output.write-unfinished", "--statistic-output=s.xml", "--scale", "1"]
-    run_started(config, until=10, outputs=tmp_path / "out", extra=extra, **wanted)
+    run_started(config, until=10, outputs=tmp_path / "out", extra=extra, written=wanted)
     names = {"own.xml", "tripinfo.xml", "summary.xml", "ssm.xml", "s.xml"}
     assert set(tree(tmp_path / "out")) == names
 

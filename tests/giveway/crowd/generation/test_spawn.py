@@ -75,9 +75,3 @@ def test_two_sided_mirrors_about_the_path_beside_the_area() -> None:
     assert (crowd.position[1::2, 0] < 50).all()
     assert (crowd.position[:, 1] >= 60).all()
     assert crowd.destination[1::2, 0] == pytest.approx(crowd.position[1::2, 0] + 20)
-
-
-@pytest.mark.parametrize("low", [1.394, 1.393999])
-def test_bounds_that_leave_one_speed_give_everybody_that_speed(low: float) -> None:
-    config = CrowdConfig(pedestrians=30, desired_speed_min=low, desired_speed_max=1.394)
-    assert spawn(config, AXIS, 1).desired_speed == pytest.approx(np.full(30, 1.394), abs=1e-5)

@@ -251,7 +251,7 @@ def test_options_are_gaps_in_seconds() -> None:
 
 
 def test_it_uses_the_same_gap_after_the_follow_up_headway() -> None:
-    drive = Drive(junction(), follow_up_gap=4.0)
+    drive = Drive(junction())
     ahead = Approach("leader", OWN, -0.1, 2.0, 4.5, 0.0)
     drive.stop(LINE - 5.0, 2.0)
     assert drive.stop(LINE, 1.0, ahead) == LINE
@@ -262,7 +262,7 @@ def test_it_uses_the_same_gap_after_the_follow_up_headway() -> None:
 @pytest.mark.parametrize(("letter", "stops"), [("g", True), ("y", False), ("G", False)])
 def test_at_yellow_it_waits_for_no_gap_behind_another(letter: str, stops: bool) -> None:
     """Lights decide whether it goes on; a wait of some seconds would end at red."""
-    drive = Drive(junction(lights=True), follow_up_gap=4.0)
+    drive = Drive(junction(lights=True))
     ahead = Approach("leader", OWN, -0.1, 8.0, 4.5, 0.0)
     drive.stop(LINE - 25.0, 8.0, lights="Gr")
     assert (drive.stop(LINE - 24.0, 8.0, ahead, lights=f"{letter}r") == LINE) == stops
