@@ -12,14 +12,20 @@ _Controller = Annotated[
 ]
 _Profile = Annotated[
     str,
-    typer.Option("--controller-profile", metavar="FILE", help="Of an FMU; none: drafted."),
+    typer.Option(
+        "--controller-profile",
+        metavar="FILE",
+        help="Profile of a controller FMU. By default it is drafted.",
+    ),
 ]
 _Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="One of its options.")
 ]
 _Step = Annotated[
     float | None,
-    typer.Option("--time-step", metavar="S", help="Control step of the scenes [s]; none: 0.05."),
+    typer.Option(
+        "--time-step", metavar="S", help="Control step of the scenes [s]. By default it is 0.05."
+    ),
 ]
 
 

@@ -220,10 +220,7 @@ def _help(option: Option) -> str:
     shown = {True: "yes", False: ""}.get(shown, shown) if isinstance(shown, bool) else shown
     known = "" if shown in (None, "") else f"default {shown}"
     remarks = "; ".join(part for part in (option.unit, known) if part)
-    text = option.field.description or ""
-    first = text.split(maxsplit=1)[0]
-    if first.isalpha() and first.islower():
-        text = first.capitalize() + text[len(first) :]
+    text = option.field.description
     return f"{text} ({remarks})." if remarks else f"{text}."
 
 

@@ -28,7 +28,7 @@ def _study(
     study: Annotated[
         str | None,
         typer.Argument(
-            help="Bundled study (see giveway studies) or .toml; none: see --vary.",
+            help="Bundled study (see giveway studies) or .toml. Without one see --vary.",
             autocompletion=complete_study,
         ),
     ] = None,

@@ -79,11 +79,16 @@ def _field_at(location: tuple[int | str, ...]) -> FieldInfo | None:
 class RunConfig(Section):
     """One run: a scenario, a seed, a controller, and everything that shapes them."""
 
-    scenario: str = option("shared_space", None, "bundled name, folder or .sumocfg", min_length=1)
+    scenario: str = option(
+        "shared_space",
+        None,
+        "Scenario: the name of a bundled one, a folder, or a .sumocfg",
+        min_length=1,
+    )
     seed: int = option(
         1,
         None,
-        "seed of the crowd that giveway adds",
+        "Seed of the crowd that giveway adds",
         ge=0,
         le=2**31 - 1,
         because="SUMO's are 31 bits",
@@ -91,18 +96,20 @@ class RunConfig(Section):
     controller: ControllerName = option(
         "mpc",
         None,
-        "who drives: mpc (plans ahead), pid-tuned, the paper's: mpc-paper, pid-paper; or somebody "
-        "else's, by the name that a package declares, as module:Class, or a path to an FMU",
+        "Controller: mpc (plans ahead), pid-tuned, the paper's mpc-paper and pid-paper, or "
+        "another package's, by its declared name, as module:Class, or as a path to an FMU",
     )
     controller_profile: str = option(
         "",
         None,
-        "controller profile (TOML) of a controller FMU; none: drafted from its names",
+        "Controller profile (TOML) of a controller FMU. By default it is drafted from the FMU's "
+        "names",
     )
     time_step: float | None = option(
         None,
         "s",
-        "step of vehicle, controller and crowd; none: 0.05 s, or what divides SUMO's step",
+        "Step of vehicle, controller and crowd. By default it is 0.05 s, or a step that divides "
+        "SUMO's",
         flag="--time-step",
         ge=0.001,
         le=0.5,
@@ -111,7 +118,8 @@ class RunConfig(Section):
     time_limit: float | None = option(
         None,
         "s",
-        "the run ends this long after the first departure; none: with the scenario",
+        "Time after the first departure at which the run ends. By default it ends with the "
+        "scenario",
         gt=0,
         le=1e7,
         least=0.001,
@@ -120,7 +128,8 @@ class RunConfig(Section):
     twin: bool = option(
         False,
         None,
-        "make the run twice, the second time with people who do not feel the egos: what these cost",
+        "The run is made twice, the second time with people who do not feel the egos, to tell "
+        "what these cost the people",
         flag="--twin",
     )
     ego: EgoConfig = EgoConfig()
@@ -129,13 +138,13 @@ class RunConfig(Section):
     regulation: RegulationConfig = RegulationConfig()
     rules: RulesConfig = RulesConfig()
     controller_options: dict[str, JsonValue] = Field(
-        default_factory=dict, description="the controller's own options"
+        default_factory=dict, description="Options of the controller"
     )
     model_options: dict[str, JsonValue] = Field(
-        default_factory=dict, description="the options of the pedestrian model"
+        default_factory=dict, description="Options of the pedestrian model"
     )
     sensor_options: dict[str, JsonValue] = Field(
-        default_factory=dict, description="the options of a sensor that is not giveway's own"
+        default_factory=dict, description="Options of the sensor"
     )
     safety: SafetyConfig = SafetyConfig()
     perception: PerceptionConfig = PerceptionConfig()
@@ -145,10 +154,10 @@ class RunConfig(Section):
     metrics: MetricsConfig = MetricsConfig()
     egos: tuple[dict[str, Any], ...] = Field(
         default=(),
-        description="one table per ego; what it leaves out is as in the run's own tables",
+        description="One table for each ego. What it leaves out is as in the run's own tables",
     )
     measure: Annotated[tuple[MeasureConfig, ...], BeforeValidator(read_measures)] = Field(
-        default=(), description="lines and areas on which the people are measured"
+        default=(), description="Lines and areas on which people are measured"
     )
 
     @model_validator(mode="after")

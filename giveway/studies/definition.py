@@ -32,10 +32,10 @@ class Comparison(Section):
 
     factor: str = Field(
         "controller",
-        description="the factor whose levels are compared; none, and no such factor: the last one",
+        description="The factor whose levels are compared. By default controller, or the last one",
     )
     baseline: str | None = Field(
-        None, description="the level that is subtracted; none: the factor's last"
+        None, description="The level that is subtracted. By default it is the factor's last"
     )
     confidence: float = Field(0.95, description="of the intervals", gt=0.5, lt=1.0)
     resamples: int = Field(
@@ -72,7 +72,9 @@ class StudyDefinition(Section):
         "differences",
         description="what is shown first: differences to the baseline, or each level's own numbers",
     )
-    folder: str = Field("", description="of relative file names; none: the study file's own")
+    folder: str = Field(
+        "", description="The folder of relative file names. By default it is the study file's"
+    )
     run: dict[str, Any] = Field(
         default_factory=dict, description="settings of every run, as in a run's TOML file"
     )
@@ -80,11 +82,12 @@ class StudyDefinition(Section):
         description="option = [levels], or name = {level = {settings}}"
     )
     cells: tuple[dict[str, Any], ...] = Field(
-        (), description="combinations of levels by name; none: all of them, a grid"
+        (),
+        description="Combinations of levels by name. By default the study has all of them, a grid",
     )
     only: dict[str, tuple[Any, ...]] = Field(
         default_factory=dict,
-        description="of these factors these levels alone, by name; none: all of them",
+        description="The only levels of some factors, by name. By default the study has all",
     )
     comparison: Comparison = Comparison()
     precision: Precision | None = None

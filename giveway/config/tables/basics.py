@@ -41,31 +41,35 @@ class EgoConfig(Section):
     take_over: NameList = option(
         (),
         None,
-        "ids of the scenario's vehicles to drive from their departure on, comma-separated",
+        "Ids of the scenario's vehicles that are driven from their departure on, comma-separated",
         flag="--ego",
     )
     none: bool = option(
-        False, None, "drive no vehicle at all; a route is where one would", flag="--no-ego"
+        False,
+        None,
+        "No vehicle is driven. A route then only places the zone and the encounters",
+        flag="--no-ego",
     )
     id: str = option("ego", None, "SUMO id of an inserted ego", pattern=_SUMO_ID)
-    route: NameList = option((), None, "edges that an inserted ego drives along, comma-separated")
+    route: NameList = option((), None, "Edges that an inserted ego drives along, comma-separated")
     lane: int | None = option(
         None,
         None,
-        "index of its departure lane, 0 is the rightmost; none: the first for cars",
+        "Index of the departure lane; 0 is the rightmost lane. By default it is the first lane "
+        "for cars",
         ge=0,
         because="0 is the rightmost",
     )
     depart_time: TimeOrWindow = option(
         0.0,
         "s",
-        "simulation time at which an inserted ego enters, or earliest,latest: drawn from the run's "
-        "seed; at begin if that is later",
+        "Simulation time at which an inserted ego enters, but not before the simulation begins. "
+        "Of two times, earliest,latest, one in between is drawn from the run's seed",
     )
     depart_position: float = option(
         0.0,
         "m",
-        "its front bumper's place on the first edge at departure",
+        "Distance of the front bumper from the beginning of the first edge at departure",
         ge=0,
         le=1e6,
         because="it is a place on the edge",
@@ -73,7 +77,8 @@ class EgoConfig(Section):
     initial_speed: float | None = option(
         None,
         "m/s",
-        "speed at departure; none: 4 m/s, or SUMO's when taken over",
+        "Speed at departure. By default it is 4 m/s, and SUMO's speed for a vehicle that is taken"
+        " over",
         ge=0,
         le=70,
         because="no car on a road is faster",
@@ -81,7 +86,7 @@ class EgoConfig(Section):
     travel_distance: float | None = option(
         None,
         "m",
-        "its goal is this far along its way; none: the end of its route",
+        "Distance from departure to goal. By default the goal is the end of the route",
         gt=0,
         le=1e6,
         least=0.1,
@@ -95,7 +100,7 @@ class VehicleConfig(Section):
     fmu: str = option(
         "fmi2",
         None,
-        "vehicle FMU: a path, or a bundled one: fmi2, fmi3, or fmi2-exact and fmi3-exact, which "
+        "Vehicle FMU: a path, or a bundled one: fmi2, fmi3, or fmi2-exact and fmi3-exact, which "
         "solve exactly instead of by the paper's forward Euler",
         flag="--vehicle",
         min_length=1,
@@ -103,16 +108,20 @@ class VehicleConfig(Section):
     profile: str = option(
         "",
         None,
-        "vehicle profile (TOML) of an FMU of your own; none: drafted from its names and units",
+        "Vehicle profile (TOML) of an FMU of your own. By default it is drafted from the FMU's "
+        "names and units",
         flag="--profile",
     )
     isolation: Literal["auto", "process", "none"] = option(
-        "auto", None, "where the FMU runs: in a process of its own (auto: unless bundled), or ours"
+        "auto",
+        None,
+        "Process in which the FMU runs: one of its own (process), giveway's (none), or one of its"
+        " own unless the FMU is bundled (auto)",
     )
     mass: float = option(
         1000.0,
         "kg",
-        "M of the controller's M s'' + alpha s' = u; a profile may know it",
+        "Mass M in the controller's model M s'' + alpha s' = u. A profile may know it",
         gt=0,
         le=1e6,
         least=10.0,
@@ -121,7 +130,7 @@ class VehicleConfig(Section):
     friction: float = option(
         100.0,
         "N.s/m",
-        "alpha of it; likewise",
+        "Friction alpha in the same model. A profile may know it",
         ge=0,
         le=1e6,
         because="it slows a vehicle down, and a faster decay than a step is none",
@@ -129,7 +138,7 @@ class VehicleConfig(Section):
     force_limit: float = option(
         8000.0,
         "N",
-        "largest force of the actuator, forwards and backwards",
+        "Largest force of the actuator, forwards and backwards",
         gt=0,
         le=1e6,
         least=1.0,
@@ -138,7 +147,7 @@ class VehicleConfig(Section):
     force_rate_limit: float = option(
         1000.0,
         "N/step",
-        "largest change of the force in one control step",
+        "Largest change of the force in one control step",
         gt=0,
         le=1e6,
         least=1.0,
@@ -147,7 +156,7 @@ class VehicleConfig(Section):
     speed_max: float = option(
         20.0,
         "m/s",
-        "the fastest that the vehicle drives",
+        "Highest speed of the vehicle",
         gt=0,
         le=100,
         least=0.1,
@@ -156,7 +165,8 @@ class VehicleConfig(Section):
     length: float | None = option(
         None,
         "m",
-        "body length; none: 5 m, or SUMO's when taken over",
+        "Length of the body. By default it is 5 m, and SUMO's length for a vehicle that is taken "
+        "over",
         gt=0,
         le=50,
         least=0.1,
@@ -165,7 +175,8 @@ class VehicleConfig(Section):
     width: float | None = option(
         None,
         "m",
-        "body width; none: 2 m, or SUMO's when taken over",
+        "Width of the body. By default it is 2 m, and SUMO's width for a vehicle that is taken "
+        "over",
         gt=0,
         le=10,
         least=0.1,
@@ -192,23 +203,25 @@ class SumoConfig(Section):
     step_length: float | None = option(
         None,
         "s",
-        "SUMO's step; none: the scenario's own",
+        "SUMO's step. By default it is the scenario's",
         gt=0,
         le=60,
         least=0.001,
         because=SUMO_TIME,
     )
     seed: SumoSeed = option(
-        "scenario", None, "SUMO's seed: a number, 'scenario' (its own) or 'run' (the run's)"
+        "scenario",
+        None,
+        "SUMO's seed: a number, 'scenario' (the scenario's own) or 'run' (the run's)",
     )
     outputs: SumoOutputs = option(
         (),
         None,
-        "SUMO's own outputs to be written, comma-separated: fcd (floating car data), tripinfo "
-        "(trips), ssm (surrogate safety measures), summary (of each step)",
+        "SUMO's own outputs that are written, comma-separated: fcd (floating car data), tripinfo "
+        "(trips), ssm (surrogate safety measures), summary (each step)",
     )
     options: OptionList = option(
-        (), None, "more options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
+        (), None, "Further options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
     )
 
 
@@ -218,7 +231,7 @@ class RecordConfig(Section):
     near: float = option(
         50.0,
         "m",
-        "who is this near to an ego is recorded at every control step",
+        "Distance to an ego within which people are recorded at every control step",
         ge=0,
         le=1e6,
         because="no network is larger",
@@ -226,7 +239,7 @@ class RecordConfig(Section):
     far_period: float = option(
         1.0,
         "s",
-        "everybody else is recorded once in this time",
+        "Period at which all other people are recorded",
         gt=0,
         le=1e6,
         least=0.001,
@@ -235,7 +248,8 @@ class RecordConfig(Section):
     predictions: float | None = option(
         None,
         "s",
-        "keep the predicted positions this far apart in look-ahead; none: keep none",
+        "Distance in look-ahead between predicted positions that are recorded. By default none "
+        "are recorded",
         gt=0,
         le=1e3,
         least=0.001,
@@ -244,7 +258,7 @@ class RecordConfig(Section):
     stop_speed: float = option(
         0.2,
         "m/s",
-        "a stop of the ego: it is slower than this",
+        "Speed below which an ego counts as stopped",
         gt=0,
         le=5,
         least=0.001,

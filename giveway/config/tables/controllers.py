@@ -15,7 +15,7 @@ class PaperPidOptions(Section):
     proportional_gain: float = option(
         2400.0,
         "N.s/m",
-        "K_p; the printed 300 contradicts the printed error",
+        "Gain K_p. The printed 300 contradicts the printed error",
         ge=0,
         le=1e6,
         because="with more, the least error is all the force there is",
@@ -23,7 +23,7 @@ class PaperPidOptions(Section):
     integral_gain: float = option(
         10.0,
         "N/m",
-        "K_i",
+        "Gain K_i",
         ge=0,
         le=1e6,
         because="with more, the least error is all the force there is",
@@ -31,7 +31,7 @@ class PaperPidOptions(Section):
     derivative_gain: float = option(
         100.0,
         "N.s^2/m",
-        "K_d",
+        "Gain K_d",
         ge=0,
         le=1e6,
         because="with more, the least error is all the force there is",
@@ -39,7 +39,7 @@ class PaperPidOptions(Section):
     buffer_distance: float = option(
         10.0,
         "m",
-        "d_buffer over which the reference speed rises to v_r",
+        "Distance d_buffer over which the reference speed rises to v_r",
         gt=0,
         le=500,
         least=0.1,
@@ -48,13 +48,14 @@ class PaperPidOptions(Section):
     gap_from: Literal["bumper", "centre"] = option(
         "bumper",
         None,
-        "point of the ego at which the distance to people and vehicles in front starts",
+        "Point of the ego, bumper or centre, at which the distance to people and vehicles in front "
+        "starts",
     )
     corridor_half_width: float | None = option(
         None,
         "m",
-        "largest distance between the ego's path and the centre of a body that counts as in front; "
-        f"by default half the ego's width plus {CORRIDOR_MARGIN:g} m",
+        "Largest distance between the ego's path and the centre of a body that counts as in front. "
+        f"By default it is half the ego's width plus {CORRIDOR_MARGIN:g} m",
         gt=0,
         le=20,
         least=0.1,
@@ -73,7 +74,7 @@ class PaperMpcOptions(PaperPidOptions):
     horizon: int = option(
         15,
         "steps",
-        "prediction horizon N",
+        "Prediction horizon N",
         ge=2,
         le=200,
         because="one step is no plan, and of 200 nothing is known",
@@ -84,12 +85,14 @@ class TunedPidOptions(Section):
     """Options of the well-tuned PID, the fair rival (controller = "pid-tuned"); docs/pid.md."""
 
     profile: Literal["braking-curve", "linear"] = option(
-        "braking-curve", None, "how the reference speed falls towards who is in front"
+        "braking-curve",
+        None,
+        "Shape of the reference speed as the gap in front closes: braking-curve or linear",
     )
     buffer_distance: float = option(
         10.0,
         "m",
-        "over which the linear profile rises to v_r",
+        "Distance over which the linear profile rises to v_r",
         gt=0,
         le=500,
         least=0.1,
@@ -98,7 +101,7 @@ class TunedPidOptions(Section):
     deceleration: float = option(
         1.0,
         "m/s^2",
-        "b of the braking curve, and of braking in comfort",
+        "Deceleration b of the braking curve, and of braking in comfort",
         gt=0,
         le=10,
         least=0.1,
@@ -107,19 +110,19 @@ class TunedPidOptions(Section):
     approach_lag: float = option(
         0.5,
         "s",
-        "near d_safe the braking curve is the line (gap - d_safe)/tau",
+        "Time tau. Near d_safe the braking curve is the line (gap - d_safe)/tau",
         gt=0,
         le=10,
         least=0.01,
         because="a loop answers within a step or some seconds",
     )
     acceleration: float = option(
-        3.0, "m/s^2", "of driving off", gt=0, le=10, least=0.1, because=TYRES
+        3.0, "m/s^2", "Acceleration of driving off", gt=0, le=10, least=0.1, because=TYRES
     )
     jerk: float = option(
         10.0,
         "m/s^3",
-        "of a change of acceleration in comfort",
+        "Jerk of a change of acceleration in comfort",
         gt=0,
         le=200,
         least=0.1,
@@ -128,7 +131,7 @@ class TunedPidOptions(Section):
     firm_deceleration: float = option(
         3.0,
         "m/s^2",
-        "that keeping d_safe may take; where it is not enough, last_distance",
+        "Largest deceleration that keeps d_safe. Where it is not enough, last_distance is kept",
         ge=0,
         le=10,
         least=0.1,
@@ -137,7 +140,7 @@ class TunedPidOptions(Section):
     last_distance: float = option(
         2.0,
         "m",
-        "it stops before this distance however hard that is",
+        "Distance that is kept to people in front however hard the braking is",
         ge=0,
         le=100,
         least=MILLIMETRE,
@@ -146,7 +149,7 @@ class TunedPidOptions(Section):
     bandwidth: float = option(
         2.5,
         "rad/s",
-        "omega of the closed loop's poles",
+        "Bandwidth omega of the closed loop's poles",
         gt=0,
         le=100,
         least=0.05,
@@ -155,14 +158,14 @@ class TunedPidOptions(Section):
     damping: float = option(
         0.85,
         None,
-        "zeta of the closed loop's poles",
+        "Damping zeta of the closed loop's poles",
         gt=0,
         le=10,
         least=0.1,
         because="below it the loop swings, far above it creeps",
     )
     acceleration_feed_forward: bool = option(
-        True, None, "M dv_ref/dt is fed forward beside alpha v_ref"
+        True, None, "The force M dv_ref/dt is fed forward beside alpha v_ref"
     )
 
 
@@ -172,7 +175,7 @@ class PlannerOptions(Section):
     horizon: float = option(
         2.5,
         "s",
-        "how far it plans; beyond, people walk on and it adapts its speed",
+        "Prediction horizon. Beyond it people walk on and the ego adapts its speed",
         ge=0.3,
         le=10,
         because="a stop takes longer than 0.3 s, and of people nothing is known after 10 s",
@@ -180,14 +183,14 @@ class PlannerOptions(Section):
     style: Literal["careful", "normal", "assertive"] = option(
         "normal",
         None,
-        "careful, normal or assertive: how much delay it takes for people's sake, by two "
-        "weights and a distance",
+        "Driving style, careful, normal or assertive: how much delay the ego accepts for people's "
+        "sake. It sets two weights and a distance",
         flag="--style",
     )
     effort_weight: float = option(
         0.02,
         "s",
-        "of squared accelerations in the plan",
+        "Weight of squared accelerations in the plan",
         ge=0,
         le=100,
         because="beyond, a plan is made of that weight alone",
@@ -195,7 +198,7 @@ class PlannerOptions(Section):
     jerk_weight: float = option(
         0.02,
         "s^3",
-        "of squared jerks in the plan",
+        "Weight of squared jerks in the plan",
         ge=0,
         le=100,
         because="beyond, a plan is made of that weight alone",
@@ -203,8 +206,8 @@ class PlannerOptions(Section):
     conflict_weight: float | None = option(
         None,
         None,
-        "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
-        "worth; none: the style's, 1.6, 0.8 or 0.4",
+        "Weight of conflicts: seconds of delay for one person-second at v_r with less than 1.5 s "
+        "to a collision. By default the style sets it: 1.6, 0.8 or 0.4",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -212,8 +215,8 @@ class PlannerOptions(Section):
     nearness_weight: float | None = option(
         None,
         None,
-        "seconds of delay that a second at v_r right before somebody is worth, 0 at d_safe; none: "
-        "the style's, 10, 7 or 3.5",
+        "Weight of nearness: seconds of delay for one second at v_r right before a person, 0 at "
+        "d_safe. By default the style sets it: 10, 7 or 3.5",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -221,7 +224,8 @@ class PlannerOptions(Section):
     threat_weight: float = option(
         1.5,
         None,
-        "seconds of delay that a second is worth in which somebody could force an emergency stop",
+        "Weight of threats: seconds of delay for one second in which a person could force an "
+        "emergency stop",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -229,7 +233,7 @@ class PlannerOptions(Section):
     later_weight: float = option(
         0.8,
         None,
-        "of each second that is lost beyond the horizon until people have crossed",
+        "Weight of each second that is lost beyond the horizon until people have crossed",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -237,7 +241,8 @@ class PlannerOptions(Section):
     minimum_distance: float | None = option(
         None,
         "m",
-        "least distance to a person in front, at standstill; none: the style's, 0.8, 0.4 or 0.4",
+        "Least distance to a person in front, at standstill. By default the style sets it: 0.8, "
+        "0.4 or 0.4",
         ge=0,
         le=100,
         least=MILLIMETRE,
@@ -246,7 +251,7 @@ class PlannerOptions(Section):
     deceleration: float = option(
         6.0,
         "m/s^2",
-        "of a stop before where the way ends",
+        "Largest deceleration of a stop that a manoeuvre keeps possible before the end of the way",
         gt=0,
         le=10,
         least=0.1,
@@ -255,8 +260,9 @@ class PlannerOptions(Section):
     calm_time: float = option(
         0.5,
         "s",
-        "of the plan in which nobody may be able to force an emergency stop; "
-        "above v_r = 4 m/s longer by (v_r - 4 m/s)/(3 m/s²), and braked for with 3 m/s² at most",
+        "Duration of the first part of a plan in which no person may be able to force an "
+        "emergency stop. Above v_r = 4 m/s it is longer by (v_r - 4 m/s)/(3 m/s²), and the plan "
+        "brakes for it with 3 m/s² at most",
         ge=0,
         le=10,
         because="no plan is longer",
@@ -269,15 +275,17 @@ class SafetyConfig(Section):
     enabled: bool | None = option(
         None,
         None,
-        "brakes where the controller would not; none: yes, but not for the paper's controllers",
+        "The safety layer brakes where the controller would not. By default it does, but not for "
+        "the paper's controllers",
         flag="--safety",
     )
     people: Literal["worst-case", "recorded-99.9", "responsible"] = option(
         "recorded-99.9",
         None,
-        "what it takes them to do at worst: worst-case, all that the simulated ones can; "
-        "recorded-99.9, 3 m/s^2, which real people near cars exceed once in 1,000 instants; "
-        "responsible, 2.2 m/s^2, once in 100; on a sidewalk these two: 0.6 m/s^2 towards the road",
+        "Assumption about people at worst. worst-case: all that the simulated ones can do. "
+        "recorded-99.9: 3 m/s^2, which real people near cars exceed once in 1,000 instants. "
+        "responsible: 2.2 m/s^2, once in 100. On a sidewalk the last two assume 0.6 m/s^2 towards"
+        " the road",
         flag="--safety-people",
     )
 

@@ -46,7 +46,7 @@ class CrowdConfig(Section):
     pedestrians: int = option(
         0,
         "persons",
-        "pedestrians to add",
+        "Number of pedestrians that giveway adds",
         flag="--pedestrians",
         ge=0,
         le=20_000,
@@ -55,26 +55,30 @@ class CrowdConfig(Section):
     sampler: Literal["area", "encounters"] = option(
         "area",
         None,
-        "area: they start anywhere in spawn_area; encounters: in groups that meet the ego's free "
-        "drive from both sides, whatever spawn_area, walk and two_sided say",
+        "Placement of the added people. area: they start anywhere in spawn_area. encounters: they"
+        " start in groups that meet the ego's free drive from both sides, and spawn_area, walk "
+        "and two_sided have no effect",
         flag="--sampler",
     )
     spawn_area: Rectangle = option(
         (23.3, -23.4, 33.2, -12.0),
         "m",
-        "x_min,y_min,x_max,y_max of the rectangle they start in",
+        "Rectangle x_min,y_min,x_max,y_max in which people start",
         flag="--spawn-area",
     )
     walk: Displacement = option(
-        (0.0, 30.0), "m", "dx,dy from each one's start to the destination", flag="--walk"
+        (0.0, 30.0),
+        "m",
+        "Displacement dx,dy from each person's start to the destination",
+        flag="--walk",
     )
     two_sided: bool = option(
-        False, None, "every second pedestrian comes from the other side", flag="--two-sided"
+        False, None, "Every second pedestrian comes from the other side", flag="--two-sided"
     )
     desired_speed_mean: float = option(
         1.394,
         "m/s",
-        "mean desired speed",
+        "Mean desired speed",
         ge=DESIRED_SPEEDS[0],
         le=DESIRED_SPEEDS[1],
         because="nobody's desired speed is outside of these bounds",
@@ -82,7 +86,7 @@ class CrowdConfig(Section):
     desired_speed_sd: float = option(
         0.26,
         "m/s",
-        "its standard deviation",
+        "Standard deviation of the desired speed",
         ge=0,
         le=2,
         because="the speeds of people who walk are closer to each other",
@@ -90,7 +94,8 @@ class CrowdConfig(Section):
     groups: float = option(
         0.0,
         None,
-        "share of the added people who walk in groups of two to five; encounters are groups anyway",
+        "Share of the added people who walk in groups of two to five. The sampler encounters "
+        "makes groups of its own",
         flag="--groups",
         ge=0,
         le=1,
@@ -99,49 +104,59 @@ class CrowdConfig(Section):
     acceleration_noise: float = option(
         0.0,
         "m/s^2",
-        "random acceleration in each step (standard deviation per axis, cut off at twice that)",
+        "Standard deviation per axis of a random acceleration in each step. It is cut off at "
+        "twice that",
         ge=0,
         le=5,
         because="the model's people accelerate with 5 m/s^2 at most",
     )
     minimum_spacing: float = option(
-        0.5, "m", "no two start closer than this", ge=0, le=10, least=MILLIMETRE, because=GAP
+        0.5,
+        "m",
+        "Least distance between the starts of any two people",
+        ge=0,
+        le=10,
+        least=MILLIMETRE,
+        because=GAP,
     )
     host_edge: str = option(
-        "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
+        "",
+        None,
+        "Edge that hosts the added people inside SUMO. By default it is the nearest edge for "
+        "pedestrians",
     )
     model: ModelName = option(
         "vci",
         None,
-        "what moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance (they stop "
-        "for vehicles that come too soon); orca (van den Berg et al. 2011); constant-velocity; two "
-        "of JuPedSim's, jupedsim:...; or somebody else's, by the name that a package declares or "
-        "as module:Class. What controllers believe in is [perception] model",
+        "Model that moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance "
+        "(they stop for vehicles that come too soon); orca (van den Berg et al. 2011); "
+        "constant-velocity; two of JuPedSim's, jupedsim:...; or another package's, by its "
+        "declared name or as module:Class. Controllers predict by [perception] model",
         flag="--crowd-model",
     )
     preset: Preset = option(
         "SIM",
         None,
-        "parameters of the VCI model: SIM, TABLE2, or a preset file (TOML)",
+        "Parameters of the VCI model: SIM, TABLE2, or a preset file (TOML)",
         min_length=1,
     )
     zone: TextOrNumber = option(
         "50",
         None,
-        "where the scenario's own walkers follow the VCI model: metres round each ego, "
-        "'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
+        "Zone in which the scenario's own pedestrians follow the VCI model: metres round each "
+        "ego, 'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
         flag="--zone",
     )
     walls: bool = option(
         False,
         None,
-        "the edges of sidewalks, crossings and walkingareas hold people back",
+        "The edges of sidewalks, crossings and walkingareas hold people back",
         flag="--walls",
     )
     threads: int = option(
         1,
         None,
-        "processor threads that step a crowd of 1,000 or more; the results do not depend on them",
+        "Number of threads that step a crowd of 1,000 or more. The results do not depend on it",
         flag="--threads",
         ge=1,
         le=256,
@@ -151,7 +166,7 @@ class CrowdConfig(Section):
     flow_scale: float = option(
         1.0,
         None,
-        "the rate of every flow times this",
+        "Factor by which the rate of every flow is multiplied",
         flag="--flow-scale",
         ge=0,
         le=10,
@@ -160,7 +175,7 @@ class CrowdConfig(Section):
     )
     people: PeopleConfig = PeopleConfig()
     flow: Annotated[tuple[FlowConfig, ...], BeforeValidator(read_flows)] = Field(
-        default=(), description="streams of people, so many an hour from here to there"
+        default=(), description="Streams of people, so many an hour from here to there"
     )
 
     @property

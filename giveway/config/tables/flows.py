@@ -99,27 +99,27 @@ class FlowConfig(Section):
     name: str = option(
         "",
         None,
-        "of the flow, letters and digits; its people are called name.0, name.1, ...",
+        "Name of the flow, of letters and digits. Its people are called name.0, name.1, ...",
         pattern=r"^[A-Za-z0-9_.-]{1,60}$",
     )
     start: Annotated[Line | Box, BeforeValidator(_origin)] = Field(
         alias="from",
-        description="where they appear: a line [[x, y], [x, y]] or a rectangle [x_min, y_min, "
-        "x_max, y_max]",
+        description="Place where people appear: a line [[x, y], [x, y]] or a rectangle [x_min, "
+        "y_min, x_max, y_max]",
         json_schema_extra={"unit": "m"},
     )
     to: Annotated[Point | Line | Box, BeforeValidator(_destination)] = Field(
-        description="where each is bound for: a point [x, y], or somewhere on a line or in a "
-        "rectangle",
+        description="Destination of each person: a point [x, y], or somewhere on a line or in a"
+        " rectangle",
         json_schema_extra={"unit": "m"},
     )
     via: Annotated[tuple[Point | Line, ...], BeforeValidator(_via)] = option(
-        (), "m", "points and lines that they come through on the way, in this order"
+        (), "m", "Points and lines through which people come on the way, in this order"
     )
     rate: float = Field(
         gt=0,
         le=50_000,
-        description="how many there are, on average",
+        description="Average number of people in an hour",
         json_schema_extra={
             "unit": "persons/h",
             "because": "0 is no flow, and a way 10 m wide carries no more than 50,000",
@@ -128,20 +128,25 @@ class FlowConfig(Section):
     begin: float = option(
         0.0,
         "s",
-        "after the run's start, when the flow begins; < 0: it has been going on, and people are on "
-        "their way already",
+        "Time after the run's start at which the flow begins. Of a flow that began before it, < "
+        "0, people are on their way already",
         ge=-_LONGEST_BEFORE,
         le=_FARTHEST,
         because="nobody is on the way for longer than an hour, and no run for 1e7 s",
     )
     end: float | None = option(
-        None, "s", "after the run's start, when it ends; none: with the run", le=_FARTHEST
+        None,
+        "s",
+        "Time after the run's start at which the flow ends. By default it ends with the run",
+        le=_FARTHEST,
     )
-    people: PeopleConfig | None = option(None, None, "who they are; none: as in [crowd.people]")
+    people: PeopleConfig | None = option(
+        None, None, "Kinds of people in the flow. By default they are those of [crowd.people]"
+    )
     groups: float | None = option(
         None,
         None,
-        "share of them who walk in groups; none: as in [crowd]",
+        "Share of the flow's people who walk in groups. By default it is that of [crowd]",
         ge=0,
         le=1,
         because=SHARE,

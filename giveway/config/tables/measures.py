@@ -17,10 +17,10 @@ Place = tuple[float, float]
 class MeasureConfig(Section):
     """One measurement line or area, in network coordinates."""
 
-    name: str = Field(description="of the measure, as the table has it")
-    line: tuple[Place, ...] = Field((), description="its two ends, x and y [m]")
-    area: tuple[Place, ...] = Field((), description="corners of a convex area, x and y [m]")
-    interval: float = Field(10.0, description="over which each row of the table goes [s]")
+    name: str = Field(description="Name of the measure in the table")
+    line: tuple[Place, ...] = Field((), description="The two ends of the line, x and y [m]")
+    area: tuple[Place, ...] = Field((), description="Corners of a convex area, x and y [m]")
+    interval: float = Field(10.0, description="Interval [s] of each row of the table")
 
     @property
     def places(self) -> tuple[Place, ...]:

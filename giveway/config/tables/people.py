@@ -20,21 +20,26 @@ class PeopleConfig(Section):
     child: float = option(
         0.0,
         None,
-        "share of the added people who are children with an adult",
+        "Share of the added people who are children with an adult",
         ge=0,
         le=1,
         because=SHARE,
     )
-    elderly: float = option(0.0, None, "share who are older than 65", ge=0, le=1, because=SHARE)
+    elderly: float = option(
+        0.0, None, "Share of the added people who are older than 65", ge=0, le=1, because=SHARE
+    )
     distracted: float = option(
         0.0,
         None,
-        "share who look at a phone: slower, and late to notice a vehicle",
+        "Share of the added people who look at a phone. They are slower, and late to notice a "
+        "vehicle",
         ge=0,
         le=1,
         because=SHARE,
     )
-    hurried: float = option(0.0, None, "share who are in a hurry", ge=0, le=1, because=SHARE)
+    hurried: float = option(
+        0.0, None, "Share of the added people who are in a hurry", ge=0, le=1, because=SHARE
+    )
 
     @model_validator(mode="after")
     def _shared_out(self) -> PeopleConfig:

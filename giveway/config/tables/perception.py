@@ -17,13 +17,14 @@ class PerceptionConfig(Section):
     sensor: SensorName = option(
         "all",
         None,
-        "what perceives the people: all (everybody); or somebody else's sensor, by the name that a "
-        "package declares, or as module:Class",
+        "Sensor that perceives people: all (everybody), or another package's, by its declared "
+        "name or as module:Class",
     )
     position_noise: float = option(
         0.0,
         "m",
-        "people are seen this far off (standard deviation per axis, cut off at twice that)",
+        "Standard deviation per axis of the error of perceived positions. It is cut off at twice "
+        "that",
         ge=0,
         le=5,
         because="whom one looks for a lane off is not seen",
@@ -31,29 +32,34 @@ class PerceptionConfig(Section):
     tracker: bool | None = option(
         None,
         None,
-        "positions are filtered, and bounded for the safety layer; unknown desired speeds are "
-        "learnt. Left out: yes, but not for the paper's controllers",
+        "A tracker filters positions, bounds them for the safety layer, and learns unknown "
+        "desired speeds. By default there is one, but not for the paper's controllers",
         flag="--tracker",
     )
     desired_speeds: Literal["known", "typical"] = option(
         "known",
         None,
-        "of each person, or no more than [crowd] desired_speed_mean, until a pace is seen: typical",
+        "Knowledge of desired speeds: that of each person (known), or [crowd] desired_speed_mean "
+        "until the person's pace is seen (typical)",
     )
     goals: Literal["known", "heading"] = option(
         "known",
         None,
-        "where each person goes, or no more than that everybody walks on as now: heading",
+        "Knowledge of destinations: that of each person (known), or none, so that people are "
+        "expected to walk on as now (heading)",
         flag="--goals",
     )
     model: ModelName = option(
         "vci",
         None,
-        "what mpc and mpc-paper take to move people, whatever does: the names of [crowd] model; "
-        "somebody else's only if it is what moves them",
+        "Model by which mpc and mpc-paper predict people: one of [crowd] model. Another package's"
+        " model must be the one that moves people",
     )
     preset: Preset = option(
-        "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"
+        "",
+        None,
+        "Parameters by which people are predicted, as [crowd] preset. By default they are those "
+        "of the crowd",
     )
 
     @property

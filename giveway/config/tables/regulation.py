@@ -14,15 +14,15 @@ class RegulationConfig(Section):
     reference_speed: SpeedOrLane | None = option(
         None,
         "m/s",
-        "desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends. Left "
-        f"out: lane, but {DEFAULT_SPEED:g} m/s for the paper's controllers",
+        "Desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends. "
+        f"By default it is lane, but {DEFAULT_SPEED:g} m/s for the paper's controllers",
         least=0.1,
         because="slower than that nobody says whether it drives; no car is faster",
     )
     safe_distance: float = option(
         8.0,
         "m",
-        "distance d_safe to keep to who is in front",
+        "Distance d_safe that is kept to people and vehicles in front",
         ge=0,
         le=500,
         least=MILLIMETRE,
@@ -31,8 +31,8 @@ class RegulationConfig(Section):
     critical_gap: float | None = option(
         None,
         "s",
-        "to the next vehicle with priority, in which the ego goes first; none: by manoeuvre, as in "
-        "the Highway Capacity Manual",
+        "Smallest gap to the next vehicle with priority in which the ego goes first. By default "
+        "it depends on the manoeuvre, as in the Highway Capacity Manual",
         flag="--critical-gap",
         ge=0.5,
         le=60,

@@ -16,44 +16,44 @@ class RulesConfig(PlugInTable):
     socket: ClassVar[Socket] = RULE
 
     traffic_lights: bool | None = option(
-        None, None, "the ego stops at red lights. Left out: it does"
+        None, None, "The ego stops at red lights. It does by default"
     )
     signal_advice: bool | None = option(
         None,
         None,
-        "lights tell the ego their plan (SPaT): it waits for nobody who will find theirs red, and "
-        "mpc arrives when its own is green. Left out: they do",
+        "Traffic lights tell the ego their plan (SPaT). The ego waits for nobody who will find "
+        "theirs red, and mpc arrives when its own light is green. They do by default",
     )
     stops: bool | None = option(
         None,
         None,
-        "an ego that is taken over serves its scheduled stops. Left out: if it is a bus, a coach "
-        "or a tram",
+        "An ego that is taken over serves its scheduled stops. By default a bus, a coach or a "
+        "tram does",
     )
     crossings: bool | None = option(
         None,
         None,
-        "the ego gives way to people at crossings, and they rely on it. Left out: it does, but "
+        "The ego gives way to people at crossings, and they rely on it. It does by default, but "
         "not with the paper's controllers",
     )
     right_of_way: bool | None = option(
         None,
         None,
-        "the ego gives way to vehicles at junctions by the network's priority. Left out: it does, "
-        "but not with the paper's controllers",
+        "The ego gives way to vehicles at junctions by the network's priority. It does by "
+        "default, but not with the paper's controllers",
     )
     merging: bool | None = option(
         None,
         None,
-        "the ego and others come one behind the other where lanes become one. Left out: they do, "
-        "but not with the paper's controllers",
+        "The ego and other vehicles merge in turn where lanes become one. They do by default, but"
+        " not with the paper's controllers",
     )
     following: bool | None = option(
-        None, None, "the ego keeps its distance to vehicles in front. Left out: it does"
+        None, None, "The ego keeps its distance to vehicles in front. It does by default"
     )
     speed_limits: bool | None = option(
         None,
         None,
-        "limits of lanes and comfort in bends cap the speed. Left out: if [regulation] "
+        "Limits of lanes and comfort in bends cap the speed. They do by default if [regulation] "
         "reference_speed is 'lane'",
     )
