@@ -1,10 +1,12 @@
-"""What is assembled for a run."""
+"""The settings with which SUMO is started."""
 
 from giveway.config import RunConfig
 
 
-def test_a_long_clock_keeps_its_fractions_on_the_way_to_sumo() -> None:
+def test_outputs_and_options_reach_sumo() -> None:
     from giveway.cosimulation.assembly import _start_options
 
-    config = RunConfig.model_validate({"sumo": {"end": 54012.35}})
-    assert _start_options(config, True, None).extra == ("--end", "54012.350")
+    config = RunConfig.model_validate({"sumo": {"outputs": "fcd,ssm", "options": "--end 54012.35"}})
+    started = _start_options(config, True, None)
+    assert started.written == ("fcd", "ssm")
+    assert started.extra == ("--end", "54012.35")

@@ -81,7 +81,7 @@ def test_a_run_that_would_not_end_is_refused(endless: dict) -> None:
 
 
 def test_they_are_persons_of_sumo_for_its_own_outputs(tmp_path: Path) -> None:
-    config = {**STREET, "sumo": {"fcd": True}, "time_limit": 12.0}
+    config = {**STREET, "sumo": {"outputs": ["fcd"]}, "time_limit": 12.0}
     result = giveway.run(config, results=tmp_path / "run", pictures=False)
     (fcd,) = (tmp_path / "run" / "sumo").rglob("*fcd*")
     seen = set(re.findall(r'<person id="(across\.\d+)"', fcd.read_text()))
