@@ -137,5 +137,5 @@ def test_equations_are_written_into_the_pages(site: Path) -> None:
 
 def test_a_field_is_described_by_its_comment(site: Path) -> None:
     text = (site / "docs" / "api" / "controller.html").read_text(encoding="utf-8")
-    assert "h [s] between two answers" in text
+    assert "control step h [s]" in text
     assert "Alias for field number" not in text
