@@ -64,16 +64,16 @@ class Prospect(NamedTuple):
         conflicts: Numbers (N,) of persons whose time to collision is below the conflict time.
         calm: Threat-free speeds (N,) [m/s], up to which no person could force an emergency stop by
             any motion they are capable of; inf if the manoeuvre's speed is threat-free.
-        crossers: Later crossings (n, 4), of people on the ego's path beyond the horizon: distance
-            [m] ahead of the front at the horizon's end, speed [m/s] along the path, and the times
-            [s] after the horizon's end at which they enter and leave the path; they leave at 0 if
-            they never enter it. A compiled search fills none.
+        later_crossings: Later crossings (n, 4), of people on the ego's path beyond the horizon:
+            distance [m] ahead of the front at the horizon's end, speed [m/s] along the path, and
+            the times [s] after the horizon's end at which they enter and leave the path; they leave
+            at 0 if they never enter it. A compiled search fills none.
     """
 
     gap: Array
     conflicts: Array
     calm: Array
-    crossers: Array = np.empty((0, 4))  # shared default that is never written
+    later_crossings: Array = np.empty((0, 4))  # shared default that is never written
 
 
 class Foresight(Protocol):

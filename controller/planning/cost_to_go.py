@@ -17,11 +17,11 @@ _DISTANCE = 1.0  # distance [m] that the base policy keeps to people
 
 
 @inner
-def time_to_go(crossers: Array, speed: float, wanted: float) -> float:
+def time_to_go(later_crossings: Array, speed: float, wanted: float) -> float:
     """Return the time [s] that is lost beyond the horizon.
 
     Args:
-        crossers: Later crossings (n, 4), as in :class:`controller.Prospect`.
+        later_crossings: Later crossings (n, 4), as in :class:`controller.Prospect`.
         speed: Speed at the horizon's end [m/s].
         wanted: Speed [m/s] with nobody in the way, > 0.
     """
@@ -29,18 +29,18 @@ def time_to_go(crossers: Array, speed: float, wanted: float) -> float:
     for k in range(int(_SPAN / _STEP)):
         t = k * _STEP
         goal = wanted
-        for p in range(crossers.shape[0]):
-            if crossers[p, 3] <= t:
+        for p in range(later_crossings.shape[0]):
+            if later_crossings[p, 3] <= t:
                 continue
-            along = crossers[p, 1]
-            ahead = crossers[p, 0] + along * t - at
-            if ahead < 0.0 or t + ahead / wanted < crossers[p, 2]:
+            along = later_crossings[p, 1]
+            ahead = later_crossings[p, 0] + along * t - at
+            if ahead < 0.0 or t + ahead / wanted < later_crossings[p, 2]:
                 continue
             ahead = max(ahead - _DISTANCE, 0.0)
             if crossers[p, 3] - t > _SPAN:
                 behind = np.sqrt(2.0 * COMFORTABLE * ahead)
             else:
-                behind = ahead / (crossers[p, 3] - t)
+                behind = ahead / (later_crossings[p, 3] - t)
             goal = min(goal, max(along, 0.0) + behind)
         v = max(0.0, v + min(max(goal - v, -FIRM * _STEP), DRIVE_ON * _STEP))
         at += v * _STEP

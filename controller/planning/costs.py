@@ -44,9 +44,11 @@ def cost(
         Whole cost [s]; part of it that people and vehicles cause [s]; largest missing stopping
         distance [m].
     """
-    (distance, speeds, accelerations), (gap, conflicts, calm, crossers) = manoeuvre, prospect
+    (distance, speeds, accelerations), (gap, conflicts, calm, later_crossings) = manoeuvre, prospect
     own = own_cost(speeds, accelerations, wanted, time_step, weights)
-    own += later_cost(crossers, distance[-1], speeds[-1], wanted, allowed, time_step, weights)
+    own += later_cost(
+        later_crossings, distance[-1], speeds[-1], wanted, allowed, time_step, weights
+    )
     so_far = 0.0, 0.0
     for i in range(len(gap)):
         beyond, people = distance[i + 1] - allowed[i], (gap[i], conflicts[i], calm[i])
@@ -73,7 +75,7 @@ def own_cost(
 
 @inner
 def later_cost(
-    crossers: Array,
+    later_crossings: Array,
     driven: float,
     speed: float,
     wanted: float,
@@ -87,7 +89,7 @@ def later_cost(
     thus gains nothing by being fast shortly before the end of its way.
 
     Args:
-        crossers: Later crossings (n, 4), as in :class:`controller.Prospect`.
+        later_crossings: Later crossings (n, 4), as in :class:`controller.Prospect`.
         driven: Distance [m] of the manoeuvre at the horizon's end.
         speed: Last speed [m/s] of the manoeuvre.
         wanted: Speed [m/s] that lost time refers to.
@@ -101,7 +103,7 @@ def later_cost(
         left = max(0.0, allowed[N - 1] - driven)
         speed = min(speed, np.sqrt(pace**2 + 2.0 * w.deceleration * left))
     later: float = w.final * max(0.0, 1.0 - speed / wanted)
-    return later + w.later * time_to_go(crossers, speed, wanted)
+    return later + w.later * time_to_go(later_crossings, speed, wanted)
 
 
 @kernel

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from controller.kernels import add_cost_of_others, later_cost, own_cost
 from giveway.ego.foresight.assessment import View, assess_step, interval_of
 from giveway.ego.foresight.intent import walk_up
-from giveway.ego.foresight.later_crossings import fill_crossers
+from giveway.ego.foresight.later_crossings import fill_later_crossings
 from giveway.ego.foresight.workspace import Arrays
 from giveway.ego.perception.corridor import set_pose
 from giveway.geometry.kernel import Array, inlined, inner, kernel
@@ -59,7 +59,7 @@ def branch_and_bound(
     path, people, trials, memory = borrowed((path, people, trials, memory))
     poses, alarm, rows, allowed = borrowed((poses, alarm, rows, allowed))
     distance, speed, acceleration, penalty = trials
-    sums, steps, alike, _, ends, crossers, bad = memory[3:]
+    sums, steps, alike, _, ends, later_crossings, bad = memory[3:]
     M, time_step = poses.shape[0], View(*view).time_step
     ahead, scene, scratch = start(people)
     n = ahead.state.position.shape[0]
@@ -78,7 +78,8 @@ def branch_and_bound(
             enter(k, distance, speed, steps, alike)
             sums[3, k] = own_cost(speed[k], acceleration[k], wanted, time_step, weights)
             ending = distance[k, -1], speed[k, -1], wanted, allowed, time_step, weights
-            sums[0, k] = sums[3, k] + later_cost(crossers[:0], *ending)  # without later crossings
+            without = later_cost(later_crossings[:0], *ending)
+            sums[0, k] = sums[3, k] + without
             sums[1, k], sums[2, k] = 0.0, 0.0
             running[count] = k
             count += 1
@@ -116,9 +117,11 @@ def branch_and_bound(
                 fill_ends(memory[0], memory[1], best * M + M - 1, scene, ends[:n])
                 end = front + distance[best, -1]
                 half_width = View(*view).half_width
-                fill_crossers(path[0], path[1], end, half_width, ends[:n], crossers[:n])
+                fill_later_crossings(
+                    path[0], path[1], end, half_width, ends[:n], later_crossings[:n]
+                )
                 ending = distance[best, -1], speed[best, -1], wanted, allowed, time_step, weights
-                sums[0, best] = sums[3, best] + later_cost(crossers[:n], *ending)
+                sums[0, best] = sums[3, best] + later_cost(later_crossings[:n], *ending)
         if best < 0:
             break
     return best, False, tried

@@ -12,7 +12,7 @@ from giveway.ego.foresight.assessment import View, assess
 from giveway.ego.foresight.branch_and_bound import branch_and_bound
 from giveway.ego.foresight.contingency import BRANCHES, hedged
 from giveway.ego.foresight.intent import Beliefs, Halting, Otherwise
-from giveway.ego.foresight.later_crossings import fill_crossers
+from giveway.ego.foresight.later_crossings import fill_later_crossings
 from giveway.ego.foresight.threats import Alarm
 from giveway.ego.foresight.workspace import Workspace
 from giveway.ego.perception.corridor import fill_poses
@@ -203,15 +203,15 @@ class CrowdForesight:
             (gap, conflicts, calm),
         )
         wishes = self._predictor.desired_velocities(self._pedestrians, self._surroundings)
-        crossers = np.empty((len(wishes), 4))
-        fill_crossers(
+        later_crossings = np.empty((len(wishes), 4))
+        fill_later_crossings(
             *self._way[:2],
             self._front + manoeuvre.distance[-1],
             self._view[2],
             np.column_stack([self._predicted[-1], wishes]),
-            crossers,
+            later_crossings,
         )
-        return self._prospect._replace(crossers=crossers)
+        return self._prospect._replace(later_crossings=later_crossings)
 
     def _cheapest(
         self,

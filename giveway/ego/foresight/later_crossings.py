@@ -10,17 +10,18 @@ _ABREAST = 1e-3  # speed [m/s] across the path, below which a person walks along
 
 
 @kernel
-def fill_crossers(
+def fill_later_crossings(
     vertices: Array,
     stations: Array,
     front: float,
     half_width: float,
     people: Array,
-    crossers: Array,
+    later_crossings: Array,
 ) -> None:
-    """Fill ``crossers`` as in :class:`controller.Prospect`: people walk straight on as they wish.
+    """Fill ``later_crossings`` as in :class:`controller.Prospect`.
 
-    The segment of the path that is nearest to a person counts, as a straight line.
+    People walk straight on at their desired velocities. The segment of the path that is nearest to
+    a person counts, as a straight line.
 
     Args:
         vertices: Vertices of the path.
@@ -29,7 +30,7 @@ def fill_crossers(
         half_width: Half width of the corridor [m].
         people: Position [m], desired velocity [m/s] and the time [s] for which it is kept, (n, 5),
             at the end of the horizon.
-        crossers: Later crossings (n, 4), filled.
+        later_crossings: Later crossings (n, 4), filled.
     """
     first, last = segment_at(stations, front), segment_at(stations, front + _REACH)
     for p in range(people.shape[0]):
@@ -42,8 +43,8 @@ def fill_crossers(
             enters, leaves = max(0.0, min(one, other)), min(max(one, other), until)
         elif abs(lateral) > half_width:
             leaves = 0.0
-        crossers[p, 0], crossers[p, 1] = station - front, along
-        crossers[p, 2], crossers[p, 3] = enters, leaves if enters < leaves else 0.0
+        later_crossings[p, 0], later_crossings[p, 1] = station - front, along
+        later_crossings[p, 2], later_crossings[p, 3] = enters, leaves if enters < leaves else 0.0
 
 
 @inlined
