@@ -11,7 +11,7 @@ from controller.errors import (
     PlugInError,
     SolverSetupError,
 )
-from controller.foresight import Foresight, Manoeuvre, Prospect
+from controller.foresight import Evaluation, Foresight, Manoeuvre
 from controller.model import LongitudinalModel
 from controller.observation import (
     EgoState,
@@ -55,6 +55,7 @@ __all__ = [
     "Decision",
     "Defaults",
     "EgoState",
+    "Evaluation",
     "Force",
     "Foresight",
     "Limits",
@@ -77,7 +78,6 @@ __all__ = [
     "PlanningController",
     "PlugIn",
     "PlugInError",
-    "Prospect",
     "ReferenceParameters",
     "RoadAhead",
     "SafeForce",

@@ -56,7 +56,7 @@ class Trials(NamedTuple):
         return self.distance[k], self.speed[k], self.acceleration[k]
 
 
-class Prospect(NamedTuple):
+class Evaluation(NamedTuple):
     """The predicted outcome of a manoeuvre, over steps 1 ... N; the next one overwrites it.
 
     Attributes:
@@ -79,7 +79,7 @@ class Prospect(NamedTuple):
 class Foresight(Protocol):
     """Predicts the crowd under any manoeuvre of the ego."""
 
-    def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
+    def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
         """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
 
     def prefer(self) -> None:
@@ -108,14 +108,14 @@ class SearchResult(NamedTuple):
         missing: Largest stopping distance [m] that the best candidate lacks.
         clear: Whether nobody is in the way of the first candidate, which then is the best.
         tried: Number of candidates compared.
-        prospect: Predicted outcome of the best; the next search overwrites it.
+        evaluation: Predicted outcome of the best; the next search overwrites it.
     """
 
     best: int
     missing: float
     clear: bool
     tried: int
-    prospect: Prospect
+    evaluation: Evaluation
 
 
 class SearchingForesight(Foresight, Protocol):

@@ -21,7 +21,7 @@ def time_to_go(later_crossings: Array, speed: float, wanted: float) -> float:
     """Return the time [s] that is lost beyond the horizon.
 
     Args:
-        later_crossings: Later crossings (n, 4), as in :class:`controller.Prospect`.
+        later_crossings: Later crossings (n, 4), as in :class:`controller.Evaluation`.
         speed: Speed at the horizon's end [m/s].
         wanted: Speed [m/s] with nobody in the way, > 0.
     """

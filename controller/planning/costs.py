@@ -23,7 +23,7 @@ def stopping_need(speed: float, w: Weights) -> float:
 @kernel
 def cost(
     manoeuvre: tuple[Array, Array, Array],
-    prospect: tuple[Array, Array, Array, Array],
+    evaluation: tuple[Array, Array, Array, Array],
     allowed: Array,
     wanted: float,
     time_step: float,
@@ -33,7 +33,7 @@ def cost(
 
     Args:
         manoeuvre: Distances [m], speeds [m/s] and accelerations [m/s^2], (N + 1,) each.
-        prospect: Gaps [m] to the closest person in front, persons in conflict, and threat-free
+        evaluation: Gaps [m] to the closest person in front, persons in conflict, and threat-free
             speeds [m/s] at steps 1 ... N, (N,) each, and later crossings, (n, 4).
         allowed: Distances (N,) [m] that may be driven until these steps, by vehicles and lights.
         wanted: Speed [m/s] that lost time refers to.
@@ -44,7 +44,8 @@ def cost(
         Whole cost [s]; part of it that people and vehicles cause [s]; largest missing stopping
         distance [m].
     """
-    (distance, speeds, accelerations), (gap, conflicts, calm, later_crossings) = manoeuvre, prospect
+    distance, speeds, accelerations = manoeuvre
+    gap, conflicts, calm, later_crossings = evaluation
     own = own_cost(speeds, accelerations, wanted, time_step, weights)
     own += later_cost(
         later_crossings, distance[-1], speeds[-1], wanted, allowed, time_step, weights
@@ -89,7 +90,7 @@ def later_cost(
     thus gains nothing by being fast shortly before the end of its way.
 
     Args:
-        later_crossings: Later crossings (n, 4), as in :class:`controller.Prospect`.
+        later_crossings: Later crossings (n, 4), as in :class:`controller.Evaluation`.
         driven: Distance [m] of the manoeuvre at the horizon's end.
         speed: Last speed [m/s] of the manoeuvre.
         wanted: Speed [m/s] that lost time refers to.

@@ -102,7 +102,7 @@ def unfold_and_judge(
 
     Arguments are as for :func:`follow`, and the results are its last two.
     """
-    best, prospect, missing = chosen
+    best, evaluation, missing = chosen
     nodes, limits, speeds_of = problem[0], problem[2], problem[7]
     n = len(solution)
     at_nodes = np.empty(n)
@@ -112,17 +112,17 @@ def unfold_and_judge(
             value += speeds_of[i, j] * solution[j]
         at_nodes[i] = value
     unfold(speed, at_nodes, nodes, limits[0], plan)
-    closer = missing_of(plan, best, prospect, allowed, weights) > missing + _WORSE
+    closer = missing_of(plan, best, evaluation, allowed, weights) > missing + _WORSE
     if closer:
-        return True, take_over(best, plan, prospect, limits[0], weights)
-    return False, may_hold(plan, best, prospect, limits[0], weights)
+        return True, take_over(best, plan, evaluation, limits[0], weights)
+    return False, may_hold(plan, best, evaluation, limits[0], weights)
 
 
 @kernel
 def take_over(
     best: Motion,
     plan: Motion,
-    prospect: tuple[Array, Array, Array],
+    evaluation: tuple[Array, Array, Array],
     time_step: float,
     weights: tuple[Any, ...],
 ) -> bool:
@@ -131,19 +131,19 @@ def take_over(
         plan[0][i], plan[1][i] = best[0][i], best[1][i]
     for i in range(len(plan[2])):
         plan[2][i] = best[2][i]
-    return may_hold(plan, best, prospect, time_step, weights)
+    return may_hold(plan, best, evaluation, time_step, weights)
 
 
 @inner
 def missing_of(
     plan: Motion,
     best: Motion,
-    prospect: tuple[Array, Array, Array],
+    evaluation: tuple[Array, Array, Array],
     allowed: Array,
     weights: tuple[Any, ...],
 ) -> float:
     """The largest stopping distance [m] that a plan lacks if people move as for the manoeuvre."""
-    gap, conflicts, calm = prospect
+    gap, conflicts, calm = evaluation
     so_far = 0.0, 0.0
     for i in range(len(gap)):
         people = gap[i] + best[0][i + 1] - plan[0][i + 1], conflicts[i], calm[i]
@@ -156,12 +156,12 @@ def missing_of(
 def may_hold(
     plan: Motion,
     best: Motion,
-    prospect: tuple[Array, Array, Array],
+    evaluation: tuple[Array, Array, Array],
     time_step: float,
     weights: tuple[Any, ...],
 ) -> bool:
     """Return whether a stop stays possible if the plan's last speed is kept for one more step."""
     v = plan[1][-1]
-    gap = prospect[0][-1] + best[0][-1] - plan[0][-1]
+    gap = evaluation[0][-1] + best[0][-1] - plan[0][-1]
     holds: bool = gap - time_step * v >= stopping_need(v, Weights(*weights))
     return holds

@@ -149,8 +149,8 @@ class Planner:
             name: Name of the chosen manoeuvre.
         """
         search, plan, to = self._search, self._plan, self._to
-        prospect = (search.gap, search.conflicts, search.calm)
-        chosen = search.best, prospect, search.missing
+        evaluation = (search.gap, search.conflicts, search.calm)
+        chosen = search.best, evaluation, search.missing
         lane_speeds = self._any_speed if road.lane_speeds is None else road.lane_speeds
         bounds = road.allowed, lane_speeds, self._corridor
         corrections, itself, holds = follow(
@@ -165,7 +165,7 @@ class Planner:
                     state[0], chosen, road.allowed, self._arrays, solution, to, search.weights
                 )
             else:
-                holds = take_over(search.best, to, prospect, self.model.time_step, search.weights)
+                holds = take_over(search.best, to, evaluation, self.model.time_step, search.weights)
         status = "manoeuvre" if itself else str(outcome)
         if outcome is not _SOLVED:
             status = "manoeuvre: no QP solution"

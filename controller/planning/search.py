@@ -12,7 +12,7 @@ from math import inf
 import numpy as np
 
 from controller._jit import Array, kernel
-from controller.foresight import Batches, Foresight, Manoeuvre, Prospect, Trials
+from controller.foresight import Batches, Evaluation, Foresight, Manoeuvre, Trials
 from controller.model import LongitudinalModel
 from controller.planning.costs import cost, cost_of_blocking
 from controller.planning.motions import aim, approach, shift
@@ -32,9 +32,9 @@ class Search:
         weights: Weights of the cost, a plain tuple of the fields of :class:`Weights`.
         best: Distance, speed and acceleration of the manoeuvre of least cost. This and what
             follows is valid until the next search.
-        gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Prospect`.
-        conflicts: Persons in conflict (N,), as in :class:`Prospect`.
-        calm: Threat-free speeds (N,) [m/s], as in :class:`Prospect`.
+        gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Evaluation`.
+        conflicts: Persons in conflict (N,), as in :class:`Evaluation`.
+        calm: Threat-free speeds (N,) [m/s], as in :class:`Evaluation`.
         missing: Largest stopping distance [m] that it lacks.
         tried: Number of manoeuvres that were compared.
     """
@@ -189,7 +189,7 @@ class Search:
         self.tried, self.missing = result.tried, result.missing
         if result.best >= 0:
             self._take(result.best)
-            self.gap, self.conflicts, self.calm, _ = result.prospect
+            self.gap, self.conflicts, self.calm, _ = result.evaluation
         return bool(result.clear)
 
     def _one_by_one(
@@ -210,12 +210,12 @@ class Search:
             self.tried += len(trials)
             for trial in trials:
                 manoeuvre = self._trials.of(trial)
-                prospect = Prospect(self._free, self._nobody, self._free)
+                evaluation = Evaluation(self._free, self._nobody, self._free)
                 if foresight is not None:
-                    prospect = foresight.prospect(Manoeuvre(*manoeuvre))
+                    evaluation = foresight.evaluate(Manoeuvre(*manoeuvre))
                 whole, disturbed, missing = cost(
                     manoeuvre,
-                    prospect,
+                    evaluation,
                     allowed,
                     wanted,
                     self._time_step,
@@ -225,7 +225,7 @@ class Search:
                 if whole < lowest:
                     lowest, self.missing = whole, missing
                     self._take(trial)
-                    self.gap, self.conflicts, self.calm = (a.copy() for a in prospect[:3])
+                    self.gap, self.conflicts, self.calm = (a.copy() for a in evaluation[:3])
                     if foresight is not None:
                         foresight.prefer()
                 if probe and disturbed <= 0.0 and trial == batches.first[0]:

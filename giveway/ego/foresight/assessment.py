@@ -31,7 +31,7 @@ def assess(
     front: float,
     manoeuvre: tuple[Array, Array],
     sight: tuple[tuple[float, ...], tuple[Any, ...]],
-    prospect: tuple[Array, Array, Array],
+    evaluation: tuple[Array, Array, Array],
 ) -> None:
     """Fill gaps in front, persons on a collision course, and threat-free speeds at steps 1 ... N.
 
@@ -44,13 +44,13 @@ def assess(
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
         sight: Fields of a :class:`View` and of an :class:`Alarm`.
-        prospect: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
+        evaluation: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
     """
     now, predicted = crowd
     between = np.empty((now.shape[0], 2))
     for j in range(len(predicted)):
         people = (predicted[j - 1] if j > 0 else now, predicted[j], between)
-        assess_step(path, people, (j, len(predicted)), front, manoeuvre, sight, prospect)
+        assess_step(path, people, (j, len(predicted)), front, manoeuvre, sight, evaluation)
 
 
 @inlined
@@ -76,7 +76,7 @@ def assess_step(
     front: float,
     manoeuvre: tuple[Array, Array],
     sight: tuple[tuple[float, ...], tuple[Any, ...]],
-    prospect: tuple[Array, Array, Array],
+    evaluation: tuple[Array, Array, Array],
 ) -> None:
     """Fill as :func:`assess` does, for one prediction step only.
 
@@ -87,11 +87,11 @@ def assess_step(
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
         sight: Fields of a :class:`View` and of an :class:`Alarm`.
-        prospect: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
+        evaluation: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
     """
     (vertices, stations, headings), (before, after, between) = path, people
     (j, predicted), (distance, speeds) = which, manoeuvre
-    gap, conflicts, calm = prospect
+    gap, conflicts, calm = evaluation
     view, alarm = sight
     v, limits = View(*view), Alarm(*alarm)
     length, time_step, every = v.length, v.time_step, int(v.every)

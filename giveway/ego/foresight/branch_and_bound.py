@@ -187,7 +187,7 @@ def advance(
     people, ahead, scene, scratch, law = crowd
     (poses, row, front), (distance, speed, allowed, weights) = ego, judged
     view = sight[0]
-    state, index, prospects, sums, steps, alike, between = memory[:7]
+    state, index, evaluations, sums, steps, alike, between = memory[:7]
     x, v, at = ahead.state
     M, n, N, every = poses.shape[0], x.shape[0], distance.shape[1] - 1, int(View(*view).every)
     j = steps[0, k]
@@ -236,7 +236,7 @@ def advance(
     if donor >= 0:
         for which in range(3):
             for i in range(begin, end):
-                prospects[which, k, i] = prospects[which, donor, i]
+                evaluations[which, k, i] = evaluations[which, donor, i]
     else:
         assess_step(
             (vertices, stations, headings),
@@ -245,11 +245,11 @@ def advance(
             front,
             (distance[k], speed[k]),
             sight,
-            (prospects[0, k], prospects[1, k], prospects[2, k]),
+            (evaluations[0, k], evaluations[1, k], evaluations[2, k]),
         )
     for i in range(begin, end):
         so_far, beyond = (sums[1, k], sums[2, k]), distance[k, i + 1] - allowed[i]
-        met = prospects[0, k, i], prospects[1, k, i], prospects[2, k, i]
+        met = evaluations[0, k, i], evaluations[1, k, i], evaluations[2, k, i]
         sums[1, k], sums[2, k] = add_cost_of_others(so_far, speed[k, i + 1], met, beyond, weights)
     steps[1, k] = j + 1
     return _FINE

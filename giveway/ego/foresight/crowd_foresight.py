@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Manoeuvre, Prospect, WorstMotion
+from controller import Evaluation, Manoeuvre, WorstMotion
 from controller.kernels import Batches, SearchResult, Trials
 from giveway.ego.foresight.assessment import View, assess
 from giveway.ego.foresight.branch_and_bound import branch_and_bound
@@ -125,7 +125,7 @@ class CrowdForesight:
         self._beliefs, self._soon = beliefs, np.empty(0)
         self._length = shape.length
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
-        self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
+        self._evaluation = Evaluation(np.empty(N), np.zeros(N), np.zeros(N))
         self._predicted = np.empty((M, 0, 2))
         self._best = np.empty((M, 0, 2))
         self._poses = np.empty((M, 0, 7))
@@ -190,10 +190,10 @@ class CrowdForesight:
         share = (after - before)[:, None, None]
         return np.asarray((1.0 - share) * known[before] + share * known[before + 1])
 
-    def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
+    def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
         """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
         self._predict(manoeuvre.distance, manoeuvre.speed)
-        gap, conflicts, calm, _ = self._prospect
+        gap, conflicts, calm, _ = self._evaluation
         assess(
             self._way,
             (self._pedestrians.position, self._predicted),
@@ -211,7 +211,7 @@ class CrowdForesight:
             np.column_stack([self._predicted[-1], wishes]),
             later_crossings,
         )
-        return self._prospect._replace(later_crossings=later_crossings)
+        return self._evaluation._replace(later_crossings=later_crossings)
 
     def _cheapest(
         self,

@@ -18,7 +18,7 @@ def fill_later_crossings(
     people: Array,
     later_crossings: Array,
 ) -> None:
-    """Fill ``later_crossings`` as in :class:`controller.Prospect`.
+    """Fill ``later_crossings`` as in :class:`controller.Evaluation`.
 
     People walk straight on at their desired velocities. The segment of the path that is nearest to
     a person counts, as a straight line.

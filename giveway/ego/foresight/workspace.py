@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Prospect
+from controller import Evaluation
 from controller.kernels import Batches, SearchResult
 from giveway.geometry.kernel import Array
 
@@ -29,8 +29,8 @@ class Workspace:
         self.count, self.people, self._predicted = count, people, predicted
         self._state = np.empty(count * predicted * people * 4)
         self._index = np.empty(count * predicted * people, dtype=np.int64)
-        prospects = np.zeros((3, count, horizon))  # gaps, conflicts, threat-free speeds
-        self._prospects = [Prospect(*rows) for rows in zip(*prospects, strict=True)]
+        evaluations = np.zeros((3, count, horizon))  # gaps, conflicts, threat-free speeds
+        self._evaluations = [Evaluation(*rows) for rows in zip(*evaluations, strict=True)]
         # Rows: own and later cost, cost of others, missing distance, own cost
         self._sums = np.zeros((4, count))
         self._steps = np.zeros((2, count), dtype=np.int64)  # steps predicted, steps assessed
@@ -40,7 +40,7 @@ class Workspace:
         self.arrays: Arrays = (
             self._state,
             self._index,
-            prospects,
+            evaluations,
             self._sums,
             self._steps,
             self._alike,
@@ -83,4 +83,4 @@ class Workspace:
 
     def result(self, best: int, clear: bool, tried: int) -> SearchResult:
         """Return the result of the search."""
-        return SearchResult(best, float(self._sums[2, best]), clear, tried, self._prospects[best])
+        return SearchResult(best, float(self._sums[2, best]), clear, tried, self._evaluations[best])

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from controller import LongitudinalModel, PlannerParameters, Prospect
+from controller import Evaluation, LongitudinalModel, PlannerParameters
 from controller.planning.smoothing import nodes_of
 
 if TYPE_CHECKING:
@@ -139,11 +139,11 @@ class Bystanders:
         there = (self.until > self.step) & (self.at > self.front - 0.3)
         return float(np.min(self.at[there] - self.front, initial=np.inf))
 
-    def prospect(self, manoeuvre):
+    def evaluate(self, manoeuvre):
         gap = self.at - self.front - manoeuvre.distance[1:, None]
         there = (self.until > self.step + self._steps[:, None]) & (gap > -0.3)
         closest = np.where(there, gap, np.inf).min(axis=1, initial=np.inf)
-        return Prospect(closest, np.zeros(len(closest)), self._calm)
+        return Evaluation(closest, np.zeros(len(closest)), self._calm)
 
     def prefer(self):
         pass

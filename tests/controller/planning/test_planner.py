@@ -19,7 +19,7 @@ from smoothing_cases import (
     speeds,
 )
 
-from controller import Planner, PlannerParameters, Prospect
+from controller import Evaluation, Planner, PlannerParameters
 from controller._jit import kernel
 from controller.planning import Road
 from controller.planning.smoothing import SmoothingProblem
@@ -34,9 +34,9 @@ class Fixed:
     def __init__(self, room):
         self.room = room
 
-    def prospect(self, manoeuvre):
+    def evaluate(self, manoeuvre):
         gap = self.room + FOLLOWING.safe_distance - manoeuvre.distance[1:]
-        return Prospect(gap, np.zeros(N), FREE)
+        return Evaluation(gap, np.zeros(N), FREE)
 
     def prefer(self):
         pass
@@ -66,8 +66,8 @@ def test_the_corridor_always_leaves_a_plan(speed, force, room, calm):
 class Crossing:
     """People on a collision course whatever is driven: a plan once made goes on for its cost."""
 
-    def prospect(self, manoeuvre):
-        return Prospect(FREE, np.full(N, 0.1), FREE)
+    def evaluate(self, manoeuvre):
+        return Evaluation(FREE, np.full(N, 0.1), FREE)
 
     def prefer(self):
         pass
@@ -95,8 +95,8 @@ class StepsOut:
         self.calm = np.full(horizon, np.inf)
         self.calm[24:30] = calm
 
-    def prospect(self, manoeuvre):
-        return Prospect(*self.nobody, self.calm)
+    def evaluate(self, manoeuvre):
+        return Evaluation(*self.nobody, self.calm)
 
     def prefer(self):
         pass
@@ -132,9 +132,9 @@ class BesideTheWay:
             left > 0.0, np.sqrt(self.CALM**2 + 2.0 * self.FULLY * np.maximum(left, 0.0)), np.inf
         )
 
-    def prospect(self, manoeuvre):
+    def evaluate(self, manoeuvre):
         calm = self.fastest(self.driven + manoeuvre.distance[1:])
-        return Prospect(*self.nobody, np.where(manoeuvre.speed[1:] > calm, calm, np.inf))
+        return Evaluation(*self.nobody, np.where(manoeuvre.speed[1:] > calm, calm, np.inf))
 
     def prefer(self):
         pass

@@ -91,7 +91,7 @@ def test_people_left_out_hardly_change_a_manoeuvres_outcome(
                 left_out += look.relevant is not None and not look.relevant.all()
                 way = speed * 0.05 * np.arange(N + 1)
                 steady = Manoeuvre(way, np.full(N + 1, speed), np.zeros(N + 1))
-                seen.append([column.copy() for column in look.foresight.prospect(steady)])
+                seen.append([column.copy() for column in look.foresight.evaluate(steady)])
         met += int(np.isfinite(seen[0][0]).any() and seen[0][1].any())
         gap, all_gap = seen[0][0], seen[1][0]
         near = np.minimum(gap, all_gap) < CONFIG.regulation.safe_distance

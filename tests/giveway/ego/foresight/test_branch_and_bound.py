@@ -35,7 +35,7 @@ class OneByOne:
     """A foresight that cannot search itself."""
 
     def __init__(self, foresight):
-        self.prospect, self.prefer = foresight.prospect, foresight.prefer
+        self.evaluate, self.prefer = foresight.evaluate, foresight.prefer
 
 
 def foresight(**changes):

@@ -49,7 +49,7 @@ def test_calm_speeds_are_those_of_what_the_layer_below_assumes():
     for worst in (WorstMotion(5.0, 2.5), WORST, WorstMotion(1.0, 2.5), None):
         ahead = foresight(worst=worst)
         look(ahead, off=3.5)
-        calm.append(ahead.prospect(manoeuvre(4.0)).calm.min())
+        calm.append(ahead.evaluate(manoeuvre(4.0)).calm.min())
     assert calm[0] < calm[1] < calm[2] <= calm[3] == np.inf
 
 
@@ -72,7 +72,7 @@ def test_people_too_quick_for_the_step_are_predicted_in_theirs():
 def test_positions_are_known_at_each_step():
     ahead = foresight()
     look(ahead)
-    ahead.prospect(manoeuvre(4.0))
+    ahead.evaluate(manoeuvre(4.0))
     ahead.prefer()
     y = np.concatenate([[-2.0], ahead.best[:, 0, 1]])
     assert ahead.best.shape == (N, 1, 2)
@@ -85,7 +85,7 @@ def test_people_answer_to_the_manoeuvre():
     look(ahead)
     crossings = []
     for m in (manoeuvre(4.0), manoeuvre(4.0, -4.0)):
-        ahead.prospect(m)
+        ahead.evaluate(m)
         ahead.prefer()
         crossings.append(ahead.best[-1, 0, 1])
     assert abs(crossings[1] - crossings[0]) > 0.01
@@ -95,10 +95,10 @@ def test_the_best_is_remembered_until_the_next_look():
     ahead = foresight()
     look(ahead)
     assert ahead.best is None
-    ahead.prospect(manoeuvre(4.0))
+    ahead.evaluate(manoeuvre(4.0))
     ahead.prefer()
     preferred = ahead.best.copy()
-    ahead.prospect(manoeuvre(4.0, -4.0))
+    ahead.evaluate(manoeuvre(4.0, -4.0))
     assert np.array_equal(ahead.best, preferred)
     look(ahead)
     assert ahead.best is None
