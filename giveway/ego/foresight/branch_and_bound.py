@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from controller.kernels import add_cost_of_others, later_cost, own_cost
 from giveway.ego.foresight.assessment import View, assess_step, interval_of
-from giveway.ego.foresight.intent import walk_up
+from giveway.ego.foresight.intent import step_yielding
 from giveway.ego.foresight.later_crossings import fill_later_crossings
 from giveway.ego.foresight.workspace import Arrays
 from giveway.ego.perception.corridor import set_pose
@@ -39,7 +39,7 @@ def branch_and_bound(
     Args:
         path: Vertices, stations and headings of the ego's path.
         people: Arrays of the crowd, as :func:`pedestrian_model.kernels.start` takes them.
-        law: Constants of the pedestrian model, and :attr:`Beliefs.halting`.
+        law: Constants of the pedestrian model, and :attr:`IntentEstimator.yielding`.
         ego: Poses of all vehicles, (M, m, 7), in which the ego's row is changed; index of that
             row; station of the ego's front bumper [m].
         sight: Fields of a ``View`` and of an ``Alarm``.
@@ -220,7 +220,7 @@ def advance(
         if bad != _FINE:
             return bad
         if j > 0:  # step 0 is the walking model's: intent estimation compares people with it
-            walk_up(law[-1], 4 * (here - n), state, scene, x, v)
+            step_yielding(law[-1], 4 * (here - n), state, scene, x, v)
         for p in range(n):
             base = 4 * (here + p)
             state[base], state[base + 1] = x[p, 0], x[p, 1]

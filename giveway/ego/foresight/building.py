@@ -2,7 +2,7 @@
 
 from giveway.ego.foresight.contingency import load
 from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions
-from giveway.ego.foresight.intent import Beliefs
+from giveway.ego.foresight.intent import IntentEstimator
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
@@ -24,11 +24,11 @@ def foresight_of(
     config, predictor = waiting.config, waiting.predictor
     if not waiting.controller.foresees or predictor is None:
         return None
-    beliefs = None
+    estimator = None
     if config.perception.model == "vci":
         assert isinstance(predictor, Predictor)
         load()
-        beliefs = Beliefs(path, half_width, predictor, time_step)
+        estimator = IntentEstimator(path, half_width, predictor, time_step)
     ego = EgoAssumptions(
         shape,
         half_width,
@@ -37,5 +37,5 @@ def foresight_of(
         None if waiting.safety is None else waiting.safety.worst,
     )
     return CrowdForesight(
-        predictor, path, ego, horizon=waiting.horizon, time_step=time_step, beliefs=beliefs
+        predictor, path, ego, horizon=waiting.horizon, time_step=time_step, estimator=estimator
     )

@@ -11,7 +11,7 @@ from controller.kernels import Batches, SearchResult, Trials
 from giveway.ego.foresight.assessment import View, assess
 from giveway.ego.foresight.branch_and_bound import branch_and_bound
 from giveway.ego.foresight.contingency import BRANCHES, hedged
-from giveway.ego.foresight.intent import Beliefs, Halting, Otherwise
+from giveway.ego.foresight.intent import AlternativeHypothesis, IntentEstimator, Yielding
 from giveway.ego.foresight.later_crossings import fill_later_crossings
 from giveway.ego.foresight.threats import Alarm
 from giveway.ego.foresight.workspace import Workspace
@@ -88,7 +88,7 @@ class CrowdForesight:
         ego: Body and brakes of the ego, and the motions of people that it prepares for.
         horizon: Number N of a manoeuvre's steps.
         time_step: Time step of a manoeuvre [s].
-        beliefs: Intent estimator, or None to assume that all people walk on.
+        estimator: Intent estimator, or None to assume that all people walk on.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class CrowdForesight:
         *,
         horizon: int,
         time_step: float,
-        beliefs: Beliefs | None = None,
+        estimator: IntentEstimator | None = None,
     ) -> None:
         N, M = horizon, predictor.horizon
         every = round(predictor.time_step / time_step)
@@ -122,7 +122,7 @@ class CrowdForesight:
         )
         self._alarm = tuple(self._limits)
         self._clearance, self._off = clearance, 0.0
-        self._beliefs, self._soon = beliefs, np.empty(0)
+        self._estimator, self._soon = estimator, np.empty(0)
         self._length = shape.length
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
         self._evaluation = Evaluation(np.empty(N), np.zeros(N), np.zeros(N))
@@ -130,7 +130,7 @@ class CrowdForesight:
         self._best = np.empty((M, 0, 2))
         self._poses = np.empty((M, 0, 7))
         self._copied, self._preferred = False, False
-        self._otherwise: Otherwise | None = None
+        self._alternative: AlternativeHypothesis | None = None
         self._winner = -1  # row of the best manoeuvre of the latest search, in the workspace
         self._workspace = self._aside = Workspace(0, N, M, 0)
         # Only VCI is part of the compiled search. With other models manoeuvres are judged singly.
@@ -163,12 +163,14 @@ class CrowdForesight:
             self._off = off
             self._limits = self._limits._replace(clearance=self._clearance + off)
         self._alarm = (*self._limits[:-1], kerb_lines(pedestrians.position, kerbs))
-        if self._beliefs is not None and numbers is not None:
-            self._otherwise = self._beliefs.weigh(pedestrians, numbers, ego[2], self._soon)
-            self._halting, self._soon = self._beliefs.halting, self._soon[:0]
+        if self._estimator is not None and numbers is not None:
+            self._alternative = self._estimator.update_both(
+                pedestrians, numbers, ego[2], self._soon
+            )
+            self._yielding, self._soon = self._estimator.yielding, self._soon[:0]
         else:
-            self._otherwise = None
-            self._halting = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
+            self._alternative = None
+            self._yielding = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front = ego
         self._copied, self._preferred = False, False
@@ -234,8 +236,8 @@ class CrowdForesight:
             workspace = self._workspace = Workspace(
                 len(trials.penalty), len(allowed), len(self._poses), n
             )
-        searched, whom = (workspace, trials, batches), (self._pedestrians, self._halting)
-        judged, other = (allowed, wanted, weights), self._otherwise
+        searched, whom = (workspace, trials, batches), (self._pedestrians, self._yielding)
+        judged, other = (allowed, wanted, weights), self._alternative
         if other is not None:
             best, clear, tried = self._hedge(*searched, judged, other)
         else:
@@ -253,7 +255,7 @@ class CrowdForesight:
         probe: bool,
         judged: _Judged,
         people: Crowd,
-        halting: Halting,
+        yielding: Yielding,
     ) -> tuple[int, bool, int]:
         """Run :func:`branch_and_bound` with people who behave as one of the hypotheses says."""
         vci = self._vci
@@ -261,7 +263,7 @@ class CrowdForesight:
         ended: tuple[int, bool, int] = branch_and_bound(
             self._way,
             vci.arrays(people, self._surroundings),
-            (*vci.law, halting),
+            (*vci.law, yielding),
             (self._poses, self._row, self._front),
             (self._view, self._alarm),
             (tuple(trials), workspace.arrays, workspace.rows_of(batches), probe),
@@ -277,18 +279,18 @@ class CrowdForesight:
         trials: Trials,
         batches: Batches,
         judged: _Judged,
-        other: Otherwise,
+        other: AlternativeHypothesis,
     ) -> tuple[int, bool, int]:
         """Run the search over both hypotheses, for people whose intent is uncertain."""
         time_step, n = View(*self._view).time_step, len(other.people)
         if self._aside.people < n:  # outcomes under the other hypothesis have their own workspace
             self._aside = Workspace(BRANCHES, len(judged[0]), len(self._poses), n)
-        likelier, less = (workspace, self._pedestrians, self._halting), (self._aside, *other[:2])
+        likelier, less = (workspace, self._pedestrians, self._yielding), (self._aside, *other[:2])
 
-        def cost(trials: Trials, rows: list[int], otherwise: bool) -> float:
-            among, people, halting = less if otherwise else likelier
+        def cost(trials: Trials, rows: list[int], alternative: bool) -> float:
+            among, people, yielding = less if alternative else likelier
             searched = among, trials, Batches(rows, [], [])
-            best, _, _ = self._run(*searched, False, judged, people, halting)
+            best, _, _ = self._run(*searched, False, judged, people, yielding)
             own, others = among.arrays[3][:2, best]
             return float(own + time_step * others + trials.penalty[best]) if best >= 0 else inf
 

@@ -34,18 +34,18 @@ _SWAY = 0.1  # distance [m] that people may walk beyond the stopping point of th
 _OPEN = 2.0  # absolute log odds below which a person's intent is uncertain
 _NEVER = -1  # number of a look that never took place
 
-Halting = tuple[NDArray[np.bool_], float, float, float]
+Yielding = tuple[NDArray[np.bool_], float, float, float]
 
 
-class Otherwise(NamedTuple):
+class AlternativeHypothesis(NamedTuple):
     """The alternative hypothesis: people of uncertain intent do what is less likely."""
 
     people: Crowd  # crowd in which the routes of those who yield are changed
-    halting: Halting  # yielding state, as in :class:`Beliefs`
+    yielding: Yielding  # yielding state, as in :class:`IntentEstimator`
     likely: float  # probability of the other, likelier hypothesis
 
 
-class Beliefs:
+class IntentEstimator:
     """Estimates for each person, by number, the log odds that they yield to the ego.
 
     Args:
@@ -80,7 +80,7 @@ class Beliefs:
         return float(self._odds[number]) if number < len(self._odds) else _PRIOR
 
     @property
-    def halting(self) -> Halting:
+    def yielding(self) -> Yielding:
         """The yielding state of the latest look.
 
         It consists of marks (n,) of people who yield, the share of a desired change of velocity in
@@ -88,9 +88,9 @@ class Beliefs:
         """
         return self._yield, *self._law[1:], self._step
 
-    def weigh(
+    def update_both(
         self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array
-    ) -> Otherwise | None:
+    ) -> AlternativeHypothesis | None:
         """Update, and return the alternative hypothesis for people of uncertain intent.
 
         Arguments are as for :meth:`update`.
@@ -102,11 +102,11 @@ class Beliefs:
         if not _is_open(self._odds, numbers):
             self.update(people, numbers, front, expected)
             return None
-        intent = np.abs(self._odds[numbers]) < _OPEN
+        uncertain = np.abs(self._odds[numbers]) < _OPEN
         other = people.select(np.ones(len(people), dtype=np.bool_))
         self.update(people, numbers, front, expected)
         odds, yields = self._odds.copy(), np.zeros(len(numbers), dtype=np.bool_)
-        odds[numbers[intent]] *= -1.0
+        odds[numbers[uncertain]] *= -1.0
         seen = (*other.state, other.desired_speed, *other.routes)
         none = _NEVER, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_), np.zeros(0)
         memory = odds, self._told, self._expected
@@ -115,8 +115,8 @@ class Beliefs:
         if not differ.any():
             return None
         least = float(np.abs(odds[numbers[differ]]).min())
-        halting = yields, *self._law[1:], self._step
-        return Otherwise(other, halting, 1.0 / (1.0 + exp(-least)))
+        yielding = yields, *self._law[1:], self._step
+        return AlternativeHypothesis(other, yielding, 1.0 / (1.0 + exp(-least)))
 
     def update(
         self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array
@@ -160,7 +160,7 @@ def _update(
     memory: tuple[Array, NDArray[np.int64], Array],
     law: tuple[float, float, float],
 ) -> int:
-    """Update as :meth:`Beliefs.update` does; return -1, or a number that needs longer arrays.
+    """Update as :meth:`IntentEstimator.update`; return -1, or a number that needs longer arrays.
 
     Args:
         path: Vertices of the path, and their stations [m].
@@ -239,8 +239,8 @@ def _is_open(odds: Array, numbers: NDArray[np.int64]) -> bool:
 
 
 @inlined
-def walk_up(
-    halting: tuple[Any, ...], at: int, state: Array, scene: Any, position: Array, velocity: Array
+def step_yielding(
+    yielding: tuple[Any, ...], at: int, state: Array, scene: Any, position: Array, velocity: Array
 ) -> None:
     """Move people who yield by one prediction step, under their destination force alone; in place.
 
@@ -248,14 +248,14 @@ def walk_up(
     corridor's edge aside, which would free room that does not exist.
 
     Args:
-        halting: Yielding state, see :attr:`Beliefs.halting`.
+        yielding: Yielding state, see :attr:`IntentEstimator.yielding`.
         at: Index in ``state`` at which the step before begins.
         state: State of each person: x, y [m], v_x, v_y [m/s].
         scene: Scene of the prediction.
         position: Positions (n, 2) [m] of all people after the step; changed.
         velocity: Velocities (n, 2) [m/s] of all people after the step; changed.
     """
-    yields, taken_up, smoothing, dt = halting
+    yields, taken_up, smoothing, dt = yielding
     waypoints, _, _, begin = scene.routes
     for p in range(position.shape[0]):
         if not yields[p]:

@@ -6,7 +6,7 @@ import pytest
 from controller.kernels import Trials, branch_off
 from giveway.ego.foresight.contingency import hedged
 from giveway.ego.foresight.crowd_foresight import plan_predictor
-from giveway.ego.foresight.intent import Beliefs
+from giveway.ego.foresight.intent import IntentEstimator
 from giveway.geometry.path import EgoPath
 from pedestrian_model import SIM, Crowd
 
@@ -36,8 +36,8 @@ def test_a_branch_starts_as_its_manoeuvre_and_keeps_the_limits(braking):
 def cost(time, stopped):
     """Under the likelier hypothesis a manoeuvre loses time; else all but who stops hits someone."""
 
-    def of(trials, rows, otherwise):
-        if otherwise:
+    def of(trials, rows, alternative):
+        if alternative:
             return 10.0 if trials.distance[rows, -1].min() > stopped else 2.0
         return min(time[row] for row in rows)
 
@@ -57,7 +57,7 @@ def test_where_it_does_not_the_odds_decide(likely, chosen):
 
 def test_the_less_likely_intent_is_told_only_where_it_is_open():
     path = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
-    seen = Beliefs(path, 1.15, plan_predictor(SIM, DT, 20), DT)
+    seen = IntentEstimator(path, 1.15, plan_predictor(SIM, DT, 20), DT)
     numbers, told = np.array([0, 1]), []
     expected = np.empty(0)
     for _ in range(12):
@@ -67,7 +67,7 @@ def test_the_less_likely_intent_is_told_only_where_it_is_open():
             1.39,
             [[(18.0, 20.0)], [(25.0, 20.0)]],
         )
-        other = seen.weigh(crowd, numbers, 10.0, expected)
+        other = seen.update_both(crowd, numbers, 10.0, expected)
         expected = np.array([18.0, -1.9, 0.0, 0.7, 25.0, -1.9, 0.0, 1.39])
         if other is not None:
             told.append((seen.odds(0), crowd.waypoints[0, 1], other))

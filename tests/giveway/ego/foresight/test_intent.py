@@ -8,7 +8,7 @@ import pytest
 from controller import LongitudinalModel, Planner, PlannerParameters
 from controller.planning import Road
 from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions, plan_predictor
-from giveway.ego.foresight.intent import Beliefs, shifted
+from giveway.ego.foresight.intent import IntentEstimator, shifted
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
@@ -21,8 +21,8 @@ FRONT = 10.0
 PACE = 1.39
 
 
-def beliefs(path=STRAIGHT):
-    return Beliefs(path, HALF, PREDICTOR, DT)
+def estimator(path=STRAIGHT):
+    return IntentEstimator(path, HALF, PREDICTOR, DT)
 
 
 def walker(y, v_y, *, x=18.0, to=20.0):
@@ -53,13 +53,13 @@ def watch(seen, speed_at, y=-4.0, steps=60, front=FRONT):
 
 
 def test_who_walks_on_is_expected_to():
-    odds, ways = watch(beliefs(), lambda _: PACE, y=-6.0)
+    odds, ways = watch(estimator(), lambda _: PACE, y=-6.0)
     assert max(odds) < -2.9
     assert all((way == (18.0, 20.0)).all() for way in ways)
 
 
 def test_a_person_who_slows_down_is_found_out_before_standing():
-    odds, ways = watch(beliefs(), lambda room: min(PACE, max(room, 0.0) / 2.0))
+    odds, ways = watch(estimator(), lambda room: min(PACE, max(room, 0.0) / 2.0))
     first = next(i for i, found in enumerate(odds) if found > 0.0)
     assert first < 20
     assert odds[-1] > 0.0  # and so he stays
@@ -72,7 +72,7 @@ def test_a_person_who_slows_down_is_found_out_before_standing():
 
 
 def test_who_goes_on_after_all_is_believed():
-    seen = beliefs()
+    seen = estimator()
     odds, _ = watch(seen, lambda room: min(PACE, max(room, 0.0) / 2.0), steps=50)
     assert odds[-1] > 0.0
     odds, _ = watch(seen, lambda _: PACE, y=-HALF - 0.4, steps=7)
@@ -82,7 +82,7 @@ def test_who_goes_on_after_all_is_believed():
 @pytest.mark.parametrize("left", [0.3, 0.6, 0.9])
 def test_the_place_of_a_stop_follows_from_the_approach_speed(left):
     """VCI's walk towards a destination, seen in the middle of it; a hand is kept to spare."""
-    seen = beliefs()
+    seen = estimator()
     watch(seen, lambda _: 0.0, y=-HALF - 0.5, steps=6)
     pace = PACE * left / math.hypot(left, SIM.destination_smoothing)
     crowd = walker(-2.4, pace)
@@ -98,14 +98,14 @@ def test_a_person_who_waits_at_the_edge_is_expected_to_stay():
     N, y = 40, -HALF - 0.3
     planner = Planner(LongitudinalModel(time_step=DT), PlannerParameters(horizon=N))
     expected = []
-    for believed in (beliefs(), None):
+    for believed in (estimator(), None):
         ahead = CrowdForesight(
             plan_predictor(SIM, DT, N),
             STRAIGHT,
             EgoAssumptions(VehicleShape(5.0, 1.8), HALF, 0.05, 8.0, None),
             horizon=N,
             time_step=DT,
-            beliefs=believed,
+            estimator=believed,
         )
         poses = np.zeros((N, 1, 7))
         poses[:, :, 4:] = 2.5, 2.5, 1.8
@@ -120,7 +120,7 @@ def test_a_person_who_waits_at_the_edge_is_expected_to_stay():
 
 
 def test_who_stands_is_found_out_at_once():
-    odds, _ = watch(beliefs(), lambda _: 0.0, y=-HALF - 0.5, steps=6)
+    odds, _ = watch(estimator(), lambda _: 0.0, y=-HALF - 0.5, steps=6)
     assert odds[1] == odds[0] == -3.0  # two looks make a step of the prediction
     assert odds[3] > 0.0
 
@@ -136,7 +136,7 @@ def test_who_stands_is_found_out_at_once():
     ],
 )
 def test_of_others_nothing_is_believed(x, y, to):
-    seen, expected = beliefs(), np.empty(0)
+    seen, expected = estimator(), np.empty(0)
     for _ in range(20):
         crowd = walker(y, 0.0, x=x, to=to)
         seen.update(crowd, np.array([0]), FRONT, expected)
@@ -147,7 +147,7 @@ def test_of_others_nothing_is_believed(x, y, to):
 
 def test_the_way_may_bend():
     """The same walker beside the part behind a bend, and a way of several points with a light."""
-    seen, expected = beliefs(BEND), np.empty(0)
+    seen, expected = estimator(BEND), np.empty(0)
     for _ in range(8):
         crowd = Crowd.create(
             [(8.0, 1.7)],
@@ -167,7 +167,7 @@ def test_the_way_may_bend():
 
 def test_people_come_and_go():
     """Who was out of sight is known again by number, and no speed is compared over the gap."""
-    seen = beliefs()
+    seen = estimator()
     watch(seen, lambda _: 0.0, y=-HALF - 0.5, steps=6)
     before = seen.odds(7)
     for _ in range(3):
