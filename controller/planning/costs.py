@@ -45,14 +45,14 @@ def cost(
         distance [m].
     """
     distance, speeds, accelerations = manoeuvre
-    gap, conflicts, calm, later_crossings = evaluation
+    gap, conflicts, threat_free, later_crossings = evaluation
     own = own_cost(speeds, accelerations, wanted, time_step, weights)
     own += later_cost(
         later_crossings, distance[-1], speeds[-1], wanted, allowed, time_step, weights
     )
     so_far = 0.0, 0.0
     for i in range(len(gap)):
-        beyond, people = distance[i + 1] - allowed[i], (gap[i], conflicts[i], calm[i])
+        beyond, people = distance[i + 1] - allowed[i], (gap[i], conflicts[i], threat_free[i])
         so_far = add_cost_of_others(so_far, speeds[i + 1], people, beyond, weights)
     others, missing = so_far
     return own + time_step * others, time_step * others, missing
@@ -159,11 +159,11 @@ def add_cost_of_others(
     Returns:
         Sum and largest missing stopping distance, both with this step.
     """
-    (others, missing), (gap, conflicts, calm), w = so_far, people, Weights(*weights)
+    (others, missing), (gap, conflicts, threat_free), w = so_far, people, Weights(*weights)
     share = speed / w.reference_speed
     counted = min(conflicts, 1.0) + w.growth * max(conflicts - 1.0, 0.0)
     others += w.conflict * counted * np.sqrt(share) * max(1.0, speed / _SHARED) ** 3
-    others += w.threat * max(0.0, speed - calm) / w.reference_speed
+    others += w.threat * max(0.0, speed - threat_free) / w.reference_speed
     if gap < w.safe_distance:
         others += w.nearness * (1.0 - max(gap, 0.0) / w.safe_distance) * share
         lacking = stopping_need(speed, w) - gap

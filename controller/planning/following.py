@@ -49,21 +49,21 @@ def follow(
         the plan; whether a stop stays possible if the last speed is kept beyond the plan.
     """
     speed, before, force, fastest = state
-    best, (gap, _, calm), _ = chosen
+    best, (gap, _, threat_free), _ = chosen
     soon, gentle, weights = rules
     allowed, lane_speeds, room = bounds
     nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
     corridor(best[0], best[1], gap, allowed, weights, room)
     if gentle < np.inf:
-        approach_calmly(best[0], _APPROACH * gentle, calm)
-    for i in range(len(calm)):
-        gently = max(calm[i], speed - gentle * limits[0] * (i + 1))
-        calm[i] = min(gently if i < soon else np.inf, lane_speeds[i])
+        approach_gently(best[0], _APPROACH * gentle, threat_free)
+    for i in range(len(threat_free)):
+        gently = max(threat_free[i], speed - gentle * limits[0] * (i + 1))
+        threat_free[i] = min(gently if i < soon else np.inf, lane_speeds[i])
     wanted = np.empty(len(nodes))
     for i in range(len(nodes)):
         wanted[i] = best[1][nodes[i]]
     set_target(wanted, speed, before, gradients, target)
-    fill((speed, force, fastest), room, calm, nodes, intervals, limits, (lower, upper))
+    fill((speed, force, fastest), room, threat_free, nodes, intervals, limits, (lower, upper))
     corrections = solve_verified(rows, lower, upper, target, *solver)
     if corrections < 0:
         return UNSOLVED, False, False
@@ -72,8 +72,8 @@ def follow(
 
 
 @inner
-def approach_calmly(distance: Array, gentle: float, calm: Array) -> None:
-    """Lower ``calm`` so that braking with ``gentle`` is enough to keep all later speeds in it.
+def approach_gently(distance: Array, gentle: float, threat_free: Array) -> None:
+    """Lower ``threat_free`` so that braking with ``gentle`` is enough to keep its later speeds.
 
     For a person beside the path who could step on it, threat-free speeds fall as fast as the
     hardest braking allows. A plan that follows them without this would brake that hard.
@@ -81,11 +81,13 @@ def approach_calmly(distance: Array, gentle: float, calm: Array) -> None:
     Args:
         distance: Distances (N + 1,) [m] of the manoeuvre that the speeds belong to.
         gentle: Deceleration [m/s^2].
-        calm: Threat-free speeds (N,) [m/s], changed.
+        threat_free: Threat-free speeds (N,) [m/s], changed.
     """
-    for i in range(len(calm) - 2, -1, -1):
+    for i in range(len(threat_free) - 2, -1, -1):
         between = distance[i + 2] - distance[i + 1]
-        calm[i] = min(calm[i], np.sqrt(calm[i + 1] ** 2 + 2.0 * gentle * between))
+        threat_free[i] = min(
+            threat_free[i], np.sqrt(threat_free[i + 1] ** 2 + 2.0 * gentle * between)
+        )
 
 
 @kernel
@@ -143,10 +145,10 @@ def missing_of(
     weights: tuple[Any, ...],
 ) -> float:
     """The largest stopping distance [m] that a plan lacks if people move as for the manoeuvre."""
-    gap, conflicts, calm = evaluation
+    gap, conflicts, threat_free = evaluation
     so_far = 0.0, 0.0
     for i in range(len(gap)):
-        people = gap[i] + best[0][i + 1] - plan[0][i + 1], conflicts[i], calm[i]
+        people = gap[i] + best[0][i + 1] - plan[0][i + 1], conflicts[i], threat_free[i]
         beyond = plan[0][i + 1] - allowed[i]
         so_far = add_cost_of_others(so_far, plan[1][i + 1], people, beyond, weights)
     return so_far[1]

@@ -34,7 +34,7 @@ class Search:
             follows is valid until the next search.
         gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Evaluation`.
         conflicts: Persons in conflict (N,), as in :class:`Evaluation`.
-        calm: Threat-free speeds (N,) [m/s], as in :class:`Evaluation`.
+        threat_free: Threat-free speeds (N,) [m/s], as in :class:`Evaluation`.
         missing: Largest stopping distance [m] that it lacks.
         tried: Number of manoeuvres that were compared.
     """
@@ -70,7 +70,7 @@ class Search:
         self._trials = Trials.empty(count, N, penalty.copy())
         self._motions = (self._trials.distance, self._trials.speed, self._trials.acceleration)
         self._each = [self._trials.of(trial) for trial in range(count)]
-        self.gap, self.conflicts, self.calm = np.full(N, inf), np.zeros(N), np.full(N, inf)
+        self.gap, self.conflicts, self.threat_free = np.full(N, inf), np.zeros(N), np.full(N, inf)
         self._free, self._nobody = np.full(N, inf), np.zeros(N)
         self._take(_DRIVE_ON)
         self.reset()
@@ -189,7 +189,7 @@ class Search:
         self.tried, self.missing = result.tried, result.missing
         if result.best >= 0:
             self._take(result.best)
-            self.gap, self.conflicts, self.calm, _ = result.evaluation
+            self.gap, self.conflicts, self.threat_free, _ = result.evaluation
         return bool(result.clear)
 
     def _one_by_one(
@@ -225,7 +225,7 @@ class Search:
                 if whole < lowest:
                     lowest, self.missing = whole, missing
                     self._take(trial)
-                    self.gap, self.conflicts, self.calm = (a.copy() for a in evaluation[:3])
+                    self.gap, self.conflicts, self.threat_free = (a.copy() for a in evaluation[:3])
                     if foresight is not None:
                         foresight.prefer()
                 if probe and disturbed <= 0.0 and trial == batches.first[0]:

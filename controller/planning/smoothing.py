@@ -137,7 +137,7 @@ class SmoothingProblem:
         previous_force: float,
         fastest: float,
         corridor: Array,
-        calm: Array,
+        speed_limits: Array,
     ) -> None:
         """Set the bounds.
 
@@ -146,12 +146,12 @@ class SmoothingProblem:
             previous_force: Force u(k-1) [N].
             fastest: Highest speed [m/s], unless the ego is faster already.
             corridor: Distances (N,) [m] that the plan may have driven at steps 1 ... N.
-            calm: Speed limits (N,) [m/s], kept as far as braking allows.
+            speed_limits: Speed limits (N,) [m/s], kept as far as braking allows.
         """
         fill(
             (speed, previous_force, fastest),
             corridor,
-            calm,
+            speed_limits,
             self.nodes,
             self.intervals,
             self.limits,
@@ -163,7 +163,7 @@ class SmoothingProblem:
 def fill(
     state: tuple[float, float, float],
     corridor: Array,
-    calm: Array,
+    speed_limits: Array,
     nodes: Indices,
     intervals: Array,
     limits: tuple[float, ...],
@@ -176,7 +176,7 @@ def fill(
     Args:
         state: Speed now [m/s], force u(k-1) [N], and highest speed [m/s].
         corridor: Distances (N,) [m] that the plan may have driven at steps 1 ... N.
-        calm: Speed limits (N,) [m/s].
+        speed_limits: Speed limits (N,) [m/s].
         nodes: Steps (n,) of the nodes.
         intervals: Intervals (n,) [s] between the nodes.
         limits: Fields of :class:`Limits`.
@@ -193,7 +193,7 @@ def fill(
     hardest = c.gain * c.force / dt
     lower[:n] = 0.0
     upper[:n] = min(c.speed, max(fastest, speed))
-    most = min(most, max(least, calm[0]))
+    most = min(most, max(least, speed_limits[0]))
     lower[0], upper[0] = least, most
     lower[n : 2 * n - 1] = -hardest
     upper[n : 2 * n - 1] = hardest
@@ -202,10 +202,10 @@ def fill(
         slower = max(0.0, v - hardest * intervals[i])
         driven += intervals[i] * (v + slower) / 2.0
         v = slower
-        room, slow = corridor[nodes[i] - 1], calm[nodes[i] - 1]
+        room, slow = corridor[nodes[i] - 1], speed_limits[nodes[i] - 1]
         for k in range(nodes[i - 1], nodes[i] - 1):
             room = min(room, corridor[k])  # distances never fall: a bound at the end holds before
-            slow = min(slow, calm[k])
+            slow = min(slow, speed_limits[k])
         upper[i] = min(upper[i], max(v, slow))
         room = max(room, driven)
         lower[2 * n - 2 + i] = -np.inf

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from giveway.ego.foresight.threats import Alarm, conflicts_and_calm
+from giveway.ego.foresight.threats import Alarm, conflicts_and_threat_free
 from giveway.ego.perception.corridor import closest_in_front
 from giveway.geometry.kernel import Array, inlined, kernel
 from giveway.geometry.passage import window
@@ -91,7 +91,7 @@ def assess_step(
     """
     (vertices, stations, headings), (before, after, between) = path, people
     (j, predicted), (distance, speeds) = which, manoeuvre
-    gap, conflicts, calm = evaluation
+    gap, conflicts, threat_free = evaluation
     view, alarm = sight
     v, limits = View(*view), Alarm(*alarm)
     length, time_step, every = v.length, v.time_step, int(v.every)
@@ -108,7 +108,7 @@ def assess_step(
         )
         gap[i] = closest - at
         if i > begin:
-            conflicts[i], calm[i] = conflicts[begin], calm[begin]
+            conflicts[i], threat_free[i] = conflicts[begin], threat_free[begin]
             continue
         x, y, heading = body_pose(vertices, stations, headings, at, length)
         stop = at + speeds[i + 1] * (time_step + speeds[i + 1] / (2.0 * limits.braking))
@@ -116,7 +116,7 @@ def assess_step(
         if segment_at(stations, at - length) != segment_at(stations, stop) and stop > at:
             x_s, y_s, _ = body_pose(vertices, stations, headings, stop, 0.0)
             braking_heading = np.arctan2(y_s - y, x_s - x)
-        conflicts[i], calm[i] = conflicts_and_calm(
+        conflicts[i], threat_free[i] = conflicts_and_threat_free(
             (between, before, after),
             (x, y, heading, braking_heading),
             speeds[i + 1],

@@ -195,14 +195,14 @@ class CrowdForesight:
     def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
         """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
         self._predict(manoeuvre.distance, manoeuvre.speed)
-        gap, conflicts, calm, _ = self._evaluation
+        gap, conflicts, threat_free, _ = self._evaluation
         assess(
             self._way,
             (self._pedestrians.position, self._predicted),
             self._front,
             (manoeuvre.distance, manoeuvre.speed),
             (self._view, self._alarm),
-            (gap, conflicts, calm),
+            (gap, conflicts, threat_free),
         )
         wishes = self._predictor.desired_velocities(self._pedestrians, self._surroundings)
         later_crossings = np.empty((len(wishes), 4))

@@ -32,7 +32,7 @@ class Alarm(NamedTuple):
 
 
 @inner
-def conflicts_and_calm(
+def conflicts_and_threat_free(
     people: tuple[Array, Array, Array],
     pose: tuple[float, float, float, float],
     speed: float,
@@ -68,7 +68,7 @@ def conflicts_and_calm(
         c_b, s_b = np.cos(turn), np.sin(turn)
     soon = conflict_time + _FADING
     far = 2.0 * half_length + half_width + soon * (speed + alarm.walking_speed)
-    conflicts, calm, braking = 0.0, speed, outline(speed, time_step, alarm)
+    conflicts, threat_free, braking = 0.0, speed, outline(speed, time_step, alarm)
     for j in range(here.shape[0]):
         d_x, d_y = here[j, 0] - front_x, here[j, 1] - front_y
         if d_x * d_x + d_y * d_y > far * far:
@@ -101,7 +101,7 @@ def conflicts_and_calm(
             a, b = to_frame(a, b, c_b, s_b)
             kerb = a, b, depth
         if is_threat(place, walk, braking, half_width, time_step, alarm, kerb):
-            low, high = 0.0, calm
+            low, high = 0.0, threat_free
             for _ in range(_HALVINGS):
                 middle = 0.5 * (low + high)
                 slower = outline(middle, time_step, alarm)
@@ -109,9 +109,9 @@ def conflicts_and_calm(
                     high = middle
                 else:
                     low = middle
-            calm = low
-            braking = outline(calm, time_step, alarm)
-    return conflicts, calm if calm < speed else np.inf
+            threat_free = low
+            braking = outline(threat_free, time_step, alarm)
+    return conflicts, threat_free if threat_free < speed else np.inf
 
 
 class Outline(NamedTuple):

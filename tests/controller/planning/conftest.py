@@ -132,7 +132,7 @@ class Bystanders:
         self.at, self.until = np.asarray(at, dtype=float), np.asarray(until, dtype=float)
         self.step, self.front = 0, 0.0
         self._steps = 1 + np.arange(horizon)
-        self._calm = np.full(horizon, np.inf)
+        self._threat_free = np.full(horizon, np.inf)
 
     def gap(self) -> float:
         """To the closest one now [m]."""
@@ -143,7 +143,7 @@ class Bystanders:
         gap = self.at - self.front - manoeuvre.distance[1:, None]
         there = (self.until > self.step + self._steps[:, None]) & (gap > -0.3)
         closest = np.where(there, gap, np.inf).min(axis=1, initial=np.inf)
-        return Evaluation(closest, np.zeros(len(closest)), self._calm)
+        return Evaluation(closest, np.zeros(len(closest)), self._threat_free)
 
     def prefer(self):
         pass

@@ -42,14 +42,14 @@ class Fixed:
         pass
 
 
-@given(speed=speeds, force=forces, room=rooms, calm=st.floats(0.0, 25.0))
-@example(speed=4.0, force=-3096.4822905369288, room=(0, 2, 0.0, 0.0), calm=0.0)
+@given(speed=speeds, force=forces, room=rooms, threat_free=st.floats(0.0, 25.0))
+@example(speed=4.0, force=-3096.4822905369288, room=(0, 2, 0.0, 0.0), threat_free=0.0)
 @settings(max_examples=60)
-def test_the_corridor_always_leaves_a_plan(speed, force, room, calm):
+def test_the_corridor_always_leaves_a_plan(speed, force, room, threat_free):
     problem = SmoothingProblem(MODEL, FOLLOWING)
     problem.aim_at(np.full(len(problem.nodes), 4.0), speed, 0.0)
     corridor = room_of(*room)
-    problem.bound(speed, force, 4.0, corridor, np.full(N, calm))
+    problem.bound(speed, force, 4.0, corridor, np.full(N, threat_free))
     multipliers, z = np.zeros(len(problem.rows)), np.zeros(len(problem.nodes))
     bounds = (problem.rows, problem.lower, problem.upper, problem.target)
     assert solve_exactly(*bounds, multipliers, z) >= 0
@@ -90,13 +90,13 @@ def test_lanes_speeds_are_kept_to_whatever_the_manoeuvre(crowd):
 class StepsOut:
     """Somebody for whose sake the ego has to be slow for a while, from 1.2 s ahead on."""
 
-    def __init__(self, horizon, calm):
+    def __init__(self, horizon, threat_free):
         self.nobody = np.full(horizon, np.inf), np.zeros(horizon)
-        self.calm = np.full(horizon, np.inf)
-        self.calm[24:30] = calm
+        self.threat_free = np.full(horizon, np.inf)
+        self.threat_free[24:30] = threat_free
 
     def evaluate(self, manoeuvre):
-        return Evaluation(*self.nobody, self.calm)
+        return Evaluation(*self.nobody, self.threat_free)
 
     def prefer(self):
         pass
@@ -133,15 +133,17 @@ class BesideTheWay:
         )
 
     def evaluate(self, manoeuvre):
-        calm = self.fastest(self.driven + manoeuvre.distance[1:])
-        return Evaluation(*self.nobody, np.where(manoeuvre.speed[1:] > calm, calm, np.inf))
+        threat_free = self.fastest(self.driven + manoeuvre.distance[1:])
+        return Evaluation(
+            *self.nobody, np.where(manoeuvre.speed[1:] > threat_free, threat_free, np.inf)
+        )
 
     def prefer(self):
         pass
 
 
 def test_what_could_happen_ahead_is_approached_gently():
-    """At 50 km/h: to be calm there without ever braking as hard as the calm speeds fall."""
+    """At 50 km/h a plan keeps threat-free speeds, but never brakes as hard as they fall."""
     parameters = PlannerParameters(reference_speed=13.9)
     planner, beside = Planner(MODEL, parameters), BesideTheWay(parameters.horizon)
     anywhere, speed, force, hardest = Road(np.full(parameters.horizon, np.inf)), 13.9, 0.0, 0.0

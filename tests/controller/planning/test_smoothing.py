@@ -107,9 +107,9 @@ def test_a_penalty_beyond_the_largest_multiplier_is_exact(plain_problem, seed):
 
 def test_the_calm_speed_is_kept_as_far_as_braking_allows():
     problem = SmoothingProblem(MODEL, FOLLOWING)
-    calm = FREE.copy()
-    calm[:10] = 1.0
-    problem.bound(4.0, 400.0, 4.0, FREE, calm)
+    threat_free = FREE.copy()
+    threat_free[:10] = 1.0
+    problem.bound(4.0, 400.0, 4.0, FREE, threat_free)
     n = len(problem.nodes)
     first = MODEL.decay * 4.0 + MODEL.speed_per_force * (400.0 - 1000.0)
     hardest = np.maximum(first - 8.0 * 0.05 * (problem.nodes - 1), 0.0)
