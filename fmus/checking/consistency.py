@@ -98,10 +98,10 @@ def _acceleration_ratio(response: Trace) -> tuple[float, float]:
     near = np.abs(np.arange(1, v.size - 1)[:, None] - changes).min(axis=1, initial=v.size)
     around = np.stack((v[:-2], v[1:-1], v[2:]))
     stops = (around.min(axis=0) <= STANDSTILL) & (around.max(axis=0) > STANDSTILL)
-    calm = (near > 1) & ~stops
-    measured = response.acceleration[1:-1][calm]
+    steady = (near > 1) & ~stops
+    measured = response.acceleration[1:-1][steady]
     slopes = ((v[1:-1] - v[:-2]) / h, (v[2:] - v[:-2]) / (2.0 * h))
-    return min((_ratio(slope[calm], measured) for slope in slopes), key=lambda found: found[1])
+    return min((_ratio(slope[steady], measured) for slope in slopes), key=lambda found: found[1])
 
 
 def _ratio(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:

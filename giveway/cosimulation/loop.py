@@ -278,8 +278,8 @@ class Loop:
             decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
-            if len(seen.hasty):
-                recorder.hasty(ego.id, seen.hasty)
+            if len(seen.sudden_starts):
+                recorder.hasty(ego.id, seen.sudden_starts)
             if ego.has_outputs:
                 recorder.outputs(ego.id, *ego.outputs())
             predicted = ego.expected(seen) if self._instants.looks else None

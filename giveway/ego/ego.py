@@ -20,7 +20,7 @@ from giveway.ego.perception.truth import Truth
 from giveway.ego.rules.following import Following
 from giveway.ego.rules.protocol import Told
 from giveway.ego.rules.rule_set import RuleSet
-from giveway.ego.safety_layer import Guard
+from giveway.ego.safety_layer import EgoSafetyLayer
 from giveway.ego.stop_cause import waits_for
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ControlError, VehicleError
@@ -94,8 +94,10 @@ class Ego:
         self._origin = -shape.length / 2 if gap.gap_from == "centre" else 0.0
         self._kept = self._origin + regulation.safe_distance  # distance [m] kept by the bumper
         safety = waiting.safety
-        self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
-        self._kerbs = kerbs if self._guard is not None else None
+        self._safety_layer = (
+            None if safety is None else EgoSafetyLayer(safety, config, path, shape, time_step)
+        )
+        self._kerbs = kerbs if self._safety_layer is not None else None
         self._people = PeopleInFront(waiting, self.corridor, shape, self._kerbs)
         self.systems = rules.systems | (frozenset() if kerbs is None else kerbs.systems)
         self._force, self._eases_off, self.beside = 0.0, False, NOBODY_BESIDE
@@ -190,8 +192,10 @@ class Ego:
             merging = rules.leader.station + rules.leader.speed * self._times
             vehicles = merging if vehicles is None else np.minimum(vehicles, merging)
         if vehicles is not None:
-            spared = self._following.gap_relaxation(leader, vehicles, front, speed, seen.to_clear)
-            seen.ahead = np.minimum(seen.ahead, vehicles + spared)
+            relaxation = self._following.gap_relaxation(
+                leader, vehicles, front, speed, seen.to_clear
+            )
+            seen.ahead = np.minimum(seen.ahead, vehicles + relaxation)
         if rules.latest < math.inf:  # a plan may not lead beyond this station of the front bumper
             allowed = rules.latest + self._origin
             seen.ahead = np.minimum(seen.ahead, allowed + self.config.regulation.safe_distance)
@@ -216,10 +220,10 @@ class Ego:
                 f"{decision.force}; expected a finite number [N]; please report this with the "
                 "run's config.toml"
             )
-        if self._guard is not None:
+        if self._safety_layer is not None:
             there = self.front, self.vehicle.speed
             people, _, _, bound = seen.percept
-            safe = self._guard.overrule(decision, *there, people, bound, seen.kerbs)
+            safe = self._safety_layer.overrule(decision, *there, people, bound, seen.kerbs)
             if safe is not None:
                 controller.applied(safe.force)
                 decision = safe

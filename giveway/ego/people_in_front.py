@@ -7,7 +7,7 @@ from giveway.ego.perception.corridor import Corridor
 from giveway.ego.perception.kerbs import Kerbs
 from giveway.ego.perception.protocol import Ids, OwnState, Percept
 from giveway.ego.perception.sensing import Perception
-from giveway.ego.perception.sudden_starts import SettingOut
+from giveway.ego.perception.sudden_starts import SuddenStarts
 from giveway.ego.perception.truth import Truth
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
@@ -37,7 +37,7 @@ class PeopleInFront:
         self._chosen: Crowd | None = None  # memory for those who matter
         perception = Perception(waiting.config, worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
-        self._setting_out = SettingOut(worst.setting_out, time_step)
+        self._sudden_starts = SuddenStarts(worst.setting_out, time_step)
         self.foresight = foresight_of(waiting, path, shape, half_width, time_step)
 
     def look(
@@ -68,7 +68,9 @@ class PeopleInFront:
         seen.percept = percept
         if kerbs is not None:
             seen.kerbs = kerbs.of(people.position, people.velocity, front)
-            seen.hasty = self._setting_out.beyond(percept.person_ids, people.velocity, seen.kerbs)
+            seen.sudden_starts = self._sudden_starts.beyond(
+                percept.person_ids, people.velocity, seen.kerbs
+            )
         seen.pedestrian, reachable = corridor.closest_now(people.position, front)
         seen.closest = seen.pedestrian
         if perception is not None:

@@ -35,7 +35,8 @@ class Perceived:
         row: Row of the ego among the vehicles.
         to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
         kerbs: Kerbs (n, 3) of the people on sidewalks.
-        hasty: Ids of the people who violate the safety layer's assumption by a sudden start now.
+        sudden_starts: Ids of the people who violate the safety layer's assumption now, by a sudden
+            start.
     """
 
     percept: Percept = field(default_factory=lambda: Percept(Crowd.empty(), NOBODY))
@@ -52,4 +53,4 @@ class Perceived:
     row: int = 0
     to_clear: float = 0.0
     kerbs: Array = field(default_factory=lambda: NO_KERBS)
-    hasty: NDArray[np.int64] = field(default_factory=lambda: NOBODY)
+    sudden_starts: NDArray[np.int64] = field(default_factory=lambda: NOBODY)

@@ -18,7 +18,7 @@ _FINEST = 0.25  # least spacing [m] of poses; in a bend of 5 m radius its chord 
 MOST_POSES = 256  # largest number of poses of the front ahead
 
 
-class Guard:
+class EgoSafetyLayer:
     """The safety layer of one ego: it checks each force, and replaces it if it is not safe.
 
     Args:

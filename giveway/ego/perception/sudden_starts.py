@@ -10,7 +10,7 @@ _ROUNDING = 1e-6  # tolerance [m/s^2]
 Numbers = NDArray[np.int64]
 
 
-class SettingOut:
+class SuddenStarts:
     """Compares people's velocities from step to step.
 
     Args:

@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from giveway.ego.perception.kerbs import NO_KERBS, Kerbs, kerb_lines
-from giveway.ego.perception.sudden_starts import SettingOut
+from giveway.ego.perception.sudden_starts import SuddenStarts
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.signal_plans import SignalChange, untold
@@ -195,7 +195,7 @@ def test_a_kerb_as_a_line_is_where_it_was():
 
 
 def test_who_sets_out_too_suddenly_is_named_once_it_does():
-    watch = SettingOut(0.6, 0.1)
+    watch = SuddenStarts(0.6, 0.1)
     behind = np.array([[0.0, 1.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 0.0]])
     still, who = np.zeros((3, 2)), np.array([4, 7, 9])
     assert not len(watch.beyond(who, still, behind))

@@ -246,8 +246,8 @@ def test_once_it_goes_it_keeps_going() -> None:
 
 
 def test_options_are_gaps_in_seconds() -> None:
-    assert Drive(junction(), critical_gap=12.0).stop(LINE, 0.0, other(110.0)) == LINE
-    assert Drive(junction(), critical_gap=1.0).stop(LINE, 0.0, other(75.0)) == math.inf
+    assert Drive(junction(), critical_headway=12.0).stop(LINE, 0.0, other(110.0)) == LINE
+    assert Drive(junction(), critical_headway=1.0).stop(LINE, 0.0, other(75.0)) == math.inf
 
 
 def test_it_uses_the_same_gap_after_the_follow_up_headway() -> None:
