@@ -51,7 +51,7 @@ def test_who_walks_ahead_along_the_way_is_followed():
 
 
 @given(
-    crossers=st.lists(
+    later_crossings=st.lists(
         st.tuples(
             st.floats(-5.0, 40.0), st.floats(-2.0, 2.0), st.floats(0.0, 8.0), st.floats(0.0, 12.0)
         ),
@@ -61,8 +61,8 @@ def test_who_walks_ahead_along_the_way_is_followed():
     wanted=st.floats(1.0, 14.0),
 )
 @settings(max_examples=200)
-def test_what_is_lost_later_is_a_finite_time_and_none_is_won(crossers, speed, wanted):
-    people = np.array(crossers, dtype=float).reshape(-1, 4)
+def test_what_is_lost_later_is_a_finite_time_and_none_is_won(later_crossings, speed, wanted):
+    people = np.array(later_crossings, dtype=float).reshape(-1, 4)
     lost = time_to_go(people, speed, wanted)
     alone = time_to_go(NOBODY_LATER, speed, wanted)
     assert 0.0 <= alone <= lost + 1e-9

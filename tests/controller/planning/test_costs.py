@@ -44,12 +44,20 @@ def aimed(speed, before, wanted, slowest, fastest, *, jerk=8.0, horizon=60):
 
 
 def costs(
-    m, w, *, gap=FREE, conflicts=0.0, calm=FREE, allowed=FREE, crossers=NOBODY_LATER, wanted=4.0
+    m,
+    w,
+    *,
+    gap=FREE,
+    conflicts=0.0,
+    threat_free=FREE,
+    allowed=FREE,
+    later_crossings=NOBODY_LATER,
+    wanted=4.0,
 ):
     N = len(m.speed) - 1
-    *full, allowed = (np.full(N, x, dtype=float) for x in (gap, conflicts, calm, allowed))
+    *full, allowed = (np.full(N, x, dtype=float) for x in (gap, conflicts, threat_free, allowed))
     motion = (m.distance, m.speed, m.acceleration)
-    return cost(motion, (*full, crossers), allowed, wanted, DT, w)
+    return cost(motion, (*full, later_crossings), allowed, wanted, DT, w)
 
 
 def steady(speed, horizon):
@@ -88,7 +96,7 @@ def test_the_cost_of_others_by_hand():
     half = math.sqrt(0.5)  # of v_r
     assert costs(m, w, conflicts=0.5)[1] == pytest.approx(n * 0.6 * 0.5 * half)
     assert costs(m, w, conflicts=3.0)[1] == pytest.approx(n * 0.6 * (1 + 2 * 0.25) * half)
-    assert costs(m, w, calm=1.0)[1] == pytest.approx(n * 1.0 / 4.0)
+    assert costs(m, w, threat_free=1.0)[1] == pytest.approx(n * 1.0 / 4.0)
     assert costs(m, w, gap=4.0)[1] == pytest.approx(n * 0.3 * 0.5 * 0.5)  # half d_safe, half v_r
     assert costs(m, w, gap=8.0)[1] == 0.0
     need = stopping_need(2.0, w)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from controller import (
+    Evaluation,
     LongitudinalModel,
     Manoeuvre,
     ManoeuvreParameters,
     PlannerParameters,
-    Prospect,
 )
 from controller.planning.search import Search
 
@@ -24,8 +24,8 @@ class Wall:
     def __init__(self, distance: float) -> None:
         self.distance = distance
 
-    def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
-        return Prospect(self.distance - manoeuvre.distance[1:], NOBODY, FREE)
+    def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
+        return Evaluation(self.distance - manoeuvre.distance[1:], NOBODY, FREE)
 
     def prefer(self) -> None:
         pass

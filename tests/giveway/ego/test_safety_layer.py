@@ -6,7 +6,7 @@ from support.front_poses import front_poses
 
 from controller import Decision, SafetyParameters
 from giveway.config import EgoRunConfig
-from giveway.ego.safety_layer import Guard
+from giveway.ego.safety_layer import EgoSafetyLayer
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
@@ -23,9 +23,9 @@ def quarter_turn(radius: float) -> EgoPath:
     return EgoPath.through([(0.0, 0.0), *zip(x, y, strict=True), end])
 
 
-def guard(path: EgoPath) -> Guard:
+def guard(path: EgoPath) -> EgoSafetyLayer:
     config = EgoRunConfig.model_validate({"controller": "mpc"})
-    return Guard(SafetyParameters(), config, path, VehicleShape(5.0, 2.0), 0.05)
+    return EgoSafetyLayer(SafetyParameters(), config, path, VehicleShape(5.0, 2.0), 0.05)
 
 
 def person_at(x: float, y: float) -> Crowd:

@@ -85,8 +85,8 @@ def test_who_is_predicted_at_each_step_is_looked_at_at_each_step():
 
 def test_steps_that_are_left_over_belong_to_the_last_prediction():
     people, m = walkers(np.random.default_rng(2), STRAIGHT), manoeuvre(3.0)
-    gaps, conflicts, calm = assessed(STRAIGHT, people[:18], m, every=3)
-    for values in (conflicts, calm, gaps + m.distance[1:]):
+    gaps, conflicts, threat_free = assessed(STRAIGHT, people[:18], m, every=3)
+    for values in (conflicts, threat_free, gaps + m.distance[1:]):
         assert values[-2:] == pytest.approx(np.repeat(values[-3], 2))
 
 
@@ -105,6 +105,6 @@ def test_conflicts_are_people_on_a_course_into_the_ego(name, seed):
 
 def test_who_stands_is_in_nobodys_way():
     people = walkers(np.random.default_rng(0), STRAIGHT)
-    _, conflicts, calm = assessed(STRAIGHT, people, manoeuvre(0.1))
+    _, conflicts, threat_free = assessed(STRAIGHT, people, manoeuvre(0.1))
     assert not conflicts.any()
-    assert np.isinf(calm).all()
+    assert np.isinf(threat_free).all()

@@ -45,12 +45,12 @@ def look(ahead, *, speed=4.0, off=6.0):
 
 
 def test_calm_speeds_are_those_of_what_the_layer_below_assumes():
-    calm = []
+    threat_free = []
     for worst in (WorstMotion(5.0, 2.5), WORST, WorstMotion(1.0, 2.5), None):
         ahead = foresight(worst=worst)
         look(ahead, off=3.5)
-        calm.append(ahead.evaluate(manoeuvre(4.0)).calm.min())
-    assert calm[0] < calm[1] < calm[2] <= calm[3] == np.inf
+        threat_free.append(ahead.evaluate(manoeuvre(4.0)).threat_free.min())
+    assert threat_free[0] < threat_free[1] < threat_free[2] <= threat_free[3] == np.inf
 
 
 def test_a_plan_is_predicted_in_steps_of_a_tenth_of_a_second():
