@@ -37,7 +37,7 @@ def time_to_go(later_crossings: Array, speed: float, wanted: float) -> float:
             if ahead < 0.0 or t + ahead / wanted < later_crossings[p, 2]:
                 continue
             ahead = max(ahead - _DISTANCE, 0.0)
-            if crossers[p, 3] - t > _SPAN:
+            if later_crossings[p, 3] - t > _SPAN:
                 behind = np.sqrt(2.0 * COMFORTABLE * ahead)
             else:
                 behind = ahead / (later_crossings[p, 3] - t)
