@@ -71,7 +71,7 @@ class RightOfWay:
         length: Length of the ego's body [m].
         gap: Distance [m] that it keeps behind a standing vehicle.
         fastest: Highest speed [m/s] of the ego.
-        critical_gap: Critical headway [s], or None for the Highway Capacity Manual's.
+        critical_headway: Critical headway [s], or None for the Highway Capacity Manual's.
 
     Attributes:
         needs: Needs of the rule: junctions, their signal systems, and keep-clear zones.
@@ -86,13 +86,13 @@ class RightOfWay:
         length: float,
         gap: float,
         fastest: float,
-        critical_gap: float | None = None,
+        critical_headway: float | None = None,
     ) -> None:
         self._junctions = tuple(junctions)
         self._name = name
         self._length, self._room = length, length + gap
         self._fastest = fastest
-        self._critical_gap = critical_gap
+        self._critical_headway = critical_headway
         self._next = 0
         self._followed = -math.inf  # time [s] at which the vehicle before it crossed the next line
         self._stop = math.inf
@@ -120,7 +120,7 @@ class RightOfWay:
             length=route.shape.length,
             gap=route.standing_gap,
             fastest=route.fastest,
-            critical_gap=route.config.regulation.critical_gap,
+            critical_headway=route.config.regulation.critical_gap,
         )
 
     def _pass(self, front: float) -> None:
@@ -219,8 +219,8 @@ class RightOfWay:
             return line
         gap = place.gaps.at_lights if letter in "gGyY" else place.gaps.unsignalled
         critical, follow_up = gap
-        if self._critical_gap is not None:
-            critical = self._critical_gap
+        if self._critical_headway is not None:
+            critical = self._critical_headway
         if first and before and letter not in "GMyY" and self._time - self._followed < follow_up:
             return line
         margin = AFTER
