@@ -13,7 +13,7 @@ def test_without_a_path_there_is_none() -> None:
     assert free_drive(RunConfig(), None) is None
 
 
-def test_it_leads_to_the_end_of_the_path_unless_a_distance_is_set() -> None:
+def test_it_leads_to_the_end_unless_a_distance_is_set() -> None:
     whole = RunConfig(ego={"depart_position": 20.0, "travel_distance": None})
     drive = free_drive(whole, PATH)
     assert drive is not None
@@ -33,7 +33,7 @@ def test_where_lanes_say_how_fast_the_departure_speed_counts() -> None:
     assert slow.speed == 3.0
 
 
-def test_a_vehicle_that_is_taken_over_is_not_the_first_inserted_one() -> None:
+def test_a_vehicle_that_is_taken_over_does_not_count() -> None:
     egos = [
         {"ego": {"take_over": ["bus"]}},
         {"ego": {"route": ["ab"], "id": "mine", "travel_distance": 33.0}},
