@@ -158,6 +158,4 @@ class Model:
 
     def unit_of(self, variable: Variable) -> Unit | None:
         """Return the unit of a variable, or None if it has none."""
-        if not variable.unit:
-            return None
-        return self.units.get(variable.unit, Unit(variable.unit))
+        return None if not variable.unit else self.units.get(variable.unit, Unit(variable.unit))

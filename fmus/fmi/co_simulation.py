@@ -108,8 +108,7 @@ class CoSimulation(Instance):
 
     def prepare(self) -> None:  # noqa: D102 - as in Instance
         if self.calls.event_mode and (status := self._handle_events()) > WARNING:
-            msg = "the event iteration"
-            raise CallFailedError(msg, status)
+            raise CallFailedError("the event iteration", status)
 
     def _handle_events(self) -> int:
         """Do the event iteration, then return to step mode.

@@ -67,12 +67,10 @@ class ModelExchange(Instance):
             self._nominals = self._system.nominals()
         except _EndedError:
             self.messages.add(ERROR, "it wants to end the simulation at its start")
-            msg = "the event iteration"
-            raise CallFailedError(msg, ENDED) from None
+            raise CallFailedError("the event iteration", ENDED) from None
         except (IntegrationError, UndefinedError) as error:
             self.messages.add(ERROR, str(error))
-            msg = "the initialisation"
-            raise CallFailedError(msg, ERROR) from error
+            raise CallFailedError("the initialisation", ERROR) from error
 
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:  # noqa: D102
         set_inputs, set_arguments = into.function, into.arguments

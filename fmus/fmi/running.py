@@ -98,8 +98,7 @@ class Instance(ABC):
                 self.inputs[index] = given
         status = self.note_status(out.function(*out.arguments))
         if status > WARNING:
-            msg = "the reading of its outputs"
-            raise CallFailedError(msg, status)
+            raise CallFailedError("the reading of its outputs", status)
         self.tick = self.make_tick(into, out)
 
     def prepare(self) -> None:  # noqa: B027

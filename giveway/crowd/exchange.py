@@ -49,7 +49,7 @@ class Exchange:
             self._crossings.setdefault(signal.tls, []).append((number, signal.link))
         self.unconnected = 0  # number of gaps in routes, between edges that are not connected
         self.surroundings = Surroundings(
-            walls=Walls.create(network.wall_segments()) if walls else None,
+            walls=Walls.create(network.wall_segments) if walls else None,
             closed=np.zeros(len(network.signals), dtype=np.bool_),
         )
 

@@ -39,13 +39,9 @@ def write_fcd(run: RunFolder, sampled: Sampled, file: Path) -> str:
     names = {kind: f"giveway_{k}" for k, kind in enumerate(dict.fromkeys(kinds.values()), start=1)}
     _write_types(types, names)
     rows = [_rows(track, net, names[kinds[track.id]]) for track in sampled.tracks]
-    present: list[list[int]] = [[] for _ in range(sampled.count)]
-    for number, track in enumerate(sampled.tracks):
-        for index in range(track.first, track.first + len(track)):
-            present[index].append(number)
     with file.open("w", encoding="utf-8", newline="\n") as out:
         out.write("<fcd-export>\n")
-        for index, numbers in enumerate(present):
+        for index, numbers in enumerate(sampled.present):
             out.write(f'    <timestep time="{sampled.time(index):.3f}">\n')
             for number in numbers:
                 out.write(rows[number][index - sampled.tracks[number].first])

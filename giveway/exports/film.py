@@ -53,10 +53,7 @@ class Painter:
         self._follows = whole.size[0] > _WHOLE and bool(self._egos)
         self._whole = _widened(whole, size[1] / size[0])
         self._signals = run.signals
-        self._present: list[list[int]] = [[] for _ in range(sampled.count)]
-        for number, track in enumerate(sampled.tracks):
-            for index in range(track.first, track.first + len(track)):
-                self._present[index].append(number)
+        self._present = sampled.present
 
     def frames(self) -> Iterator[Image.Image]:
         """Yield all frames of the run, one after the other."""

@@ -64,6 +64,15 @@ class Sampled:
     count: int
     tracks: tuple[Track, ...]
 
+    @property
+    def present(self) -> list[list[int]]:
+        """Numbers of the tracks that are there at each instant."""
+        found: list[list[int]] = [[] for _ in range(self.count)]
+        for number, track in enumerate(self.tracks):
+            for index in range(track.first, track.first + len(track)):
+                found[index].append(number)
+        return found
+
     def people(self) -> list[Track]:
         """The tracks of pedestrians."""
         return [track for track in self.tracks if track.type == PEDESTRIAN]

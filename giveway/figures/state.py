@@ -5,6 +5,7 @@ MPC on the left and the PID on the right.
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -135,17 +136,19 @@ def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
     A command holds until the next instant, so the last one is not carried out. A run of one instant
     is shown ``SINGLE_INSTANT`` to either side.
     """
-    edges = np.flatnonzero(ego.controller[1:] != ego.controller[:-1]) + 1
-    starts = np.concatenate(([0], edges))
-    ends = np.append(edges, ego.time.size - 1)
     if ego.time.size == 1:
         instant = float(ego.time[0])
         return [(str(ego.controller[0]), instant - SINGLE_INSTANT, instant + SINGLE_INSTANT)]
     return [
-        (str(ego.controller[start]), float(ego.time[start]), float(ego.time[end]))
-        for start, end in zip(starts, ends, strict=True)
-        if end > start
+        (name, begin, end) for name, begin, end in _stretches(ego, ego.controller) if end > begin
     ]
+
+
+def _stretches(ego: EgoTrack, column: NDArray[np.str_]) -> list[tuple[str, float, float]]:
+    """Return each value of a column (T,) with begin and end [s] of the time that it holds."""
+    edges = np.flatnonzero(column[1:] != column[:-1]) + 1
+    bounds = [0, *edges, ego.time.size - 1]
+    return [(str(column[k]), float(ego.time[k]), float(ego.time[j])) for k, j in pairwise(bounds)]
 
 
 def shade_phases(axes: Axes, ego: EgoTrack) -> None:
@@ -213,22 +216,12 @@ def _draw_distances(axes: Axes, ego: EgoTrack, stop_lines: Sequence[float]) -> N
 
 def waits(ego: EgoTrack) -> list[tuple[str, float, float]]:
     """Return the causes of waiting, with beginning and end [s] of each uninterrupted wait."""
-    edges = np.flatnonzero(ego.waits_for[1:] != ego.waits_for[:-1]) + 1
-    starts = np.concatenate(([0], edges))
-    ends = np.append(edges, ego.time.size - 1)
-    return [
-        (str(ego.waits_for[start]), float(ego.time[start]), float(ego.time[end]))
-        for start, end in zip(starts, ends, strict=True)
-        if ego.waits_for[start] in WAITS
-    ]
+    return [stretch for stretch in _stretches(ego, ego.waits_for) if stretch[0] in WAITS]
 
 
 def _draw_waits(axes: Axes, ego: EgoTrack) -> None:
     """Draw a bar along the upper edge while the ego stands, in the colour of the cause."""
-    found = waits(ego)
-    if not found:
-        return
-    for name, start, end in found:
+    for name, start, end in waits(ego):
         axes.plot(
             (start, end), (0.965, 0.965), transform=axes.get_xaxis_transform(), linewidth=5.0,
             color=WAITS[name][0], solid_capstyle="butt", label=name, zorder=3.5,

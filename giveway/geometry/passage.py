@@ -16,10 +16,8 @@ BEHIND = 10.0
 def look(
     vertices: Array,
     stations: Array,
-    first: int,
-    last: int,
-    x: float,
-    y: float,
+    part: tuple[int, int],
+    point: tuple[float, float],
     front: float,
     half_width: float,
     reach: float,
@@ -29,10 +27,8 @@ def look(
     Args:
         vertices: Points (k + 1, 2) [m] of the path.
         stations: Stations (k + 1,) [m] of its vertices.
-        first: First segment that counts.
-        last: Last segment that counts.
-        x: Coordinate x of the point [m].
-        y: Coordinate y of the point [m].
+        part: First and last segment that count.
+        point: Coordinates x, y of the point [m].
         front: Station [m] of the ego's front.
         half_width: Half width of the corridor along the path [m].
         reach: Distance [m] that the point could move.
@@ -41,6 +37,7 @@ def look(
         The station [m] of the closest passage within the corridor, or inf without one, and whether
         the point, moved by ``reach``, could be within the corridor.
     """
+    (first, last), (x, y) = part, point
     end = len(vertices) - 2
     closest = np.inf
     reachable = False

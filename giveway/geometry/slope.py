@@ -31,9 +31,7 @@ class Slope:
         if not points:
             return None
         stations, heights = np.array(points, dtype=np.float64).T
-        if np.ptp(heights) < _FLAT:
-            return None
-        return cls(stations, heights)
+        return None if np.ptp(heights) < _FLAT else cls(stations, heights)
 
     def grade(self, front: float, length: float) -> float:
         """Return the grade [rad] of a body from its rear to its front, uphill positive.

@@ -5,6 +5,7 @@ the counterfactual run that follows.
 """
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -21,6 +22,16 @@ _LOOKS = 0.5  # Interval [s] between two searches for people who come close
 _SWAY = 0.1  # Smallest distance [m] that counts as walked; standing people sway by less
 _NUMBERS = ("x", "y", "vx", "vy", "remaining", "walked")
 _COLUMNS = ("step", "pedestrian", *_NUMBERS)  # as the kernel fills them
+
+
+class _People(NamedTuple):
+    """The crowd at one instant as the kernel takes it, n pedestrians."""
+
+    person_ids: NDArray[np.int64]  # (n,) index of each pedestrian in the log
+    position: Array  # (n, 2) [m]
+    velocity: Array  # (n, 2) [m/s]
+    desired_speed: Array  # (n,) [m/s]
+    remaining: Array  # (n,) [m] to the end of the walk
 
 
 class WalkLog:
@@ -77,17 +88,14 @@ class WalkLog:
         if not len(person_ids):
             return
         block = self._rows.block(len(person_ids))
-        filled = _fill(
-            step,
+        people = _People(
             person_ids,
             crowd.position,
             crowd.velocity,
             crowd.desired_speed,
             remaining_distance(crowd),
-            self._near,
-            self._memory,
-            block,
         )
+        filled = _fill(step, people, self._near, self._memory, block)
         self._rows.give_back(len(person_ids) - filled)
 
     def _learn(self, ids: Sequence[str]) -> None:
@@ -138,18 +146,9 @@ class WalkLog:
 
 
 @kernel
-def _fill(
-    step: int,
-    person_ids: NDArray[np.int64],
-    position: Array,
-    velocity: Array,
-    desired_speed: Array,
-    remaining: Array,
-    near: NDArray[np.bool_],
-    memory: Array,
-    block: Array,
-) -> int:
+def _fill(step: int, people: _People, near: NDArray[np.bool_], memory: Array, block: Array) -> int:
     """Fill the rows of an instant with the people who count, note the others; return the count."""
+    person_ids, position, velocity, desired_speed, remaining = people
     count = 0
     for i in range(len(person_ids)):
         p, x, y = person_ids[i], position[i, 0], position[i, 1]

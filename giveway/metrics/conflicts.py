@@ -66,15 +66,27 @@ def proximity(
     _proximity(
         centre_poses(ego, shape),
         as_floats(ego.speed),
-        as_integers(crowd.step),
-        as_floats(crowd.x),
-        as_floats(crowd.y),
-        as_floats(crowd.vx),
-        as_floats(crowd.vy),
+        records_of(crowd, slice(None)),
         contact_body(shape, body_radius),
         found,
     )
     return found
+
+
+class Records(NamedTuple):
+    """The records of a crowd as kernels take them, R rows."""
+
+    step: NDArray[np.int64]  # (R,) control instants
+    x: NDArray[np.float64]  # (R,) [m]
+    y: NDArray[np.float64]  # (R,) [m]
+    vx: NDArray[np.float64]  # (R,) [m/s]
+    vy: NDArray[np.float64]  # (R,) [m/s]
+
+
+def records_of(crowd: CrowdTrack, order: NDArray[np.intp] | slice) -> Records:
+    """Return the records of a crowd in an order (R,), in the kernels' layout."""
+    columns = (crowd.x, crowd.y, crowd.vx, crowd.vy)
+    return Records(as_integers(crowd.step[order]), *(as_floats(each[order]) for each in columns))
 
 
 @dataclass(frozen=True)
@@ -185,14 +197,11 @@ def _centre_poses(
 def _proximity(
     poses: NDArray[np.float64],
     speed: NDArray[np.float64],
-    step: NDArray[np.int64],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    vx: NDArray[np.float64],
-    vy: NDArray[np.float64],
+    records: Records,
     body: tuple[float, float, float],
     out: Proximity,
 ) -> None:
+    step, x, y, vx, vy = records
     half_length, half_width, radius = body
     out_clearance, out_ttc, out_drac = out
     for r in range(step.size):

@@ -13,11 +13,13 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import inner, kernel
 from giveway.metrics.conflicts import (
+    Records,
     as_floats,
     as_integers,
     centre_poses,
     check_records,
     contact_body,
+    records_of,
 )
 from giveway.metrics.groups import PedestrianGroups
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
@@ -64,15 +66,12 @@ def contacts(
     check_records(ego, crowd)
     groups = PedestrianGroups(crowd)
     kinds = np.zeros(len(crowd.ids), dtype=np.int64)
-    order = groups.order
     _classify(
         centre_poses(ego, shape),
         as_floats(ego.speed),
         as_integers(groups.bounds),
-        as_integers(crowd.step[order]),
-        (as_floats(crowd.x[order]), as_floats(crowd.y[order])),
-        (as_floats(crowd.vx[order]), as_floats(crowd.vy[order])),
-        as_floats(clearance[order]),
+        records_of(crowd, groups.order),
+        as_floats(clearance[groups.order]),
         contact_body(shape, body_radius),
         kinds,
     )
@@ -106,15 +105,13 @@ def _classify(
     poses: NDArray[np.float64],
     speed: NDArray[np.float64],
     bounds: NDArray[np.int64],
-    step: NDArray[np.int64],
-    position: tuple[NDArray[np.float64], NDArray[np.float64]],
-    velocity: tuple[NDArray[np.float64], NDArray[np.float64]],
+    records: Records,
     clearance: NDArray[np.float64],
     body: tuple[float, float, float],
     kinds: NDArray[np.int64],
 ) -> None:
     """Fill ``kinds`` (n,). The records must be sorted by pedestrian, and then by time."""
-    (x, y), (vx, vy) = position, velocity
+    step, x, y, vx, vy = records
     half_length, _, _ = body
     for i in range(kinds.size):
         for r in range(bounds[i], bounds[i + 1]):

@@ -1,6 +1,6 @@
 """The delay of each person by the egos: the run compared with its counterfactual run."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -72,10 +72,6 @@ class DelaySummary:
         float,
         Quantity("s", "time loss of background vehicles until the arrival, less that without egos"),
     ]
-
-    def as_dict(self) -> dict[str, bool | int | float]:
-        """The names and values, in the order of ``DELAY_SUMMARY_FIELDS``."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
 DELAY_SUMMARY_FIELDS = columns_of(DelaySummary)

@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import inner, kernel
 from giveway.metrics.conflicts import (
+    Records,
     as_floats,
     as_integers,
     centre_poses,
     check_records,
     contact_body,
+    records_of,
 )
 from giveway.metrics.groups import PedestrianGroups
-from giveway.metrics.separation import blocks_of, ego_comes_later, separation
+from giveway.metrics.separation import EgoMotion, blocks_of, ego_comes_later, separation
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 SECTIONS = 16  # Number of parts of a control period in which the smallest separation is searched
@@ -84,9 +86,7 @@ def encroachment(
         as_floats(ego.time),
         centre_poses(ego, shape),
         as_integers(groups.bounds),
-        as_integers(crowd.step[groups.order]),
-        as_floats(crowd.x[groups.order]),
-        as_floats(crowd.y[groups.order]),
+        records_of(crowd, groups.order),
         contact_body(shape, body_radius),
     )
     return Encroachment(times, _WHO[first])
@@ -99,51 +99,38 @@ def post_encroachment_time(
     return encroachment(ego, crowd, shape, body_radius).time
 
 
+class _Leg(NamedTuple):
+    """The walk of a pedestrian in one step."""
+
+    k: int  # index of the step
+    begin: float  # [s]
+    duration: float  # [s]
+    x: tuple[float, float]  # [m] at its begin and end
+    y: tuple[float, float]  # [m]
+
+
 @inner
-def _separation_on_the_way(
-    share: float,
-    k: int,
-    x: tuple[float, float],
-    y: tuple[float, float],
-    cutoff: float,
-    clock: NDArray[np.float64],
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    blocks: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> float:
-    """Return the separation [s] after a ``share`` of step k from (x[0], y[0]) to (x[1], y[1])."""
-    t = share * (clock[k + 1] - clock[k])
+def _separation_on_the_way(share: float, leg: _Leg, cutoff: float, ego: EgoMotion) -> float:
+    """Return the separation after a ``share`` of a leg."""
+    x, y = leg.x, leg.y
     at_x, at_y = x[0] + share * (x[1] - x[0]), y[0] + share * (y[1] - y[0])
-    return separation(clock[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
+    return separation(leg.begin + share * leg.duration, at_x, at_y, leg.k, cutoff, ego)
 
 
 @inner
-def _smallest_between(
-    k: int,
-    x: tuple[float, float],
-    y: tuple[float, float],
-    leaving: bool,
-    cutoff: float,
-    clock: NDArray[np.float64],
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    blocks: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> float:
-    """Find the smallest separation [s] during step k of a walk from (x[0], y[0]) to (x[1], y[1]).
+def _smallest_between(leg: _Leg, leaving: bool, cutoff: float, ego: EgoMotion) -> float:
+    """Find the smallest separation during a leg.
 
-    A golden-section search finds it. A separation has one minimum in a step; if the walk crosses
-    the edge of the swept strip, the minimum is at the edge or shortly before it, because the ego's
-    corners are rounded. Beyond the edge the separation is inf. ``leaving`` says on which side of
-    the edge to look while both trials are beyond it.
+    Golden section: a separation has one minimum in a step, at or shortly before the edge of the
+    swept strip if the walk crosses it, because the ego's corners are rounded. Beyond the edge it
+    is inf; ``leaving`` says on which side of the edge to look while both trials are beyond.
     """
     smallest = inf
     low, high = 0.0, 1.0
     for _ in range(SECTIONS):
         early, late = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        at_early = _separation_on_the_way(early, k, x, y, cutoff, clock, time, poses, blocks, body)
-        at_late = _separation_on_the_way(late, k, x, y, cutoff, clock, time, poses, blocks, body)
+        at_early = _separation_on_the_way(early, leg, cutoff, ego)
+        at_late = _separation_on_the_way(late, leg, cutoff, ego)
         smallest = min(smallest, at_early, at_late)
         if at_early < at_late or (at_early == at_late and leaving):
             high = late
@@ -153,20 +140,11 @@ def _smallest_between(
 
 
 @inner
-def _share_inside(
-    k: int,
-    x: tuple[float, float],
-    y: tuple[float, float],
-    clock: NDArray[np.float64],
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    blocks: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> float:
-    """Return the share of step k after which a walk is first inside the swept strip, or 0."""
+def _share_inside(leg: _Leg, ego: EgoMotion) -> float:
+    """Return the share of a leg after which the pedestrian is first found in the strip, or 0."""
     for section in range(1, 4 * SECTIONS):
         share = section / (4.0 * SECTIONS)
-        if _separation_on_the_way(share, k, x, y, inf, clock, time, poses, blocks, body) < inf:
+        if _separation_on_the_way(share, leg, inf, ego) < inf:
             return share
     return 0.0
 
@@ -177,16 +155,15 @@ def _smallest_separations(
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
     bounds: NDArray[np.int64],
-    step: NDArray[np.int64],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
+    records: Records,
     body: tuple[float, float, float],
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the post-encroachment times, and who was first.
 
     Pedestrian i has the records bounds[i] to bounds[i + 1].
     """
-    blocks = blocks_of(poses, *body)
+    step, x, y, _, _ = records
+    ego = EgoMotion(time, poses, blocks_of(poses, *body), body)
     at_record = np.empty(x.size)
     pets = np.full(bounds.size - 1, nan)
     who = np.full(bounds.size - 1, _NEVER)
@@ -199,7 +176,7 @@ def _smallest_separations(
             # therefore cannot lead to the smallest one.
             period = clock[k] - clock[max(k - 1, 0)]
             cutoff = nearest + 2.0 * period
-            at_record[r] = separation(clock[k], x[r], y[r], k, cutoff, time, poses, blocks, body)
+            at_record[r] = separation(clock[k], x[r], y[r], k, cutoff, ego)
             if at_record[r] < nearest:
                 nearest = reach = at_record[r]
                 t, at_x, at_y, at = clock[k], x[r], y[r], k
@@ -208,13 +185,11 @@ def _smallest_separations(
             period = clock[step[r]] - clock[k]
             ends = at_record[r - 1], at_record[r]
             if step[r] == k + 1 and min(ends) - period < nearest and nearest > 0.0:
-                walk = (x[r - 1], x[r]), (y[r - 1], y[r])
+                leg = _Leg(k, clock[k], period, (x[r - 1], x[r]), (y[r - 1], y[r]))
                 cutoff = nearest + 2.0 * period
-                between = _smallest_between(
-                    k, *walk, ends[0] < ends[1], cutoff, clock, time, poses, blocks, body
-                )
+                between = _smallest_between(leg, ends[0] < ends[1], cutoff, ego)
                 if reach == inf and between < nearest:  # the strip was crossed between two records
-                    share = _share_inside(k, *walk, clock, time, poses, blocks, body)
+                    share = _share_inside(leg, ego)
                     t, at = clock[k] + share * period, k
                     at_x = x[r - 1] + share * (x[r] - x[r - 1])
                     at_y = y[r - 1] + share * (y[r] - y[r - 1])
@@ -225,6 +200,6 @@ def _smallest_separations(
         if nearest <= 0.0:
             who[i] = _CONTACT
         else:
-            later = ego_comes_later(t, at_x, at_y, at, reach + 1e-9, time, poses, blocks, body)
+            later = ego_comes_later(t, at_x, at_y, at, reach + 1e-9, ego)
             who[i] = _PERSON if later else _EGO
     return pets, who

@@ -1,7 +1,7 @@
 """One row per pedestrian: their walk, and their proximity to the ego."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -156,10 +156,6 @@ class WalkSummary:
         float, Quantity("s", "mean time for which one of them was slower than 0.2 m/s")
     ]
     mean_walk: Annotated[float, Quantity("m", "mean length of these people's paths")]
-
-    def as_dict(self) -> dict[str, float]:
-        """The names and values, in the order of ``WALK_SUMMARY_FIELDS``."""
-        return asdict(self)
 
 
 WALK_SUMMARY_FIELDS = columns_of(WalkSummary)

@@ -1,6 +1,7 @@
 """The separation in time of an ego and a person at the same place."""
 
 from math import hypot, inf
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,15 @@ from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import inner
 
 BLOCK = 8  # number of ego instants that are excluded together
+
+
+class EgoMotion(NamedTuple):
+    """The motion of the ego's body, T instants."""
+
+    time: NDArray[np.float64]  # (T,) [s]
+    poses: NDArray[np.float64]  # (T, 4) centre x, y [m], cos and sin of the heading
+    blocks: NDArray[np.float64]  # (b, 3) circles of :func:`blocks_of`
+    body: tuple[float, float, float]  # half length, half width, radius of a pedestrian [m]
 
 
 @inner
@@ -87,22 +97,13 @@ def _out_of_reach(b: int, x: float, y: float, blocks: NDArray[np.float64]) -> bo
 
 
 @inner
-def separation(
-    t: float,
-    x: float,
-    y: float,
-    step: int,
-    cutoff: float,
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    blocks: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> float:
+def separation(t: float, x: float, y: float, step: int, cutoff: float, ego: EgoMotion) -> float:
     """Return the time [s] between t and the ego's nearest touch of a circle; inf beyond ``cutoff``.
 
     ``step`` is the ego's step that contains t, and (x, y) the place of the circle. The search runs
     outwards from this step, and ends where no touch closer in time can follow.
     """
+    time, poses, blocks, body = ego
     nearest = inf
     steps = max(time.size - 1, 1)
     k = min(step, steps - 1)
@@ -127,20 +128,13 @@ def separation(
 
 @inner
 def ego_comes_later(
-    t: float,
-    x: float,
-    y: float,
-    step: int,
-    nearest: float,
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    blocks: NDArray[np.float64],
-    body: tuple[float, float, float],
+    t: float, x: float, y: float, step: int, nearest: float, ego: EgoMotion
 ) -> bool:
     """Return whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
 
     The arguments are those of :func:`separation`.
     """
+    time, poses, blocks, body = ego
     steps = max(time.size - 1, 1)
     k = min(step, steps - 1)
     while k < steps and time[k] - t <= nearest:

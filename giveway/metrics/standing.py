@@ -13,10 +13,15 @@ def stops(ego: EgoTrack, stop_speed: float = STANDING) -> NDArray[np.int64]:
     A stop lasts from the first instant below ``stop_speed`` [m/s] to the first one that is not, or
     to the end of the track, since each instant stands for the time until the next one.
     """
-    standing = np.concatenate(([False], ego.speed < stop_speed, [False]))
-    edges = np.diff(standing.astype(np.int8))
+    found = np.array(runs(ego.speed < stop_speed), dtype=np.int64).reshape(-1, 2)
+    return np.minimum(found, ego.time.size - 1)
+
+
+def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Return the stretches in which ``mask`` (n,) is true: first index, and one after the last."""
+    edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
     begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return np.column_stack([begins, np.minimum(ends, ego.time.size - 1)]).astype(np.int64)
+    return list(zip(begins.tolist(), ends.tolist(), strict=True))
 
 
 def waiting_times(ego: EgoTrack, stop_speed: float = STANDING) -> NDArray[np.float64]:

@@ -1,7 +1,7 @@
 """The summary of a run in one row: the numbers by which runs and controllers are compared."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -125,10 +125,6 @@ class Summary:
     time_among_people: Annotated[
         float, Quantity("s", "that it stood while people passed in front of and behind it")
     ]
-
-    def as_dict(self) -> dict[str, bool | int | float]:
-        """The names and values, in the order of ``SUMMARY_FIELDS``."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
 SUMMARY_FIELDS = columns_of(Summary)

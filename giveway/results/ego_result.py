@@ -1,7 +1,7 @@
 """The result of one ego of a run: its rows, and the measures computed from them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -180,11 +180,11 @@ class EgoResult:
             hasty=self.hasty,
             vehicles=self.vehicle_contacts,
         )
-        row = figures.as_dict()
+        row = asdict(figures)
         if self.ledger is not None:
-            row |= self.ledger.summary.as_dict()
+            row |= asdict(self.ledger.summary)
         if self.effect is not None:
-            row |= self.effect.summary(self.id).as_dict()
+            row |= asdict(self.effect.summary(self.id))
         row |= self.measured.values
         return row
 

@@ -1,6 +1,7 @@
 """The rows of a run by which the law of the road judges each ego's drive, and remarks on them."""
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -71,7 +72,7 @@ def ledger_table(events: Sequence[tuple[str, Event]]) -> "pd.DataFrame":
     """
     import pandas as pd
 
-    rows = [{"ego": ego} | event._asdict() for ego, event in events]
+    rows = [{"ego": ego} | asdict(event) for ego, event in events]
     table = pd.DataFrame(rows, columns=[column.name for column in LEDGER_COLUMNS])
     return table.sort_values("time", kind="stable", ignore_index=True)
 

@@ -1,7 +1,7 @@
 """The numbers of a run: tracks, tables and summaries."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -224,7 +224,7 @@ class RunTables:
     def summary(self) -> dict[str, Any]:
         """The summary in one row: of the first ego, or of the walks in a run without an ego."""
         if self.walks is not None:
-            return self.head | summarise_walks(self.walks).as_dict()
+            return self.head | asdict(summarise_walks(self.walks))
         return self.head | (self._row(self.egos[0]) if self.egos else {})
 
     def _row(self, ego: EgoResult) -> dict[str, Any]:

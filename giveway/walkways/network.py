@@ -110,28 +110,22 @@ class WalkNetwork:
         shapes = [shapely.LineString(line.points) for line in lines.values()]
         return list(lines), shapely.STRtree(shapes)
 
+    @cached_property
     def walkable(self) -> shapely.MultiPolygon:
         """The area where people may walk: lanes, walkingareas, crossings, other junctions."""
-        return self._walkable
-
-    @cached_property
-    def _walkable(self) -> shapely.MultiPolygon:
         return walkable_area(self._survey)
 
     def sidewalks(self, place: shapely.Geometry) -> shapely.MultiPolygon:
         """Return the sidewalks and walkingareas that reach into a place, without roads."""
         return sidewalk_area(self._survey, place)
 
+    @cached_property
     def wall_segments(self) -> Array:
         """Return the edge of the walkable area as segments (k, 4) x0, y0, x1, y1 [m].
 
         The walkable side is on the left.
         """
-        return self._walls
-
-    @cached_property
-    def _walls(self) -> Array:
-        return walls(self._walkable)
+        return walls(self.walkable)
 
 
 def _extent(found: Survey) -> tuple[float, float, float, float]:

@@ -227,10 +227,8 @@ def gaps_ahead(
                         station, _ = look(
                             path[:count],
                             stations[:count],
-                            0,
-                            count - 2,
-                            pedestrians[j, 0],
-                            pedestrians[j, 1],
+                            (0, count - 2),
+                            (pedestrians[j, 0], pedestrians[j, 1]),
                             0.0,
                             half_width[i],
                             0.0,

@@ -222,7 +222,7 @@ def closest_in_front(
         x, y = positions[j, 0], positions[j, 1]
         if x < low_x - margin or x > high_x + margin or y < low_y - margin or y > high_y + margin:
             continue
-        station, near = look(vertices, stations, first, last, x, y, front, half_width, reach)
+        station, near = look(vertices, stations, (first, last), (x, y), front, half_width, reach)
         reachable |= near
         closest = min(closest, station)
     return closest, reachable

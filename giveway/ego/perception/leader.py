@@ -55,7 +55,7 @@ def outline_in_front(
             to_y = -half + 2.0 * half * j / across
             x = vehicle[0] + cos * to_x - sin * to_y
             y = vehicle[1] + sin * to_x + cos * to_y
-            station, _ = look(vertices, stations, first, last, x, y, front, half_width, 0.0)
+            station, _ = look(vertices, stations, (first, last), (x, y), front, half_width, 0.0)
             closest = min(closest, station)
     return closest
 

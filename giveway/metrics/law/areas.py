@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import fine_near, points_at
-from giveway.metrics.law.drive import Drive, runs
+from giveway.metrics.law.drive import Drive
+from giveway.metrics.standing import runs
 from giveway.run_data.way import CrossingOnWay
 
 _STEP = 0.05  # [m] distance between two places of the body

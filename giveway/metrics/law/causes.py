@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.metrics.law.areas import Area
-from giveway.metrics.law.drive import Drive, runs, spread
+from giveway.metrics.law.drive import Drive, spread
 from giveway.metrics.law.encounters import AHEAD, Encounter
 from giveway.metrics.law.standing import BEFORE, Owed
+from giveway.metrics.standing import runs
 from giveway.run_data.way import JunctionOnWay
 
 AFTER = 2.0

@@ -108,13 +108,6 @@ class Drive:
         return np.asarray(letters[np.maximum(place, 0)], dtype=np.str_)
 
 
-def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the intervals in which ``mask`` (n,) is true: first index, and one after the last."""
-    edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
-    begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return list(zip(begins.tolist(), ends.tolist(), strict=True))
-
-
 def spread(time: Array, there: NDArray[np.bool_], before: float, after: float) -> NDArray[np.bool_]:
     """Extend the instants ``there`` (T,) by the times ``before`` and ``after`` [s]."""
     hits = time[there]

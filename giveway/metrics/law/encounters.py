@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from controller.driving_constants import FIRM, PULL_AWAY_USUAL
 from giveway.geometry.kernel import Array
 from giveway.metrics.law.areas import Area
-from giveway.metrics.law.drive import Drive, runs
+from giveway.metrics.law.drive import Drive
 from giveway.metrics.law.walks import Walk
+from giveway.metrics.standing import runs
 
 AHEAD = 4.0
 """Largest time [s] in which a person reaches the ego's path and is met."""

@@ -1,8 +1,8 @@
 """A drive judged by the law of the road: the numbers, and each event as a row of a table."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
-from typing import Annotated, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -28,7 +28,8 @@ BACK = 0.3
 ENCOUNTER = "encounter"
 
 
-class Event(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Event:
     """One row of ``ledger.csv``, without the ego's id."""
 
     time: float  # [s] time
@@ -68,10 +69,6 @@ class LawSummary:
         float, Quantity("s", "that people stood whom it met at zebras; empty: it met nobody there")
     ]
     longest_zebra_wait: Annotated[float, Quantity("s", "the longest of these waits; empty: none")]
-
-    def as_dict(self) -> dict[str, int | float]:
-        """The names and values, in the order of ``LAW_FIELDS``."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
 LAW_FIELDS = columns_of(LawSummary)
@@ -206,14 +203,14 @@ def _of_red_light(drive: Drive, found: RedLight) -> Event:
 def _of_blocked(drive: Drive, found: Blocked, what: str) -> Event:
     words = f"stood on it for {found.duration:.2f} s with nobody in front"
     event = _at(drive, found.first, f"blocked {what}", found.duration, "s", words)
-    return event._replace(place=found.place)
+    return replace(event, place=found.place)
 
 
 def _of_contact(drive: Drive, contact: VehicleContact) -> Event:
     k = int(drive.instants(np.array([contact.first]))[0])
     words = f"in contact for {contact.duration:.2f} s"
     event = _at(drive, k, "vehicle contact", contact.duration, "s", words)
-    return event._replace(other=contact.id)
+    return replace(event, other=contact.id)
 
 
 def _at(drive: Drive, k: int, kind: str, value: float, unit: str, words: str) -> Event:

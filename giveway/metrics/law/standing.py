@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.metrics.law.areas import Area
-from giveway.metrics.law.drive import Drive, runs, spread
+from giveway.metrics.law.drive import Drive, spread
 from giveway.metrics.law.walks import is_open
+from giveway.metrics.standing import runs
 
 LONG = 2.0
 """Time [s] up to which a stand blocks nobody."""

@@ -1,5 +1,6 @@
 """People at a crossing: their progress over it, and their priority."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,8 @@ _OUT = np.array(["O", "o"])
 _SLOWEST = 0.1  # Smallest desired speed [m/s] used here, since it may be zero
 
 
-class Walk(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class Walk:
     """The records of one person near a crossing, in order of time, for one route over it."""
 
     pedestrian: int

@@ -1,15 +1,17 @@
 """The junctions of the loaded network: the movements through them, and their priorities."""
 
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from giveway.scenario_files.right_of_way import JunctionLogic, right_of_way
 from giveway.sumo.network.internal_lanes import lanes_inside
 from giveway.sumo.network.lanes import Lanes
 
 
-class Movement(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Movement:
     """A link through a junction, from one lane to another."""
 
     junction: str  # SUMO's id of the junction

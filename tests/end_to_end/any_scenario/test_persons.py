@@ -35,7 +35,7 @@ def test_people_stay_where_people_walk(
 ) -> None:
     result, _ = crowded
     assert len(result.crowd_track.ids) > 200
-    area = network.walkable()
+    area = network.walkable
     assert share_within(area, 0.27, result) > 0.97  # a body's radius: pushed about by others
     assert share_within(area, 1.5, result) > 0.999
 
@@ -47,7 +47,7 @@ def test_with_walls_nobody_leaves_the_walkways(
     driven = {"ego": {"take_over": ("car10",)}, "controller": "pid-paper"}
     result, _ = drive(city(0.1), crowd=crowd, time_limit=40.0, **driven)
     assert len(result.crowd_track.ids) > 150
-    assert share_within(network.walkable(), 0.05, result) > 0.9995
+    assert share_within(network.walkable, 0.05, result) > 0.9995
     assert adds_up(result.manifest["pedestrians"])
 
 

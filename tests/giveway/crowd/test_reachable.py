@@ -53,7 +53,7 @@ def test_the_place_beside_a_way_is_walkable_and_people_cross(
     network = WalkNetwork.read(net_file)
     place = beside(WAY, network, near)
     start = shapely.box(*place.area)
-    assert network.walkable().contains(start.centroid)
+    assert network.walkable.contains(start.centroid)
     x, y = start.centroid.x, start.centroid.y
     crossing = shapely.LineString([(x, y), (x + place.walk[0], y + place.walk[1])])
     assert crossing.crosses(shapely.LineString(WAY))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import fields
+from dataclasses import asdict, fields
 from math import nan
 
 import numpy as np
@@ -87,7 +87,7 @@ def test_the_goal_is_reached_between_two_instants(ego):
 
 def test_what_never_occurred_is_empty(ego):
     summary = summary_of(ego(TIME), goal=1e9, controller="pid")
-    never = {name for name, value in summary.as_dict().items() if np.isnan(value)}
+    never = {name for name, value in asdict(summary).items() if np.isnan(value)}
     assert never == {
         "beyond_assumption",
         "contacts_beyond",
@@ -141,7 +141,7 @@ def test_an_empty_track_is_refused(ego):
 
 
 def test_the_summary_is_plain_python_in_the_documented_order(ego):
-    row = summary_of(ego(TIME)).as_dict()
+    row = asdict(summary_of(ego(TIME)))
     assert list(row) == [column.name for column in SUMMARY_FIELDS]
     assert {type(value) for value in row.values()} == {bool, int, float}
     assert json.loads(json.dumps(row))["stops"] == 1

@@ -1,5 +1,7 @@
 """The law's tables, other egos as vehicles, and the note that names violations."""
 
+from dataclasses import replace
+
 import numpy as np
 from support.crossing_world import SHAPE, ego, traffic
 
@@ -19,7 +21,7 @@ RED = Event(2.0, "red light", True, "tls", "3", 1.0, 2.0, 0.5, "s", "red")
 
 def test_the_note_counts_violations_and_tells_of_the_first():
     assert remark("ego", ()) == ""
-    text = remark("ego", (FAILED, FAILED._replace(time=9.0), RED))
+    text = remark("ego", (FAILED, replace(FAILED, time=9.0), RED))
     assert "ego 'ego'" in text
     assert "2 x failure to yield, 1 x red light" in text
     assert "at 4.00 s (too early)" in text

@@ -73,7 +73,7 @@ def test_ways_are_connected_and_stay_where_people_walk(
     city_or: Callable[[str], WalkNetwork], sumo_walks: Callable[[str], Any], name: str
 ) -> None:
     network = city_or(name)
-    room = network.walkable().buffer(0.1)
+    room = network.walkable.buffer(0.1)
     shapely.prepare(room)
     looked_at = 0
     for walk, i, route in taken_over(network, sumo_walks(name)["walks"], EVERY):

@@ -32,7 +32,7 @@ def beside(walls: NDArray[np.float64], distance: float) -> NDArray[Any]:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_walkable_side_is_on_the_left(built: Callable[[str], Any], name: str) -> None:
     network = built(name).network
-    walls, area = network.wall_segments(), network.walkable()
+    walls, area = network.wall_segments, network.walkable
     assert len(walls) > 30
     assert shapely.contains(area, beside(walls, 0.02)).all()
     assert not shapely.contains(area, beside(walls, -0.02)).any()
@@ -45,29 +45,29 @@ def test_walls_are_closed_rings_round_the_whole_area(
     built: Callable[[str], Any], name: str
 ) -> None:
     network = built(name).network
-    walls = network.wall_segments()
+    walls = network.wall_segments
     np.testing.assert_array_equal(np.unique(walls[:, :2], axis=0), np.unique(walls[:, 2:], axis=0))
     (x_0, y_0, x_1, y_1) = walls.T
     signed = ((x_0 * y_1 - x_1 * y_0) / 2).sum()  # Gauss: positive counter-clockwise
-    assert signed == pytest.approx(network.walkable().area, rel=1e-9)
-    assert network.walkable().is_valid
+    assert signed == pytest.approx(network.walkable.area, rel=1e-9)
+    assert network.walkable.is_valid
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_all_lanes_and_areas_lie_inside(built: Callable[[str], Any], name: str) -> None:
     network = built(name).network
-    room = network.walkable().buffer(0.05)
+    room = network.walkable.buffer(0.05)
     survey = network._survey
     lanes = [edge.lane for edge in survey.edges.values()] + list(survey.crossings.values())
     assert shapely.covers(room, [shapely.LineString(lane.shape) for lane in lanes]).all()
     outlines = [shapely.Polygon(area.shape) for area in survey.walkingareas.values()]
     outside = sum(outline.difference(room).area for outline in outlines if outline.is_valid)
-    assert outside < 1e-3 * network.walkable().area
+    assert outside < 1e-3 * network.walkable.area
 
 
 def test_no_wall_stands_in_the_roadway_between_two_sidewalks(grid: WalkNetwork) -> None:
     """Blocks and roadways are left out: 12 two-way streets with 2 m on either side."""
-    area = grid.walkable()
+    area = grid.walkable
     assert not area.contains(shapely.Point(60.0, 120.0))  # the road
     assert not area.contains(shapely.Point(60.0, 60.0))  # the houses
     assert area.contains(shapely.Point(60.0, 120.0 - 4.2))  # the sidewalk
@@ -76,8 +76,8 @@ def test_no_wall_stands_in_the_roadway_between_two_sidewalks(grid: WalkNetwork) 
 
 
 def test_without_walkingareas_junctions_are_walkable(bare: WalkNetwork) -> None:
-    assert bare.walkable().contains(shapely.Point(120.0, 120.0))
-    assert len(bare.walkable().geoms) == 1
+    assert bare.walkable.contains(shapely.Point(120.0, 120.0))
+    assert len(bare.walkable.geoms) == 1
 
 
 TOWN = """<net>
@@ -107,18 +107,18 @@ def town(tmp_path: Path) -> Callable[[str], WalkNetwork]:
 
 
 def test_hairline_gaps_are_closed(town: Callable[[str], WalkNetwork]) -> None:
-    area = town("20.1,-1 24.9,-1 24.9,1 20.1,1").walkable()
+    area = town("20.1,-1 24.9,-1 24.9,1 20.1,1").walkable
     assert len(area.geoms) == 1
     assert area.area == pytest.approx(45 * 2, abs=0.1)
-    assert len(town("20.1,-1 24.9,-1 24.9,1 20.1,1").wall_segments()) == 4
+    assert len(town("20.1,-1 24.9,-1 24.9,1 20.1,1").wall_segments) == 4
 
 
 def test_an_outline_that_crosses_itself_stays_passable(town: Callable[[str], WalkNetwork]) -> None:
     network = town("20,-1 25,1 25,-1 20,1")  # a bow-tie: no width in the middle
-    assert len(network.walkable().geoms) == 1
+    assert len(network.walkable.geoms) == 1
     route = network.route(["a", "b"], position=(5.0, 0.0), lane="a_0", arrival_position=10.0)
     line = shapely.LineString([(5.0, 0.0), *route.waypoints])
-    assert network.walkable().buffer(0.05).covers(line)
+    assert network.walkable.buffer(0.05).covers(line)
 
 
 @pytest.mark.parametrize("outline", ["22.5,0", "20,0 25,0", "20,0 22,0 25,0"])
@@ -126,7 +126,7 @@ def test_an_outline_without_area_is_as_wide_as_its_lane(
     town: Callable[[str], WalkNetwork], outline: str
 ) -> None:
     network = town(outline)
-    assert network.walkable().contains(shapely.Point(22.5, 0.9))
+    assert network.walkable.contains(shapely.Point(22.5, 0.9))
     route = network.route(["a", "b"], position=(5.0, 0.0), lane="a_0", arrival_position=10.0)
     assert route.gaps == 0
 
@@ -141,6 +141,6 @@ def test_the_way_goes_round_a_corner_and_not_through_the_house(
             ["a", "b"], position=(5.0, 0.73 * side), lane="a_0", arrival_position=10.0
         )
         line = walked(route, (5.0, 0.73 * side))
-        assert network.walkable().buffer(0.1).covers(line)
-    walls = network.wall_segments().reshape(-1, 2, 2)
+        assert network.walkable.buffer(0.1).covers(line)
+    walls = network.wall_segments.reshape(-1, 2, 2)
     assert not shapely.crosses(shapely.linestrings(walls), line).any()

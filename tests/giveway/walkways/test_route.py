@@ -310,9 +310,9 @@ def test_every_way_is_connected_and_stays_where_people_walk(
     assert len(route.waypoints) == len(route.passages) == len(route.signals)
     np.testing.assert_allclose(np.hypot(*route.passages[:, :2].T), 1.0)
     middle = shapely.LineString(np.vstack([on(grid, edges[0], 20.0), route.waypoints]))
-    assert grid.walkable().buffer(0.1).covers(middle)
+    assert grid.walkable.buffer(0.1).covers(middle)
     # The nearest points of the lines round a corner may be its very ends, on the roadway's rim.
-    assert grid.walkable().buffer(0.5).covers(walked(route, start))
+    assert grid.walkable.buffer(0.5).covers(walked(route, start))
 
 
 @settings(max_examples=50)

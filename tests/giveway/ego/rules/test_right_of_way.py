@@ -1,6 +1,7 @@
 """Where the ego waits for others: its line at 50 m, ways that cross at 55 to 60 m."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -85,7 +86,7 @@ def stop(place: PathJunction, front: float, speed: float, *others: Approach, **m
 def test_it_knows_who_is_led_past_it() -> None:
     past, across = 2, junction()
     place = junction(beside=frozenset({past}))
-    aside = place.movements[OTHER]._replace(number=past, source="west_1", target="east_1")
+    aside = replace(place.movements[OTHER], number=past, source="west_1", target="east_1")
     place = place._replace(movements={**place.movements, past: aside})
     one, two = other(20.0), other(12.0)._replace(name="second", number=past)
     drive = Drive(place)
@@ -99,7 +100,7 @@ def test_it_knows_who_is_led_past_it() -> None:
     tell(drive.keeps, 66.0, 5.0)
     assert drive.keeps.beside == set()  # behind the last junction, where nobody is looked at
     further = across._replace(
-        entry=80.0, exit=95.0, movement=across.movement._replace(junction="k")
+        entry=80.0, exit=95.0, movement=replace(across.movement, junction="k")
     )
     keeps = RightOfWay([place, further], name="ego", length=5.0, gap=1.0, fastest=8.0)
     traffic = {"j": [two], "k": [two._replace(number=OTHER)]}
@@ -138,8 +139,8 @@ def test_the_ego_waits_for_any_vehicle_inside_the_junction() -> None:
 
 def test_who_waits_in_the_junction_for_others_is_not_waited_for() -> None:
     place, third = junction(), 2
-    waits = place.movements[OTHER]._replace(yields_to=frozenset({third}))
-    oncoming = waits._replace(number=third, yields_to=NOBODY)
+    waits = replace(place.movements[OTHER], yields_to=frozenset({third}))
+    oncoming = replace(waits, number=third, yields_to=NOBODY)
     place = place._replace(movements={**place.movements, OTHER: waits, third: oncoming})
     there = other(-2.0, speed=0.0, standing=1.0)
     car = Approach("oncoming", third, 15.0, 10.0, 4.5, 0.0)
@@ -212,7 +213,7 @@ def test_once_it_goes_past_who_stands_it_does_not_hesitate() -> None:
 
 def test_who_stands_behind_somebody_who_turns_is_not_waited_for() -> None:
     turn, left = junction(waiting=(54.0,)), 2
-    turning = turn.movements[OTHER]._replace(number=left, target="north_0")
+    turning = replace(turn.movements[OTHER], number=left, target="north_0")
     turn = turn._replace(movements={**turn.movements, left: turning})
     behind = other(1.0, 0.0, standing=1.5)
     turner = Approach("turner", left, -4.0, 0.0, 4.5, 1.5)

@@ -1,6 +1,6 @@
 """The ledger as a whole: a lawless drive, in any frame, and one in which nothing happens."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -35,13 +35,13 @@ def test_every_violation_is_found_exactly_once():
     }
     assert count(found.events) == count(found.violations) | {"encounter": 2}
     assert [event.time for event in found.events] == sorted(event.time for event in found.events)
-    assert list(found.summary.as_dict()) == [column.name for column in LAW_FIELDS]
+    assert list(asdict(found.summary)) == [column.name for column in LAW_FIELDS]
 
 
 def test_nothing_happens_where_nobody_is():
     found = ledger(drive(ego((15.0, 0.0))))
     assert found.events == ()
-    numbers = found.summary.as_dict()
+    numbers = asdict(found.summary)
     empty = {name for name, value in numbers.items() if np.isnan(value)}
     assert empty == {"yielding_rate", "mean_zebra_wait", "longest_zebra_wait"}
     assert all(value == 0 for name, value in numbers.items() if name not in empty)
