@@ -12,7 +12,7 @@ from fmus.profile.controllers.controller_preparation import PreparedController
 
 
 class ControllerFmu:
-    """Runs a controller FMU in this process.
+    """Runs a controller FMU in its process: START nothing; STEP its inputs, in its own units.
 
     The answer at t_k is the output at the end of the step from t_k, with the inputs at t_k. There
     is no lag, whether the FMU computes its outputs with its inputs or with its step.
@@ -22,8 +22,8 @@ class ControllerFmu:
         folder: Folder of the unpacked FMU, which is not removed.
 
     Attributes:
-        answer: Answer of the last step, in the FMU's own unit.
-        time: Time at the end of that step [s].
+        time: Time at the end of the last step [s].
+        warnings: Warnings, which stay empty: the client checks the inputs and warns.
 
     Raises:
         FmuPlatformError: the FMU has no binary that can be loaded.
@@ -31,43 +31,44 @@ class ControllerFmu:
 
     def __init__(self, prepared: PreparedController, folder: Path) -> None:
         self.prepared = prepared
-        self.answer = self.time = 0.0
+        self.warnings: list[str] = []
+        self.time = self._answer = 0.0
         self._steps = 0
-        fmu = prepared.profile.fmu
         self._instance = load(
             prepared.model,
             prepared.wiring.interface,
             folder,
             prepared.binary,
-            solver=fmu.solver,
-            tolerance=fmu.tolerance,
-            stop_time=fmu.stop_time,
+            prepared.profile.fmu,
         )
 
-    def start(self) -> None:
-        """Begin (again) at time 0 with a new instance.
+    @staticmethod
+    def numbers(prepared: PreparedController) -> tuple[int, int]:
+        """Return the numbers of values in requests and in replies."""
+        return 1 + len(prepared.wiring.inputs), 1
+
+    def start(self, _numbers: Sequence[float]) -> None:
+        """Begin at time 0 with the start values of the profile.
 
         Raises:
             FmuStartError: the FMU refuses its start values.
         """
         wiring = self.prepared.wiring
-        self._instance.stop()
-        self._steps, self.time = 0, 0.0
         channels = [wire.channel for wire in wiring.inputs]
         self._instance.start(wiring.start_values, channels, [wiring.answer.channel])
 
-    def step(self, told: Sequence[float]) -> None:
+    def step(self, numbers: Sequence[float]) -> None:
         """Do one control step; an FMU with longer steps is called once in each of its own steps.
 
         Args:
-            told: Values of its inputs, in its own units.
+            numbers: Processor of the client, then the values of the inputs in their own units.
 
         Raises:
             FmuStepError: the FMU does not do the step.
         """
         step_plan, instance = self.prepared.step_plan, self._instance
         if self._steps % step_plan.stretch == 0:
-            for index, value in enumerate(told):
+            for index, value in enumerate(numbers[1:]):
                 instance.inputs[index] = value
             first = self._steps // step_plan.stretch * step_plan.substeps
             for number in range(first, first + step_plan.substeps):
@@ -79,9 +80,13 @@ class ControllerFmu:
                         f"{(number + 1) * step_plan.step:.10g} s: the FMU returned "
                         f"'{STATUS_NAMES[status]}', {said}"
                     )
-            self.answer = instance.outputs[0]
+            self._answer = instance.outputs[0]
         self._steps += 1
         self.time = self._steps * self.prepared.step_size
+
+    def state(self) -> Sequence[float]:
+        """Return the answer of the last step, in the FMU's own unit."""
+        return (self._answer,)
 
     def close(self) -> None:
         """End the FMU and free its library."""

@@ -85,10 +85,8 @@ class VehicleFmu(Drivable):
             prepared.wiring.interface,
             folder,
             prepared.binary,
-            solver=prepared.profile.fmu.solver,
-            tolerance=prepared.profile.fmu.tolerance,
+            prepared.profile.fmu,
             rewinds=not prepared.ours,  # keeping the state takes time in every step
-            stop_time=prepared.profile.fmu.stop_time,
         )
         stack.callback(self._instance.close)
         self._resources = stack.pop_all()

@@ -6,24 +6,19 @@ C, and a missing function is an error only where it is needed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from fmus.description.model import Kind
+from fmus.description.model import Interface, Kind, Model
 from fmus.errors import FmuInterfaceError
+from fmus.fmi.calls import Calls
 from fmus.fmi.co_simulation import CoSimulation
 from fmus.fmi.fmi1 import Fmi1Calls
 from fmus.fmi.fmi2 import Fmi2Calls
 from fmus.fmi.fmi3 import Fmi3Calls
 from fmus.fmi.library import Library
 from fmus.fmi.messages import MessageLog
-
-if TYPE_CHECKING:
-    from pathlib import Path
-    from typing import Literal
-
-    from fmus.description.model import Interface, Model
-    from fmus.fmi.calls import Calls
-    from fmus.fmi.running import Instance
+from fmus.fmi.running import Instance
+from fmus.profile.tables import Stepping
 
 __all__ = ["load"]
 
@@ -35,11 +30,9 @@ def load(
     interface: Interface,
     folder: Path,
     binary: str,
+    stepping: Stepping,
     *,
-    solver: Literal["cvode", "rk4"] | None = None,
-    tolerance: float | None = None,
     rewinds: bool = True,
-    stop_time: float | None = None,
 ) -> Instance:
     """Load an FMU's library, ready to be started.
 
@@ -48,11 +41,10 @@ def load(
         interface: Interface that is to run.
         folder: Folder with the extracted FMU; the caller removes it after :meth:`Instance.close`.
         binary: Library for this platform, by its name in the archive.
-        solver: Solver of Model Exchange, or None for CVode if it runs.
-        tolerance: Relative tolerance of Model Exchange's solver, or of the FMU in Co-Simulation.
+        stepping: Settings of the profile: the solver of Model Exchange, its tolerance (or that of
+            the FMU in Co-Simulation), and the end of the simulation that the FMU is given.
         rewinds: True to keep the state before each step, so that a discarded step can be repeated
             in smaller ones. It works only with Co-Simulation FMUs that can save their state.
-        stop_time: End of the simulation [s] that the FMU is given, or None.
 
     Raises:
         FmuInterfaceError: this version and kind cannot be run.
@@ -66,12 +58,12 @@ def load(
     library = Library(folder / binary, model.path)
     try:
         calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
-        calls.stop_time = stop_time
+        calls.stop_time = stepping.stop_time
         if interface.kind == Kind.MODEL_EXCHANGE:
             from fmus.fmi.model_exchange import ModelExchange  # Co-Simulation needs no numpy
 
-            return ModelExchange(calls, tolerance, solver)
-        return CoSimulation(calls, tolerance, rewinds=rewinds)
+            return ModelExchange(calls, stepping.tolerance, stepping.solver)
+        return CoSimulation(calls, stepping.tolerance, rewinds=rewinds)
     except BaseException:
         library.close()
         raise

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from fmus.description.model import Value
 from fmus.driving.vehicle import VehicleFmu
+from fmus.interfaces.vehicle import Vehicle
 from fmus.isolation.isolated_controller import IsolatedController
 from fmus.isolation.isolated_vehicle import IsolatedVehicle
 from fmus.isolation.watchdog_process import processes_reused
 from fmus.profile.bundled import is_bundled
-
-if TYPE_CHECKING:
-    import os
-    from collections.abc import Mapping
-
-    from fmus.description.model import Value
-    from fmus.interfaces.vehicle import Vehicle
-    from fmus.profile.vehicle_profile import VehicleProfile
+from fmus.profile.vehicle_profile import VehicleProfile
 
 __all__ = ["IsolatedController", "IsolatedVehicle", "open_vehicle", "processes_reused"]
 

@@ -7,21 +7,16 @@ import tempfile
 import weakref
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fmus import errors
 from fmus.errors import FmuCrashError, FmuError, FmuStartCrashError, FmuStepError
 from fmus.isolation.cleanup import remove
+from fmus.isolation.hosted import Hosted
 from fmus.isolation.process_host import ProcessHost, make_process_host
 from fmus.isolation.wire import LOAD, QUIT, STEP, Client, GarbledError, Text
 from fmus.isolation.worker import Order
-from fmus.profile.preparation import unpack
+from fmus.profile.preparation import PreparedFmu, unpack
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from fmus.isolation.hosted import Hosted
-    from fmus.profile.controllers.controller_preparation import PreparedController
-    from fmus.profile.preparation import Prepared
 
 _END_TIMEOUT = 5.0  # [s] time for an FMU to end by itself
 _END_PATIENCE = 1.0  # [s] between the end of the connection and that of the process
@@ -44,7 +39,7 @@ class FmuProcess:
         FmuError: the FMU cannot be unpacked, or no process can be started.
     """
 
-    def __init__(self, hosted: type[Hosted], prepared: Prepared | PreparedController) -> None:
+    def __init__(self, hosted: type[Hosted], prepared: PreparedFmu) -> None:
         self.path = prepared.path
         self.warnings: list[str] = []
         self.failed = False

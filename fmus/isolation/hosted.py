@@ -1,4 +1,4 @@
-"""The adapters hosted in an FMU's process: a vehicle or a controller, as plain numbers."""
+"""The adapters hosted in an FMU's process, as plain numbers; a controller FMU is its own."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from fmus.driving.controller import ControllerFmu
 from fmus.driving.vehicle import VehicleFmu
-from fmus.profile.controllers.controller_preparation import PreparedController
 from fmus.profile.preparation import Prepared
 
 
@@ -91,46 +89,3 @@ class HostedVehicle:
     def close(self) -> None:
         """End the FMU."""
         self._vehicle.close()
-
-
-class HostedController:
-    """Adapter of a controller: START nothing; STEP its inputs, in its own units.
-
-    Args:
-        prepared: Prepared controller.
-        folder: Folder of its unpacked FMU.
-    """
-
-    def __init__(self, prepared: PreparedController, folder: Path) -> None:
-        self._controller = ControllerFmu(prepared, folder)
-
-    @staticmethod
-    def numbers(prepared: PreparedController) -> tuple[int, int]:
-        """Return the numbers of values in requests and in replies."""
-        return 1 + len(prepared.wiring.inputs), 1
-
-    @property
-    def warnings(self) -> list[str]:
-        """The warnings, which are empty: the client checks the inputs and warns."""
-        return []
-
-    @property
-    def time(self) -> float:
-        """Time [s] of the controller."""
-        return self._controller.time
-
-    def start(self, _numbers: Sequence[float]) -> None:
-        """Start the controller with the start values of its profile."""
-        self._controller.start()
-
-    def step(self, numbers: Sequence[float]) -> None:
-        """Do one step with these inputs."""
-        self._controller.step(numbers[1:])
-
-    def state(self) -> Sequence[float]:
-        """Return the controller's answer."""
-        return (self._controller.answer,)
-
-    def close(self) -> None:
-        """End the FMU."""
-        self._controller.close()

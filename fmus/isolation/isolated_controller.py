@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isinf
 
+from fmus.driving.controller import ControllerFmu
 from fmus.errors import FmuStateError
 from fmus.isolation import processor
 from fmus.isolation.fmu_process import FmuProcess, while_starting
-from fmus.isolation.hosted import HostedController
 from fmus.isolation.wire import LOAD, START, STEP
 from fmus.profile.controllers.controller_preparation import PreparedController
 
@@ -66,7 +66,7 @@ class IsolatedController:
         if self._closed:
             raise FmuStateError(f"{self.path}: the controller has been closed; make a new one")
         if self._process is None:
-            self._process = FmuProcess(HostedController, self._prepared)
+            self._process = FmuProcess(ControllerFmu, self._prepared)
         self._process.begin()
         self._steps = 0
         timeout = self._prepared.profile.fmu.start_timeout

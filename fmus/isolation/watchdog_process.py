@@ -7,16 +7,14 @@ import signal
 import socket
 import subprocess
 import sys
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
 from fmus.isolation.cleanup import LOG, kill_marked
 from fmus.isolation.spawning import END_TIMEOUT, IMPORT_TIMEOUT, kill_group, spawn
 from fmus.isolation.wire import MESSAGE, RETIRE, SERVE
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 _waiting: Final[list[WatchdogProcess]] = []
 _scopes: Final[list[None]] = []

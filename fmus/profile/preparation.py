@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, isnan
 from pathlib import Path
-from typing import Protocol
 
 from fmus.archive.archive_check import extract, open_archive
 from fmus.description.binaries import binary_of
@@ -35,35 +34,44 @@ class Bound:
 
 
 @dataclass(frozen=True)
-class Prepared:
-    """A vehicle that is ready to be unpacked and loaded.
+class PreparedFmu:
+    """An FMU that is ready to be unpacked and loaded.
 
     Attributes:
         model: Model of the FMU.
-        profile: Profile by which it is driven.
-        wiring: Variables for its inputs and outputs.
-        command: Inverse map.
-        step_plan: Relation of the controller's steps to the FMU's steps.
+        step_plan: Relation of the control steps to the FMU's steps.
         bounds: Bounds of the inputs.
         step_size: Step size of the controller [s].
         binary: Library for this platform, by its name in the archive.
-        ours: True for a shipped FMU, whose outputs are trusted and whose state need not be saved.
     """
 
     model: Model
-    profile: VehicleProfile
-    wiring: Wiring
-    command: Command
     step_plan: StepPlan
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
-    ours: bool
 
     @property
     def path(self) -> Path:
         """Path of the FMU."""
         return self.model.path
+
+
+@dataclass(frozen=True)
+class Prepared(PreparedFmu):
+    """A vehicle that is ready to be unpacked and loaded.
+
+    Attributes:
+        profile: Profile by which it is driven.
+        wiring: Variables for its inputs and outputs.
+        command: Inverse map.
+        ours: True for a shipped FMU, whose outputs are trusted and whose state need not be saved.
+    """
+
+    profile: VehicleProfile
+    wiring: Wiring
+    command: Command
+    ours: bool
 
 
 def prepare(
@@ -128,19 +136,7 @@ def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
     return require_confident(draft_profile(model), model.path)
 
 
-class Loadable(Protocol):
-    """An FMU whose binary for this platform is known."""
-
-    @property
-    def path(self) -> Path:
-        """Path of the FMU."""
-
-    @property
-    def binary(self) -> str:
-        """Name of this platform's binary in the archive."""
-
-
-def unpack(prepared: Loadable, folder: Path) -> None:
+def unpack(prepared: PreparedFmu, folder: Path) -> None:
     """Unpack the members for this platform into ``folder``.
 
     Raises:

@@ -1,5 +1,6 @@
 """A role and the variable that plays it, with the conversion to SI units."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from fmus.description import units
@@ -118,6 +119,23 @@ def make_wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
             f"{model.path}: [{table}.{role}] variable '{channel.name}' {problem}"
         )
     return _converted(model, table, role, axis, channel)
+
+
+def distinct(model: Model, wires: Iterable[Wire]) -> tuple[Wire, ...]:
+    """Return the wires of inputs, each with a variable of its own.
+
+    Raises:
+        FmuVariableError: two roles have the same variable.
+    """
+    taken: dict[Channel, Wire] = {}
+    for wire in wires:
+        if taken.setdefault(wire.channel, wire) is not wire:
+            table = "grade" if wire.role == "slope" else wire.role
+            raise FmuVariableError(
+                f"{model.path}: [inputs.{table}] variable '{wire.channel.name}' is that of "
+                f"[inputs.{taken[wire.channel].role}] already; expected another one"
+            )
+    return tuple(taken.values())
 
 
 def _is_input(variable: Variable) -> bool:

@@ -11,7 +11,7 @@ from fmus.description.model import NUMERIC_TYPES, REAL_TYPES, Channel, Interface
 from fmus.errors import FmuVariableError
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import Inputs, VehicleProfile
-from fmus.profile.wires import Wire, interface_of, is_output, make_wire
+from fmus.profile.wires import Wire, distinct, interface_of, is_output, make_wire
 
 _INPUTS = (
     "force",
@@ -129,21 +129,15 @@ def _recorded(model: Model, name: str) -> Channel:
 
 
 def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
-    wires: dict[Channel, Wire] = {}
-    for role in _INPUTS:
-        axis = getattr(inputs, role)
-        if axis is None:
-            continue
-        found = (
+    named = ((role, getattr(inputs, role)) for role in _INPUTS)
+    return distinct(
+        model,
+        (
             _grade_wire(model, axis) if role == "grade" else make_wire(model, "inputs", role, axis)
-        )
-        if found.channel in wires:
-            raise FmuVariableError(
-                f"{model.path}: [inputs.{role}] variable '{found.channel.name}' is that of "
-                f"[inputs.{wires[found.channel].role}] already; expected another one"
-            )
-        wires[found.channel] = found
-    return tuple(wires.values())
+            for role, axis in named
+            if axis is not None
+        ),
+    )
 
 
 def _grade_wire(model: Model, axis: Axis) -> Wire:

@@ -133,21 +133,25 @@ def resistance_rows(
     Returns:
         Coefficients (m, 4) of 1 / M, alpha / M, c_0 / M and c_2 / M, and v' (m,) [m/s2].
     """
+    acting, v, y = _used(drives, lag, delay)
+    return np.column_stack((acting, -v, -np.ones_like(v), -v * np.abs(v))), y
+
+
+def _used(
+    drives: Sequence[Drive], lag: float, delay: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return acting force [N], v [m/s] and v' [m/s2] (m,) of the steps that count."""
     acting = [mean_force(d.force, d.step, lag, delay)[d.used] for d in drives]
-    v = np.concatenate([d.speed[:-1][d.used] for d in drives])
-    y = np.concatenate([d.acceleration[d.used] for d in drives])
-    return np.column_stack((np.concatenate(acting), -v, -np.ones_like(v), -v * np.abs(v))), y
+    v = [d.speed[:-1][d.used] for d in drives]
+    y = [d.acceleration[d.used] for d in drives]
+    return np.concatenate(acting), np.concatenate(v), np.concatenate(y)
 
 
 def solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
     """Solve the linear least-squares problem in theta = (1 / M, alpha / M)."""
-    rows, targets, groups = [], [], []
-    for number, drive in enumerate(drives):
-        acting = mean_force(drive.force, drive.step, lag, delay)[drive.used]
-        rows.append(np.column_stack((acting, -drive.speed[:-1][drive.used])))
-        targets.append(drive.acceleration[drive.used])
-        groups.append(np.full(acting.size, number))
-    X, y, group = np.concatenate(rows), np.concatenate(targets), np.concatenate(groups)
+    acting, v, y = _used(drives, lag, delay)
+    X = np.column_stack((acting, -v))
+    group = np.repeat(np.arange(len(drives)), [int(drive.used.sum()) for drive in drives])
     theta, scale = least_squares(X, y)
     if theta[1] < 0.0:  # a negative friction would drive: fit without friction
         theta = np.array(

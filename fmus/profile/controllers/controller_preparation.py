@@ -10,41 +10,26 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fmus.description.binaries import binary_of
-from fmus.description.model import Model, Value
+from fmus.description.model import Value
 from fmus.description.reading import read_model
 from fmus.profile.controllers.controller_draft import draft_controller
 from fmus.profile.controllers.controller_profile import ControllerProfile
 from fmus.profile.controllers.controller_wiring import ControllerWiring, wire_controller
-from fmus.profile.preparation import Bound, bounds_of
-from fmus.profile.step_plan import StepPlan, step_plan_of
+from fmus.profile.preparation import PreparedFmu, bounds_of
+from fmus.profile.step_plan import step_plan_of
 
 
 @dataclass(frozen=True)
-class PreparedController:
+class PreparedController(PreparedFmu):
     """A controller that is ready to be unpacked and loaded.
 
     Attributes:
-        model: Model of the FMU.
         profile: Profile by which it is called.
         wiring: Variables for its inputs and its answer.
-        step_plan: Relation of the control steps to the FMU's steps.
-        bounds: Bounds of the inputs.
-        step_size: Step size between two questions [s].
-        binary: Library for this platform, by its name in the archive.
     """
 
-    model: Model
     profile: ControllerProfile
     wiring: ControllerWiring
-    step_plan: StepPlan
-    bounds: tuple[Bound, ...]
-    step_size: float
-    binary: str
-
-    @property
-    def path(self) -> Path:
-        """Path of the FMU."""
-        return self.model.path
 
 
 def prepare_controller(

@@ -15,7 +15,7 @@ from fmus.profile.controllers.controller_profile import (
     ControllerProfile,
 )
 from fmus.profile.tables import Axis
-from fmus.profile.wires import Wire, interface_of, make_wire
+from fmus.profile.wires import Wire, distinct, interface_of, make_wire
 
 
 @dataclass(frozen=True)
@@ -80,20 +80,16 @@ def wire_controller(
 
 
 def _inputs(model: Model, profile: ControllerProfile) -> tuple[Wire, ...]:
-    wires: dict[Channel, Wire] = {}
-    for role in TOLD:
-        axis = getattr(profile.inputs, role)
-        if axis is None:
-            continue
-        axes = _series(model, role, axis) if role in SERIES else [axis]
-        for found in [make_wire(model, "inputs", role, one) for one in axes]:
-            if found.channel in wires:
-                raise FmuVariableError(
-                    f"{model.path}: [inputs.{role}] variable '{found.channel.name}' is that of "
-                    f"[inputs.{wires[found.channel].role}] already; expected another one"
-                )
-            wires[found.channel] = found
-    return tuple(wires.values())
+    named = ((role, getattr(profile.inputs, role)) for role in TOLD)
+    return distinct(
+        model,
+        (
+            make_wire(model, "inputs", role, one)
+            for role, axis in named
+            if axis is not None
+            for one in (_series(model, role, axis) if role in SERIES else [axis])
+        ),
+    )
 
 
 def _series(model: Model, role: str, axis: Axis) -> list[Axis]:

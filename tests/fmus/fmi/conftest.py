@@ -12,6 +12,7 @@ from fmus import fmi
 from fmus.description.binaries import binary_of
 from fmus.description.model import Channel, Kind
 from fmus.description.reading import read_model
+from fmus.profile.tables import Stepping
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -25,7 +26,7 @@ def load(tmp_path: Path) -> Iterator[Callable[..., Instance]]:
     """Load an FMU; it is closed after the test."""
     with ExitStack() as stack:
 
-        def loaded(path, kind=None, **options):
+        def loaded(path, kind=None, rewinds=True, **options):
             model = read_model(path)
             interface = (
                 model.interfaces[Kind(kind)] if kind else next(iter(model.interfaces.values()))
@@ -33,7 +34,8 @@ def load(tmp_path: Path) -> Iterator[Callable[..., Instance]]:
             folder = tmp_path / f"extracted {len(list(tmp_path.iterdir()))} ä%"
             with zipfile.ZipFile(path) as archive:
                 archive.extractall(folder)
-            instance = fmi.load(model, interface, folder, binary_of(model, interface), **options)
+            binary, stepping = binary_of(model, interface), Stepping(**options)
+            instance = fmi.load(model, interface, folder, binary, stepping, rewinds=rewinds)
             stack.callback(instance.close)
             return instance
 
