@@ -9,6 +9,7 @@ import heapq
 import itertools
 from collections import defaultdict
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -60,6 +61,9 @@ class Tree:
 class WalkGraph:
     """The portals, and the gates of the routes between them; each is built when it is first needed.
 
+    Functions that keep their results: ``interior`` of a walkingarea, ``portals_of`` an end,
+    ``portals_in`` a walkingarea, ``towards`` an end, and ``across`` a crossing.
+
     Args:
         survey: Contents of the network file.
     """
@@ -80,12 +84,12 @@ class WalkGraph:
             self._add(link)
         self._inherit_signals()
         self._portals: list[Portal] = []
-        self._portals_of: dict[End, list[int]] = {}
-        self._portals_in: dict[str, list[int]] = {}
-        self._interiors: dict[str, Interior] = {}
-        self._trees: dict[End, Tree] = {}
+        self.interior = cache(self._interior)
+        self.portals_of = cache(self._portals_of)
+        self.portals_in = cache(self._portals_in)
+        self.towards = cache(self._towards)
         self._inside: dict[tuple[int, int, int], Array] = {}
-        self._across: dict[tuple[int, int], Array] = {}
+        self.across = cache(self._across)
 
     def _add(self, link: Link) -> None:
         """Note which ends meet; a signal counts for entering a crossing from an area."""
@@ -116,12 +120,9 @@ class WalkGraph:
                 for area in self._links.get(End(signal.crossing, last), ()):
                     self._signal_of.setdefault((signal.crossing, area), i)
 
-    def interior(self, area: str) -> Interior:
+    def _interior(self, area: str) -> Interior:
         """Return the inside of a walkingarea."""
-        found = self._interiors.get(area)
-        if found is None:
-            found = self._interiors[area] = Interior(self._survey.walkingareas[area])
-        return found
+        return Interior(self._survey.walkingareas[area])
 
     def lane(self, edge: str) -> PedLane:
         """Return the lane of an edge or crossing."""
@@ -139,25 +140,17 @@ class WalkGraph:
         """Return the portal with this index."""
         return self._portals[index]
 
-    def portals_of(self, end: End) -> list[int]:
+    def _portals_of(self, end: End) -> range:
         """Return the portals at one end of a lane or crossing."""
-        found = self._portals_of.get(end)
-        if found is None:
-            found = self._portals_of[end] = []
-            for area in dict.fromkeys(self._links.get(end, ())):
-                found.append(len(self._portals))
-                self._portals.append(Portal(end, area, self._gate_into(end, area)))
-        return found
+        first, areas = len(self._portals), dict.fromkeys(self._links.get(end, ()))
+        self._portals += [Portal(end, area, self._gate_into(end, area)) for area in areas]
+        return range(first, len(self._portals))
 
-    def portals_in(self, area: str) -> list[int]:
+    def _portals_in(self, area: str) -> list[int]:
         """Return the portals of a walkingarea."""
-        found = self._portals_in.get(area)
-        if found is None:
-            ends = dict.fromkeys(self._ends_at.get(area, ()))
-            portals = itertools.chain.from_iterable(self.portals_of(end) for end in ends)
-            found = [i for i in portals if self._portals[i].area == area]
-            self._portals_in[area] = found
-        return found
+        ends = dict.fromkeys(self._ends_at.get(area, ()))
+        portals = itertools.chain.from_iterable(self.portals_of(end) for end in ends)
+        return [i for i in portals if self._portals[i].area == area]
 
     def lane_end(self, end: End) -> Array:
         """Return the gate (1, 7) across the end of a lane or crossing, walked out of it."""
@@ -176,11 +169,8 @@ class WalkGraph:
 
     # --- routes -------------------------------------------------------------------------------
 
-    def towards(self, target: End) -> Tree:
+    def _towards(self, target: End) -> Tree:
         """Find the shortest routes to a lane's end from all portals of its junction (Dijkstra)."""
-        found = self._trees.get(target)
-        if found is not None:
-            return found
         tree = Tree({}, {})
         heap = [(0.0, i, True, -1) for i in self.portals_of(target)]
         while heap:
@@ -199,7 +189,6 @@ class WalkGraph:
                 onwards = self._crossing_lines[here.end.edge].length
                 for j in self.portals_of(End(here.end.edge, not here.end.last)):
                     heapq.heappush(heap, (distance + onwards, j, True, i))
-        self._trees[target] = tree
         return tree
 
     def inside(self, start: int, end: int, track: int = 0) -> Array:
@@ -213,16 +202,12 @@ class WalkGraph:
             self._inside[end, start, -track] = turned(found)
         return found
 
-    def across(self, start: int, end: int) -> Array:
+    def _across(self, start: int, end: int) -> Array:
         """Return the gates (k, 7) of a crossing with both portals; the first has the signal."""
-        found = self._across.get((start, end))
-        if found is None:
-            first, last = self._portals[start], self._portals[end]
-            kerb = turned(first.gate)
-            kerb[0, 6] = self._signal_of.get((first.end.edge, first.area), -1)
-            found = np.vstack([kerb, self.along_crossing(first.end), last.gate])
-            self._across[start, end] = found
-        return found
+        first, last = self._portals[start], self._portals[end]
+        kerb = turned(first.gate)
+        kerb[0, 6] = self._signal_of.get((first.end.edge, first.area), -1)
+        return np.vstack([kerb, self.along_crossing(first.end), last.gate])
 
     def along_crossing(self, start: End) -> Array:
         """Return the gates (k, 7) of a crossing's bends, walked from one end to the other."""

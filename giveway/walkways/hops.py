@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -51,9 +52,9 @@ class Pieces:
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:
         self._edges = survey.edges
         self._graph = graph
-        self._hops: dict[tuple[End, End], Hop] = {}
-        self._hop_gates: dict[tuple[End, End, int], Array] = {}
-        self._bends: dict[Stretch, Array] = {}
+        self._hop = cache(self._new_hop)
+        self._over = cache(self._gates_of_hop)
+        self.bends = cache(self._bends)  # gates of an edge's bends, by its stretch
 
     def directed(self, edges: list[str]) -> list[list[Stretch]]:
         """Return the edges with directions, which follow from the junctions that they share."""
@@ -109,12 +110,6 @@ class Pieces:
                 pieces.append(self.bends(there))
         return pieces
 
-    def _hop(self, start: End, end: End) -> Hop:
-        found = self._hops.get((start, end))
-        if found is None:
-            found = self._hops[start, end] = self._new_hop(start, end)
-        return found
-
     def _new_hop(self, start: End, end: End) -> Hop:
         graph = self._graph
         tree = graph.towards(end)
@@ -128,19 +123,14 @@ class Pieces:
         open_ground = not graph.portals_of(start) and not graph.portals_of(end)
         return Hop(None, distance, (meets and open_ground) or distance < _AT_END)
 
-    def _over(self, start: End, end: End, track: int) -> Array:
+    def _gates_of_hop(self, start: End, end: End, track: int) -> Array:
         """Return the gates of a hop, with those across the ends of both lanes."""
-        found = self._hop_gates.get((start, end, track))
-        if found is None:
-            graph = self._graph
-            hop = self._hop(start, end)
-            if hop.portal is None:
-                onwards = g.turned(graph.lane_end(end))
-            else:
-                onwards = graph.follow(hop.portal, graph.towards(end), track)
-            found = np.concatenate([graph.lane_end(start), onwards])
-            self._hop_gates[start, end, track] = found
-        return found
+        graph, portal = self._graph, self._hop(start, end).portal
+        if portal is None:
+            onwards = g.turned(graph.lane_end(end))
+        else:
+            onwards = graph.follow(portal, graph.towards(end), track)
+        return np.concatenate([graph.lane_end(start), onwards])
 
     def junction(self, end: End) -> str:
         """Return the junction at an end."""
@@ -150,16 +140,11 @@ class Pieces:
         """Return the station [m] of an end on its edge's centre line."""
         return self._graph.lines[end.edge].length if end.last else 0.0
 
-    def bends(self, stretch: Stretch) -> Array:
+    def _bends(self, stretch: Stretch) -> Array:
         """Return the gates of an edge's bends, without its ends."""
-        found = self._bends.get(stretch)
-        if found is None:
-            half_width = usable_half_width(self._edges[stretch.edge].lane.width)
-            found = self._graph.lines[stretch.edge].gates(half_width)[1:-1]
-            if not stretch.forward:
-                found = g.turned(found)
-            self._bends[stretch] = found
-        return found
+        half_width = usable_half_width(self._edges[stretch.edge].lane.width)
+        found = self._graph.lines[stretch.edge].gates(half_width)[1:-1]
+        return found if stretch.forward else g.turned(found)
 
     def partly(self, stretch: Stretch, start: float | None, end: float) -> Array:
         """Return the gates of an edge after ``start`` [m] (None: its entry) up to ``end`` [m]."""
