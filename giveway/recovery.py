@@ -21,7 +21,7 @@ from giveway.processes.locks import FolderInUseError, locked
 from giveway.processes.supervisor import Verdict, journals, verdict_on_left
 from giveway.results.ego_result import results_of_egos
 from giveway.results.folder import is_marked_only, release_folder, taken_folder
-from giveway.results.provenance import manifest
+from giveway.results.provenance import RunFacts, manifest
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
 from sumo_scenarios import Scenario
@@ -194,12 +194,8 @@ def _result_of(
         facts=manifest(
             config,
             scenario,
+            RunFacts(pedestrians=rows.ledger),
             config_text=contents.meta["config"],
-            vehicles={},
-            pedestrians=rows.ledger,
-            traffic={},
-            sumo={},
-            time_step=None,
             remarks=(),
             ending=str(ending),
             error=None if failure is None else str(failure),

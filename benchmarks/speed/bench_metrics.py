@@ -17,6 +17,7 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     Anticipation,
     Critical,
+    DriveSetting,
     pedestrian_metrics,
     post_encroachment_time,
     proximity,
@@ -100,9 +101,7 @@ def main() -> None:
                 table,
                 Critical(0, 0.0),
                 Anticipation(),
-                goal=40.0,
-                safe_distance=8.0,
-                controller="mpc-paper",
+                DriveSetting(40.0, 8.0, "mpc-paper"),
             ),
         )
         times = " ".join(f"{milliseconds(call, repetitions):8.3f}" for call in calls)

@@ -18,7 +18,7 @@ from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.results import law, mismatch, vehicle_contacts
 from giveway.results.effect import Effect, who_gave_way
 from giveway.results.ego_result import EgoResult, results_of_egos
-from giveway.results.provenance import manifest
+from giveway.results.provenance import RunFacts, manifest
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
 from giveway.sumo.network.painted_marks import road_marks
@@ -66,16 +66,20 @@ def outcome(
         facts=manifest(
             parts.config,
             scenario,
+            RunFacts(
+                pedestrians=parts.roster.ledger,
+                vehicles={
+                    ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos
+                },
+                traffic={} if parts.yielding is None else parts.yielding.report,
+                sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
+                time_step=parts.time_step,
+                code=provenance(parts.config),
+            ),
             config_text=None,  # it is written later, since many runs of a study need none
-            vehicles={ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos},
-            pedestrians=parts.roster.ledger,
-            traffic={} if parts.yielding is None else parts.yielding.report,
-            sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
-            time_step=parts.time_step,
             remarks=remarks,
             ending=str(ending),
             error=None if error is None else str(error),
-            code=provenance(parts.config),
         ),
         sumo_messages=parts.sumo.messages,
         road=parts.sumo.lanes.areas(),

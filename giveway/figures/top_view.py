@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from giveway.figures.conflict_points import Conflict, mark_conflicts
-from giveway.figures.road import Road, draw_marks, draw_road, states_at
+from giveway.figures.conflict_points import mark_conflicts
+from giveway.figures.road import Backdrop, Road, draw_marks, draw_road, states_at
 from giveway.figures.style import (
     BLACK,
     GREY,
@@ -27,8 +27,7 @@ from giveway.figures.style import (
 from giveway.figures.view import Box
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.groups import PedestrianGroups
-from giveway.run_data.road_marks import UNMARKED, RoadMarks
-from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, SignalTrack
+from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack
 
 TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
 """Colours of time, without the last third, which is too light for a line on white."""
@@ -45,6 +44,7 @@ NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])
 SEGMENTS = 150  # Largest number of segments per trajectory
 # Time [s] without a record after which a trajectory begins anew, since SUMO moved the person
 PAUSE = 2.5
+NOTHING = Backdrop()
 
 
 @styled
@@ -55,11 +55,7 @@ def top_view_figure(
     body_radius: float,
     *,
     times: Sequence[float] | None = None,
-    background: BackgroundTrack | None = None,
-    road: Road | None = None,
-    marks: RoadMarks = UNMARKED,
-    signals: SignalTrack | None = None,
-    conflicts: Sequence[Conflict] = (),
+    backdrop: Backdrop = NOTHING,
     title: str = "",
 ) -> Figure:
     """Draw whole trajectories coloured by time, and the scene at some instants, to scale.
@@ -72,12 +68,7 @@ def top_view_figure(
         times: Times of the snapshots [s], each taken at the nearest control instant. With None
             there are six over the time in which a pedestrian is within 10 m of the ego: one at the
             closest approach, the others evenly.
-        background: Other vehicles, drawn in the snapshots. After their latest instant they are
-            assumed to drive straight on.
-        road: Areas and lines to draw underneath.
-        marks: Crossings and stop lines.
-        signals: States of the lights; in a snapshot, stop lines have the colour of that instant.
-        conflicts: Conflicts to mark among the trajectories.
+        backdrop: Road, lights, other vehicles and conflicts to draw.
         title: Title of the whole figure.
 
     Raises:
@@ -98,12 +89,12 @@ def top_view_figure(
 
     figure, overview, panels = _arrange(whole, parts)
     colours = _colours(ego.time)
-    road = [line for line in road or () if whole.touches(line)]
+    road = [line for line in backdrop.road if whole.touches(line)]
     draw_road(overview, road)
-    draw_marks(overview, marks, None, whole)
+    draw_marks(overview, backdrop.marks, None, whole)
     lines = _draw_pedestrian_trajectories(overview, ego.time, crowd, colours)
     _draw_ego_trajectory(overview, ego, colours)
-    mark_conflicts(overview, conflicts)
+    mark_conflicts(overview, backdrop.conflicts)
     for k in steps:
         colour = lines.cmap(colours(ego.time[k]))
         overview.add_patch(Polygon(corners[k], fill=False, edgecolor=colour, linewidth=1.4))
@@ -116,9 +107,9 @@ def top_view_figure(
     figure.colorbar(lines, ax=overview, label="Time [s]", shrink=0.8, aspect=30)
     for axes, k, part in zip(panels, steps, parts, strict=True):
         draw_road(axes, [line for line in road if part.touches(line)])
-        draw_marks(axes, marks, states_at(signals, float(ego.time[k])), part)
-        if background is not None:
-            _draw_background(axes, float(ego.time[k]), background)
+        draw_marks(axes, backdrop.marks, states_at(backdrop.signals, float(ego.time[k])), part)
+        if backdrop.background is not None:
+            _draw_background(axes, float(ego.time[k]), backdrop.background)
         _draw_scene(axes, k, corners[k], crowd, body_radius)
         part.apply(axes)
         told = ", closest approach" if k == closest else ""
@@ -129,7 +120,7 @@ def top_view_figure(
 
 @styled
 def crowd_view_figure(
-    time: NDArray[np.float64], crowd: CrowdTrack, *, road: Road | None = None, title: str = ""
+    time: NDArray[np.float64], crowd: CrowdTrack, *, road: Road = (), title: str = ""
 ) -> Figure:
     """Draw the trajectories of a run without an ego, coloured by time, to scale.
 
@@ -150,7 +141,7 @@ def crowd_view_figure(
         layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8)
     )
     axes = figure.subplots()
-    draw_road(axes, [line for line in road or () if whole.touches(line)])
+    draw_road(axes, [line for line in road if whole.touches(line)])
     lines = _draw_pedestrian_trajectories(axes, time, crowd, _colours(time))
     whole.apply(axes)
     axes.set(xlabel="x [m]", ylabel="y [m]", title="Trajectories, begun at the circles")

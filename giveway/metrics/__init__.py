@@ -23,7 +23,7 @@ from giveway.metrics.pedestrians import (
 )
 from giveway.metrics.severity import SEVERITIES, SEVERITY_FIELDS, severities
 from giveway.metrics.standing import stops, waiting_times
-from giveway.metrics.summary import SUMMARY_FIELDS, Summary, summarise
+from giveway.metrics.summary import SUMMARY_FIELDS, DriveSetting, Summary, summarise
 from giveway.metrics.vehicles import VehicleContact, vehicle_contacts
 
 __all__ = [
@@ -43,6 +43,7 @@ __all__ = [
     "Critical",
     "DelaySummary",
     "Delays",
+    "DriveSetting",
     "Proximity",
     "Summary",
     "VehicleContact",

@@ -130,25 +130,32 @@ class Summary:
 SUMMARY_FIELDS = columns_of(Summary)
 
 
+@dataclass(frozen=True)
+class DriveSetting:
+    """The settings by which a drive is summarised."""
+
+    goal: float  # [m] position that ends the run
+    safe_distance: float  # [m] d_safe
+    controller: str  # name of the controller
+    reference_speed: float | None = None  # [m/s] v_r, or None if the lanes' limits count
+    stop_speed: float = STANDING  # [m/s] speed below which the ego stands
+    people: WorstMotion | None = None  # assumption of the safety layer, or None without the layer
+
+
 def summarise(
     ego: EgoTrack,
     per_pedestrian: "pd.DataFrame | Mapping[str, NDArray[Any]]",
     critical: Critical,
     met: Anticipation,
+    setting: DriveSetting,
     *,
-    goal: float,
-    safe_distance: float,
-    reference_speed: float | None = None,
-    stop_speed: float = STANDING,
-    controller: str,
-    people: WorstMotion | None = None,
     hasty: NDArray[np.int64] = _NOBODY,
     vehicles: Sequence[VehicleContact] = (),
 ) -> Summary:
     """Summarise a run in one row.
 
     A control instant stands for the time until the next one. Therefore a stop lasts from the first
-    instant below ``stop_speed`` to the first one that is not, or to the end of the track. One
+    instant below the stop speed to the first one that is not, or to the end of the track. One
     uninterrupted stop is one waiting time.
 
     Args:
@@ -156,13 +163,8 @@ def summarise(
         per_pedestrian: Table of ``pedestrian_metrics``, or its columns.
         critical: Conflicts of the drive.
         met: Anticipation of the drive.
-        goal: Position that ends the run [m]; the time at which it is reached is interpolated
+        setting: Settings of the drive. The time at which the goal is reached is interpolated
             between control instants.
-        safe_distance: Safe distance d_safe [m].
-        reference_speed: Reference speed v_r [m/s], or None if the lanes' limits count.
-        stop_speed: Speed [m/s] below which the ego stands.
-        controller: Name of the controller.
-        people: Worst motion of people that the safety layer assumes, or None without the layer.
         hasty: Rows of ``per_pedestrian`` of the people who set out from a sidewalk harder than
             that.
         vehicles: Background vehicles with which the ego had contact.
@@ -174,7 +176,8 @@ def summarise(
         raise ValueError("ego track: no instants; a summary needs at least one")
     simulated_time = float(ego.time[-1] - ego.time[0])
     travelled = float(ego.position[-1] - ego.position[0])
-    waits = waiting_times(ego, stop_speed)
+    goal, people = setting.goal, setting.people
+    waits = waiting_times(ego, setting.stop_speed)
     jerk = np.diff(ego.acceleration) / np.diff(ego.time)
 
     def column(name: str) -> NDArray[Any]:
@@ -202,12 +205,12 @@ def summarise(
         peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
         mpc_feasibility_rate=(
             float(np.mean(ego.controller == "mpc"))
-            if DECLARED.get(controller, Defaults()).optimises
+            if DECLARED.get(setting.controller, Defaults()).optimises
             else np.nan
         ),
         safety_share=float(np.mean(ego.controller == SAFETY)),
         minimum_gap=_extreme(ego.gap, np.min),
-        share_below_safe_distance=float(np.mean(ego.gap < safe_distance)),
+        share_below_safe_distance=float(np.mean(ego.gap < setting.safe_distance)),
         minimum_clearance=_extreme(clearances, np.min),
         overlaps=int(np.count_nonzero(clearances < 0.0)),
         frontal_contacts=int(np.count_nonzero(frontal)),
@@ -227,7 +230,7 @@ def summarise(
         vehicle_contact_time=float(sum(contact.duration for contact in vehicles)),
         hard_brakes=len(brakes),
         hard_brakes_without_cause=sum(not _has_cause(ego, k) for k in brakes),
-        slowed=slowed(ego, reference_speed),
+        slowed=slowed(ego, setting.reference_speed),
         beyond_assumption=float(np.count_nonzero(beyond)) if people else np.nan,
         contacts_beyond=float(np.count_nonzero(beyond & frontal)) if people else np.nan,
         ttc_at_slowing=met.ttc_at_slowing,

@@ -18,6 +18,7 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.journal.recorded import RecordedEgo, RecordedRows
 from giveway.metrics import (
     DELAY_FIELDS,
+    DriveSetting,
     VehicleContact,
     anticipation,
     conflicts,
@@ -171,12 +172,14 @@ class EgoResult:
                 reference_speed=reference,
                 stop_speed=config.record.stop_speed,
             ),
-            goal=self.goal,
-            safe_distance=config.regulation.safe_distance,
-            reference_speed=reference,
-            stop_speed=config.record.stop_speed,
-            controller=config.controller_name,
-            people=self.people_at_worst,
+            DriveSetting(
+                self.goal,
+                config.regulation.safe_distance,
+                config.controller_name,
+                reference,
+                config.record.stop_speed,
+                self.people_at_worst,
+            ),
             hasty=self.hasty,
             vehicles=self.vehicle_contacts,
         )

@@ -16,6 +16,7 @@ from giveway.figures import (
 )
 from giveway.figures.conflict_points import Conflict
 from giveway.figures.density import density_figure
+from giveway.figures.road import Backdrop
 from giveway.figures.state import FARTHEST_SHOWN
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -80,11 +81,13 @@ def top_view_picture(result: RunTables, ego: EgoResult) -> Figure:
         ego.crowd,
         ego.shape,
         ego.body_radius,
-        background=result.background_track,
-        road=result.road,
-        marks=result.marks,
-        signals=result.signal_track,
-        conflicts=_conflicts(ego),
+        backdrop=Backdrop(
+            result.road,
+            result.marks,
+            result.signal_track,
+            result.background_track,
+            _conflicts(ego),
+        ),
         title=_title(result, ego),
     )
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from giveway._version import __version__
 from giveway.config import RunConfig
@@ -63,37 +63,37 @@ def _seen_from(folder: Path, file: Path) -> str:
         return file.name
 
 
+class RunFacts(NamedTuple):
+    """The facts about a run that its configuration does not tell."""
+
+    pedestrians: Mapping[str, int]  # ledger of the pedestrians that giveway moved
+    vehicles: Mapping[str, Mapping[str, Any]] = MappingProxyType({})  # FMU of each ego
+    traffic: Mapping[str, float] = MappingProxyType({})  # counts of the yield layer
+    sumo: Mapping[str, float] = MappingProxyType({})  # seed and step length in effect
+    time_step: float | None = None  # [s], or None if the process died before it was known
+    code: Mapping[str, Mapping[str, Any]] = MappingProxyType({})  # plug-ins, by their sockets
+
+
 def manifest(
     config: RunConfig,
     scenario: Scenario,
+    facts: RunFacts,
     *,
     config_text: str | None,
-    vehicles: dict[str, dict[str, Any]],
-    pedestrians: dict[str, int],
-    traffic: dict[str, float],
-    sumo: dict[str, float],
-    time_step: float | None,
     remarks: Sequence[str],
     ending: str,
     error: str | None,
-    code: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
 ) -> dict[str, Any]:
     """Return the contents of ``manifest.json``, which do not depend on when the run was made.
 
     Args:
         config: Configuration of the run.
         scenario: Scenario of the run.
+        facts: Facts about the run.
         config_text: Configuration as it is written, or None if its hash is filled in later.
-        vehicles: FMU of each ego.
-        pedestrians: Ledger of the pedestrians that giveway moved.
-        traffic: Counts of the yield layer.
-        sumo: Seed and step length in effect.
-        time_step: Time step of the co-simulation [s], or None if the process died before it was
-            known.
         remarks: Remarks for the user.
         ending: Reason why the run ended.
         error: Error that ended the run, or None.
-        code: Provenance of plug-ins from other packages, under the keys of their sockets.
     """
     return {
         "ending": ending,
@@ -101,13 +101,13 @@ def manifest(
         "remarks": list(remarks),
         "reproduce": "giveway run --config config.toml --out ANOTHER_FOLDER",
         "seed": config.seed,
-        "time_step": time_step,
-        "sumo": sumo,
+        "time_step": facts.time_step,
+        "sumo": dict(facts.sumo),
         "scenario": {"name": scenario.name, "sha256": scenario_hashes(scenario)},
-        "vehicles": vehicles,
-        **code,
-        "pedestrians": pedestrians,
-        "traffic": traffic,
+        "vehicles": dict(facts.vehicles),
+        **facts.code,
+        "pedestrians": facts.pedestrians,
+        "traffic": dict(facts.traffic),
         CONFIGURATION: None if config_text is None else sha256(config_text.encode()),
         "software": dict(software_versions()),
     }

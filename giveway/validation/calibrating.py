@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,16 @@ DEFAULT = (
     "vehicle_lookahead",
 )
 """Parameters that are fitted by default: the gain of each sub-force, and the vehicle's reach."""
+
+
+class HeldOut(NamedTuple):
+    """The choice of the clips that a fit does not use."""
+
+    share: float = 0.3  # share of the clips, equal in each kind of clip
+    seed: int = 0  # seed of the choice
+
+
+HELD_OUT = HeldOut()
 
 
 @dataclass(frozen=True)
@@ -85,11 +96,9 @@ def calibrate(
     start: VciParameters,
     names: Sequence[str] = DEFAULT,
     *,
-    held_out: float = 0.3,
-    seed: int = 0,
+    held_out: HeldOut = HELD_OUT,
     own_pace: bool = True,
     evaluations: int = 400,
-    protocol: Protocol | None = None,
     progress: Callable[[int, int, float], None] = lambda _done, _all, _best: None,
 ) -> Calibration:
     """Fit the parameters ``names`` to some of the clips, and judge them on the others.
@@ -98,26 +107,24 @@ def calibrate(
         clips: Clips from :func:`giveway.validation.read_clips`.
         start: Start of the search; parameters that are not named stay.
         names: Fields of :class:`VciParameters`.
-        held_out: Share of the clips that the fit does not use, equal in each kind of clip.
-        seed: Seed of the choice of these clips.
-        own_pace: True if each pedestrian's desired speed is the present speed, False if it is the
+        held_out: Clips that the fit does not use.
+        own_pace: True: each pedestrian's desired speed is the present speed; False: the
             parameters'.
-        evaluations: Largest number of evaluations of the objective.
-        protocol: Rules for cutting and judging clips, or None for those of :func:`protocol_of`.
-        progress: Function of the evaluations done, their limit, and the smallest error so far.
+        evaluations: Evaluations of the objective, at most.
+        progress: Function of evaluations done, their limit, and the least error so far.
 
     Raises:
-        ConfigError: a name is no parameter's or cannot be fitted, or people would tremble with the
+        ConfigError: a name is no parameter's or cannot be fitted, or people would tremble by the
             parameters at the start.
-        DatasetError: there are too few clips, or none is long enough.
+        DatasetError: too few clips are there, or none is long enough.
     """
     names = _checked(names, start)
     try:
         require_steady(start, LONGEST_STEP)
     except ParameterError as error:
         raise ConfigError(f"--preset: {error}; start from another one, like SIM") from error
-    protocol = protocol or protocol_of(clips)
-    train, test = split(clips, held_out, seed)
+    protocol = protocol_of(clips)
+    train, test = split(clips, *held_out)
     judge = partial(_judged, protocol=protocol, own_pace=own_pace)
     objective = Objective(cut_windows(train, protocol), protocol, len(train), own_pace=own_pace)
     search = Search(objective, start, names, evaluations, progress)

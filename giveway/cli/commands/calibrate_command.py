@@ -13,7 +13,7 @@ from giveway.config.files.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
 from giveway.precompile import compile_kernels_once
 from giveway.validation import Calibration, calibrate, dataset_of, read_clips
-from giveway.validation.calibrating import Fit
+from giveway.validation.calibrating import Fit, HeldOut
 from giveway.validation.fitting import FACTOR
 
 
@@ -52,8 +52,7 @@ def calibrate_command(
             clips,
             first,
             names,
-            held_out=held_out,
-            seed=seed,
+            held_out=HeldOut(held_out, seed),
             own_pace=own_pace,
             evaluations=evaluations,
             progress=lambda done, of, best: count(done, of, f"error {best:.4f} m"),

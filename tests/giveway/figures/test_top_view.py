@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Polygon
 
 from giveway.figures import crowd_view_figure, top_view_figure
-from giveway.figures.road import LIGHTS
+from giveway.figures.road import LIGHTS, Backdrop
 from giveway.figures.top_view import VIEW, rectangle
 from giveway.figures.view import SLENDEREST
 from giveway.geometry.bodies import VehicleShape
@@ -116,7 +116,9 @@ def test_crossings_are_striped_and_stop_lines_coloured_by_light(run):
         (SignalHead(((27.0, 0.0), (27.0, -3.5)), "j", (1,)),),
     )
     signals = SignalTrack(np.array([0.0, 2.0]), np.array(["j", "j"]), np.array(["Gr", "rG"]))
-    figure = top_view_figure(ego, crowd, CAR, R, times=[1.0, 2.0], marks=marks, signals=signals)
+    figure = top_view_figure(
+        ego, crowd, CAR, R, times=[1.0, 2.0], backdrop=Backdrop(marks=marks, signals=signals)
+    )
     overview, (before, after) = panels(figure)
     for axes in (overview, before, after):
         stripes = [path.vertices for path in drawn(axes, PolyCollection, "stripes").get_paths()]
@@ -168,7 +170,9 @@ def test_the_road_lies_underneath(run):
     ego, crowd = run(5, 1, "mpc")
     area = np.array([(0.0, -2.0), (45.0, -2.0), (45.0, 2.0), (0.0, 2.0), (0.0, -2.0)])
     edge = np.array([(0.0, 0.0), (45.0, 0.0)])
-    overview, snapshots = panels(top_view_figure(ego, crowd, CAR, R, road=[area, edge]))
+    overview, snapshots = panels(
+        top_view_figure(ego, crowd, CAR, R, backdrop=Backdrop([area, edge]))
+    )
     for axes in (overview, *snapshots):
         filled = axes.patches[0]
         np.testing.assert_array_equal(filled.get_xy(), area)
@@ -222,7 +226,9 @@ def test_other_vehicles_are_drawn_where_they_are_by_then(run):
         length=one * 4.0,
         width=one * 2.0,
     )
-    figure = top_view_figure(ego, crowd, VehicleShape(), 0.27, times=[0.0, 1.0], background=car)
+    figure = top_view_figure(
+        ego, crowd, VehicleShape(), 0.27, times=[0.0, 1.0], backdrop=Backdrop(background=car)
+    )
     (at_0,), (at_1,) = (
         [patch for patch in axes.patches if patch.get_label() == "background"]
         for axes in figure.axes
@@ -248,7 +254,7 @@ def test_on_a_long_drive_the_snapshots_go_along_with_the_ego(run):
 def test_roads_out_of_the_view_are_not_drawn(run):
     ego, crowd = run(5, 1, "mpc")
     near = np.array([(0, -2), (50, -2), (50, 2), (0, 2), (0, -2)], dtype=float)
-    figure = top_view_figure(ego, crowd, CAR, R, road=[near, near + 1000.0])
+    figure = top_view_figure(ego, crowd, CAR, R, backdrop=Backdrop([near, near + 1000.0]))
     overview, _ = panels(figure)
     roads = [patch for patch in overview.patches if len(patch.get_xy()) == len(near)]
     assert sum(np.array_equal(road.get_xy(), near) for road in roads) == 1

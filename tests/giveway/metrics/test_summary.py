@@ -16,6 +16,7 @@ from giveway.metrics import (
     SUMMARY_FIELDS,
     Anticipation,
     Critical,
+    DriveSetting,
     Summary,
     summarise,
 )
@@ -27,7 +28,7 @@ NOBODY = pd.DataFrame(columns=[column.name for column in PEDESTRIAN_FIELDS], dty
 
 def summary_of(track, table=NOBODY, critical=Critical(0, 0.0), **arguments):  # noqa: B008
     arguments = {"goal": 4.0, "safe_distance": 8.0, "controller": "mpc"} | arguments
-    return summarise(track, table, critical, Anticipation(), **arguments)
+    return summarise(track, table, critical, Anticipation(), DriveSetting(**arguments))
 
 
 @pytest.mark.parametrize(

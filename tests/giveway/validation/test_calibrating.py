@@ -10,14 +10,14 @@ import pytest
 from giveway.cli.validation_commands import _PARAMETERS
 from giveway.errors import ConfigError, DatasetError
 from giveway.validation import calibrate
-from giveway.validation.calibrating import DEFAULT, split
+from giveway.validation.calibrating import DEFAULT, HeldOut, split
 from pedestrian_model import SIM
 from tests.giveway.validation.conftest import TRUTH
 
 
 def test_it_finds_the_parameters_that_the_clips_were_made_with(clips) -> None:
     names = ("destination_gain", "vehicle_strength")
-    found = calibrate(clips, SIM, names, own_pace=False, held_out=0.34)
+    found = calibrate(clips, SIM, names, own_pace=False, held_out=HeldOut(0.34))
     assert found.converged
     assert found.parameters.destination_gain == pytest.approx(300.0, rel=0.03)
     assert found.parameters.vehicle_strength == pytest.approx(1500.0, rel=0.06)
@@ -30,7 +30,8 @@ def test_it_finds_the_parameters_that_the_clips_were_made_with(clips) -> None:
 
 def test_the_same_seed_gives_the_same_bits(clips) -> None:
     first, second = (
-        calibrate(clips, SIM, ("destination_gain",), seed=3, evaluations=12) for _ in range(2)
+        calibrate(clips, SIM, ("destination_gain",), held_out=HeldOut(seed=3), evaluations=12)
+        for _ in range(2)
     )
     assert first.parameters == second.parameters
     assert (first.train, first.held_out) == (second.train, second.held_out)
@@ -77,7 +78,7 @@ def test_too_few_clips_to_hold_one_out(clips) -> None:
     with pytest.raises(DatasetError, match="1 is too few to hold 1 out"):
         calibrate(clips[:1], SIM, ["mass"])
     with pytest.raises(ConfigError, match=r"--held-out 1\.5"):
-        calibrate(clips, SIM, ["mass"], held_out=1.5)
+        calibrate(clips, SIM, ["mass"], held_out=HeldOut(1.5))
 
 
 def test_the_command_line_offers_the_packages_own_default() -> None:
