@@ -1,8 +1,8 @@
 """Tests of whether an FMU behaves like a vehicle: dry runs, step halving, identification."""
 
-from fmus.checking.check import CheckReport, check
+from fmus.checking.check import CheckReport, check, expected_of
 from fmus.checking.findings import Finding, Verdict
-from fmus.checking.identification import Identification, identify
+from fmus.checking.identification import Identification, Mpc, identify
 from fmus.checking.manoeuvres import (
     Opener,
     Phase,
@@ -24,6 +24,7 @@ __all__ = [
     "Convergence",
     "Finding",
     "Identification",
+    "Mpc",
     "Opener",
     "Phase",
     "Trace",
@@ -31,6 +32,7 @@ __all__ = [
     "check",
     "convergence",
     "drive",
+    "expected_of",
     "goes_the_wrong_way",
     "identify",
     "opener_of",

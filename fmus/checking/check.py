@@ -17,6 +17,7 @@ from fmus.profile.vehicle_profile import VehicleProfile
 DEFAULT_MASS = 1000.0  # [kg] M of the controllers' model if no mass is given
 GENTLE = 3.0  # [m/s2] acceleration of the manoeuvres, by the controller's model
 FASTEST_START = 4.0  # [m/s] speed of the rolling start if the run starts at 0
+HORIZON = 15  # [steps] horizon of the MPC at which its prediction is judged
 DRIVE, COAST, BRAKE = 3.0, 3.0, 5.0  # [s] durations of the phases
 
 _DRIVES = ("idle", "response", "again", "rolling", "full")
@@ -51,46 +52,55 @@ class CheckReport:
         return all(finding.verdict != "fail" for finding in self.findings)
 
 
-@processes_reused()
-def check(
-    opener: Opener,
-    *,
-    step_size: float,
-    fmu_step: float | None = None,
-    unguarded: Opener | None = None,
+def expected_of(
     profile: VehicleProfile | None = None,
+    *,
     mass: float | None = None,
     vehicle_class: str | None = None,
     friction: float = 100.0,
-    horizon: int = 15,
     force_limit: float = 8000.0,
     start_speed: float = FASTEST_START,
-    progress: Callable[[str], None] | None = None,
-) -> CheckReport:
-    """Dry-run a vehicle. Errors of the FMU become findings.
+) -> Expected:
+    """Return the assumptions about a vehicle.
 
     Args:
-        opener: Function that opens the vehicle.
-        step_size: Step size of the run [s].
-        fmu_step: Step of the FMU itself [s], or None for ``step_size``.
-        unguarded: Function that opens the vehicle without guards, for a drive that guards have
-            stopped.
         profile: Profile of the vehicle, for advice on its lines.
         mass: Mass [kg] of the vehicle, which is also M of the controller's model, or None if it is
             unknown. Then M is that of the profile's [model], or 1000 kg without one.
         vehicle_class: Vehicle class of SUMO, from which the mass is roughly known.
         friction: Friction alpha of the controller's model [N.s/m].
-        horizon: Horizon of the MPC [steps].
         force_limit: Largest force u_max [N].
         start_speed: Start speed of the rolling start [m/s].
-        progress: Function that receives the name of each drive before it begins.
     """
     known = known_masses(profile, mass, vehicle_class)
     mass = DEFAULT_MASS if mass is None else mass
     if profile is not None and profile.model is not None:
         mass, friction = profile.model.mass, profile.model.friction
     force = min(force_limit, GENTLE * mass)
-    expected = Expected(mass, friction, horizon, start_speed, force, force_limit, profile, known)
+    return Expected(mass, friction, HORIZON, start_speed, force, force_limit, profile, known)
+
+
+@processes_reused()
+def check(
+    opener: Opener,
+    expected: Expected,
+    *,
+    step_size: float,
+    fmu_step: float | None = None,
+    unguarded: Opener | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> CheckReport:
+    """Dry-run a vehicle. Errors of the FMU become findings.
+
+    Args:
+        opener: Function that opens the vehicle.
+        expected: Assumptions about the vehicle, from :func:`expected_of`.
+        step_size: Step size of the run [s].
+        fmu_step: Step of the FMU itself [s], or None for ``step_size``.
+        unguarded: Function that opens the vehicle without guards, for a drive that guards have
+            stopped.
+        progress: Function that receives the name of each drive before it begins.
+    """
     report = CheckReport(expected)
     tell = progress or (lambda _name: None)
     go_on = _drive_all(report, opener, unguarded, tell)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,6 +36,14 @@ VALIDATION = (  # shares of the largest force, each held for HELD; no level of t
     0.05, -0.1, 0.65, -0.5, 0.4, -0.05, 0.0, -0.25,
 )  # fmt: skip
 HELD = 0.6  # [s]
+
+
+class Mpc(NamedTuple):
+    """The MPC for which a model is identified."""
+
+    step_size: float  # [s] dt
+    horizon: int  # [steps] N
+    force_limit: float  # [N] largest force u_max; no test uses more
 
 
 @dataclass(frozen=True)
@@ -78,11 +87,9 @@ class Identification:
 @processes_reused()
 def identify(
     opener: Opener,
+    mpc: Mpc,
     *,
     path: Path,
-    step_size: float,
-    horizon: int,
-    force_limit: float,
     profile: VehicleProfile | None = None,
     speeds: Sequence[float] = SPEEDS,
     progress: Callable[[int, int], None] | None = None,
@@ -91,10 +98,8 @@ def identify(
 
     Args:
         opener: Function that opens the vehicle.
+        mpc: MPC for which the model is meant.
         path: Path of the FMU, for messages.
-        step_size: Step size of the MPC, dt [s].
-        horizon: Horizon of the MPC, N [steps].
-        force_limit: Largest force u_max of the MPC [N]; no test uses more.
         profile: Profile of the vehicle, for advice on its lines.
         speeds: Speeds from which the tests start [m/s].
         progress: Function that receives the numbers of drives done and of all drives.
@@ -110,7 +115,7 @@ def identify(
             progress(next(done), total)
 
     one_more()
-    largest = _largest_force(opener, path, profile, force_limit, step_size)
+    largest = _largest_force(opener, path, profile, mpc)
     one_more()
     starter = _Starter(opener, 0.5 * largest, max(speeds))
     tests = _drive_tests(starter, largest, speeds, one_more)
@@ -124,7 +129,7 @@ def identify(
     one_more()
     if found is None:
         raise FmuOutputError(f"{path}: {_NOT_A_VEHICLE}; expected more speed with more force")
-    model = _rated(found, validation, limits, step_size, horizon)
+    model = _rated(found, validation, limits, mpc)
     sides = fit_apart(drives, found.delay)
     if model.r_squared < NO_FIT:
         raise FmuOutputError(
@@ -143,7 +148,7 @@ def identify(
         remarks=(
             *saturation_remarks(limits),
             *fit_remarks(found, model, traces, limits),
-            *side_remarks(sides, step_size, profile),
+            *side_remarks(sides, mpc.step_size, profile),
         ),
         sides=sides,
     )
@@ -171,17 +176,11 @@ def _finite(limit: float) -> float | None:
     return float(limit) if np.isfinite(limit) else None
 
 
-def _largest_force(
-    opener: Opener,
-    path: Path,
-    profile: VehicleProfile | None,
-    force_limit: float,
-    step_size: float,
-) -> float:
+def _largest_force(opener: Opener, path: Path, profile: VehicleProfile | None, mpc: Mpc) -> float:
     """Return the force [N] of the hardest tests, within the limit and a road vehicle's grip."""
     share = 0.05
     while True:
-        force = share * force_limit
+        force = share * mpc.force_limit
         speed = drive(opener, [Phase(force, 2.0)]).speed
         half = speed.size // 2
         gained = float(speed[-1] - speed[half])
@@ -201,8 +200,8 @@ def _largest_force(
             f"{path}: {force:g} N forwards drive it backwards ({speed[-1]:.2g} m/s after 2 s); "
             f"turn the sign with {turned} (or in [outputs.speed]) of the profile"
         )
-    apparent_mass = force * (speed.size - 1 - half) * step_size / gained
-    return min(force_limit, HARDEST * apparent_mass)
+    apparent_mass = force * (speed.size - 1 - half) * mpc.step_size / gained
+    return min(mpc.force_limit, HARDEST * apparent_mass)
 
 
 @dataclass
@@ -247,12 +246,10 @@ def _validation(force: float, fastest: float) -> list[Phase]:
     return [Phase(0.0, LEAD_IN), *changes, Phase(-0.5 * force, 5.0, above=STANDSTILL)]
 
 
-def _rated(
-    found: Fit, validation: Trace, limits: tuple[float, float], step_size: float, horizon: int
-) -> FittedModel:
+def _rated(found: Fit, validation: Trace, limits: tuple[float, float], mpc: Mpc) -> FittedModel:
     """Return the model with its errors in the drive that was held out."""
     held_out = prepare(validation, limits)
-    ahead = position_errors(validation, found.mass, found.friction, horizon)
+    ahead = position_errors(validation, found.mass, found.friction, mpc.horizon)
     one_step = speed_errors(validation, found.mass, found.friction)
     return FittedModel(
         mass=found.mass,
@@ -262,8 +259,8 @@ def _rated(
         r_squared=_r_squared(found, [held_out]),
         speed_error=float(np.sqrt(np.mean(one_step**2))) if one_step.size else 0.0,
         position_error=float(np.quantile(ahead, 0.95)) if ahead.size else 0.0,
-        horizon=horizon * step_size,
-        time_step=step_size,
+        horizon=mpc.horizon * mpc.step_size,
+        time_step=mpc.step_size,
     )
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from fmus import bundled_fmu
-from fmus.checking import check, opener_of, without_guards
+from fmus.checking import check, expected_of, opener_of, without_guards
 from fmus.profile.bundled import BUNDLED_PROFILE
 from fmus.profile.vehicle_profile import make_profile
 
@@ -14,7 +14,7 @@ def checked(zoo, path, isolated=False, known=None, **changes):
         opener_of(path, step_size=0.05, profile=chosen, isolated=isolated)
         for chosen in (profile, without_guards(profile))
     )
-    return check(guarded, step_size=0.05, profile=profile, unguarded=unguarded, **known or {})
+    return check(guarded, expected_of(profile, **known or {}), step_size=0.05, unguarded=unguarded)
 
 
 def finding(report, name):
@@ -22,7 +22,7 @@ def finding(report, name):
 
 
 def of(opener, **settings):
-    return check(opener, step_size=0.05, **settings)
+    return check(opener, expected_of(**settings), step_size=0.05)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fmus import FmuOutputError, bundled_fmu
-from fmus.checking import identify, opener_of
+from fmus.checking import Mpc, identify, opener_of
 from fmus.profile.bundled import BUNDLED_PROFILE
 from fmus.profile.vehicle_profile import make_profile
 
@@ -15,9 +15,8 @@ PATH = Path("car.fmu")
 SLOW_AND_FAST = (0.0, 4.0, 12.0)  # [m/s]
 
 
-def identified(opener, **settings):
-    chosen = {"step_size": 0.05, "horizon": 15, "force_limit": 8000.0, "speeds": SLOW_AND_FAST}
-    return identify(opener, path=PATH, **(chosen | settings))
+def identified(opener, step_size=0.05, force_limit=8000.0, speeds=SLOW_AND_FAST, **more):
+    return identify(opener, Mpc(step_size, 15, force_limit), path=PATH, speeds=speeds, **more)
 
 
 @pytest.mark.parametrize(

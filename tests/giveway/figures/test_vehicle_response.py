@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fmus.checking import CheckReport, Convergence, Trace, check, identify
+from fmus.checking import CheckReport, Convergence, Mpc, Trace, check, expected_of, identify
 from fmus.checking.expected import Expected
 from giveway.figures.vehicle_response import check_figure, identification_figure
 
@@ -20,7 +20,7 @@ def trace(speed):
 
 
 def test_a_check_shows_vehicle_beside_model_and_halved_steps(car, tmp_path):
-    figure = check_figure(check(car(), step_size=0.05), title="car")
+    figure = check_figure(check(car(), expected_of(), step_size=0.05), title="car")
     assert figure is not None
     labels = {line.get_label() for axes in figure.axes for line in axes.lines}
     assert {"vehicle", "controller's model", "steps of 50 ms", "steps of 25 ms"} <= labels
@@ -41,8 +41,7 @@ def test_without_a_drive_there_is_no_picture():
 
 def test_an_identification_shows_measured_and_fitted(car, tmp_path):
     found = identify(
-        car(lag=0.2), path=Path("car.fmu"), step_size=0.05, horizon=15, force_limit=8000.0,
-        speeds=(0.0, 4.0),
+        car(lag=0.2), Mpc(0.05, 15, 8000.0), path=Path("car.fmu"), speeds=(0.0, 4.0),
     )  # fmt: skip
     figure = identification_figure(found, title="car")
     assert len(figure.axes) == 5
@@ -51,8 +50,7 @@ def test_an_identification_shows_measured_and_fitted(car, tmp_path):
 
 def test_a_model_without_error_leaves_no_panel_empty(car):
     found = identify(
-        car(), path=Path("car.fmu"), step_size=0.05, horizon=15, force_limit=8000.0,
-        speeds=(0.0, 4.0),
+        car(), Mpc(0.05, 15, 8000.0), path=Path("car.fmu"), speeds=(0.0, 4.0),
     )  # fmt: skip
     model = found.model.model_copy(update={"position_error": 1.4e-14})  # the bundled FMU's
     figure = identification_figure(replace(found, model=model), title="car")

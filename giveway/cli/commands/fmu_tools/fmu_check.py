@@ -7,7 +7,7 @@ from pathlib import Path
 from rich.console import Console
 
 from fmus import FmuError
-from fmus.checking import CheckReport, Finding, check, opener_of, without_guards
+from fmus.checking import CheckReport, Finding, check, expected_of, opener_of, without_guards
 from fmus.checking.scale import CLASS_MASSES
 from fmus.checking.self_check import plain
 from fmus.profile.bundled import is_bundled
@@ -81,15 +81,17 @@ def check_command(
     with console.status("Driving ...") as status:
         report = check(
             opener_of(path, step_size=step, profile=chosen),
+            expected_of(
+                chosen,
+                mass=mass,
+                vehicle_class=ego_class,
+                friction=friction,
+                force_limit=force_limit,
+                start_speed=speed,
+            ),
             step_size=step,
             fmu_step=fmu_step,
             unguarded=opener_of(path, step_size=step, profile=without_guards(chosen)),
-            profile=chosen,
-            mass=mass,
-            vehicle_class=ego_class,
-            friction=friction,
-            force_limit=force_limit,
-            start_speed=speed,
             progress=lambda name: status.update(f"Driving: {name} ..."),
         )
     findings = [_profile_found(path, profile, chosen), *report.findings]

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from fmus import FmuError
-from fmus.checking import Identification, identify, opener_of, require_converged
+from fmus.checking import Identification, Mpc, identify, opener_of, require_converged
 from fmus.checking.identification import SPEEDS
 from fmus.checking.profile_file import profile_text, with_model
 from fmus.profile.preparation import choose_profile, prepare
@@ -67,7 +67,8 @@ def identify_command(
     with retold(FmuError, VehicleError):
         chosen = choose_profile(path, given)
         fmu_step = prepare(path, step_size=step, profile=chosen).step_plan.step
-        found = _identified(console, path, chosen, step, fmu_step, horizon, force_limit, speeds)
+        mpc = Mpc(step, horizon, force_limit)
+        found = _identified(console, path, chosen, fmu_step, mpc, speeds)
     console.print(_summary(path, found))
     for remark in found.remarks:
         console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False, soft_wrap=True)
@@ -92,23 +93,19 @@ def _identified(
     console: Console,
     path: Path,
     profile: VehicleProfile,
-    step: float,
     fmu_step: float,
-    horizon: int,
-    force_limit: float,
+    mpc: Mpc,
     speeds: Sequence[float],
 ) -> Identification:
-    opener = opener_of(path, step_size=step, profile=profile)
+    opener = opener_of(path, step_size=mpc.step_size, profile=profile)
     columns = (TextColumn("Step tests"), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, console=console, transient=True) as progress:
         task = progress.add_task("")
-        require_converged(opener, fmu_step, path=path, force=0.5 * force_limit)
+        require_converged(opener, fmu_step, path=path, force=0.5 * mpc.force_limit)
         return identify(
             opener,
+            mpc,
             path=path,
-            step_size=step,
-            horizon=horizon,
-            force_limit=force_limit,
             profile=profile,
             speeds=speeds,
             progress=lambda done, total: progress.update(task, completed=done, total=total),

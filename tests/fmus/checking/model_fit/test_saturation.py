@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fmus.checking import check, opener_of
+from fmus.checking import Mpc, check, expected_of, opener_of
 from fmus.checking.identification import identify
 from fmus.checking.model_fit.fitting import fit, prepare
 from fmus.checking.model_fit.saturation import ResistanceModel
@@ -21,9 +21,7 @@ def finding(report, name):
 
 
 def identified(opener, force_limit):
-    return identify(
-        opener, path=Path("car.fmu"), step_size=0.05, horizon=15, force_limit=force_limit
-    )
+    return identify(opener, Mpc(0.05, 15, force_limit), path=Path("car.fmu"))
 
 
 def test_rolling_resistance_is_not_taken_for_a_weak_drive(car):
@@ -58,7 +56,7 @@ def test_all_four_resistances_come_back(car):
 def test_forces_too_small_for_a_truck_are_told_with_the_flag(car):
     force = {"inputs": {"force": {"variable": "F"}}, "outputs": {"speed": {"variable": "v"}}}
     profile = make_profile(force, "test")
-    report = check(car(**TRUCK), step_size=0.05, profile=profile)
+    report = check(car(**TRUCK), expected_of(profile), step_size=0.05)
     found = finding(report, "force limits")
     assert found.verdict == "warn"
     assert "m/s² at most" in found.text
@@ -73,7 +71,7 @@ def test_a_set_point_without_a_lead_is_told_its_lead(zoo):
     values["inputs"]["speed_setpoint"].pop("lead", None)
     profile = make_profile(values, "test")
     opener = opener_of(path, step_size=0.05, profile=profile, isolated=False)
-    report = check(opener, step_size=0.05, profile=profile)
+    report = check(opener, expected_of(profile), step_size=0.05)
     assert "lead = 0.6" in finding(report, "controller's model").remedy
     assert finding(report, "force limits").verdict == "pass"
 
@@ -85,4 +83,7 @@ def test_a_gearbox_that_is_weaker_in_higher_gears_is_no_limit(zoo):
     opener = opener_of(path, step_size=0.05, profile=profile, isolated=False)
     found = identified(opener, 8_000.0)
     assert found.drive_limit is None
-    assert finding(check(opener, step_size=0.05, profile=profile), "force limits").verdict == "pass"
+    assert (
+        finding(check(opener, expected_of(profile), step_size=0.05), "force limits").verdict
+        == "pass"
+    )
