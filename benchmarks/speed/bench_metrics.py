@@ -18,8 +18,8 @@ from giveway.metrics import (
     Anticipation,
     Critical,
     DriveSetting,
+    encroachment,
     pedestrian_metrics,
-    post_encroachment_time,
     proximity,
     summarise,
 )
@@ -94,7 +94,7 @@ def main() -> None:
         table = pedestrian_metrics(*judged)
         calls: tuple[Callable[[], object], ...] = (
             lambda judged=judged: proximity(*judged),
-            lambda judged=judged: post_encroachment_time(*judged),
+            lambda judged=judged: encroachment(*judged),
             lambda judged=judged: pedestrian_metrics(*judged),
             lambda ego=ego, table=table: summarise(
                 ego,

@@ -18,8 +18,10 @@ from giveway.errors import InstallationError, ResultsError
 from giveway.exports.sampling import PEDESTRIAN, Sampled
 from giveway.figures.road import LIGHTS, UNPAINTED, bands
 from giveway.figures.style import BLUE, GREY, LIGHT_GREY, VERMILION
-from giveway.figures.view import Box
+from giveway.figures.view import Box, nose_of
+from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
+from giveway.geometry.path import angle_to_heading
 from giveway.replays.run_folder import RunFolder
 from giveway.run_data.road_marks import shown
 
@@ -33,7 +35,6 @@ _BODY = 0.27  # [m] radius of a pedestrian
 _CAR = (4.3, 1.8)  # [m] size of a vehicle whose size is not on record
 _TICK = 1.0  # [s] length of the walking direction's mark, as a time
 _TRAIL = 4.0  # [s] length of the ego's trail
-_NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # ego's arrow: parts of length, width
 _SKIN = "#8A3C00"
 
 
@@ -109,16 +110,15 @@ class Painter:
         here = [self._sampled.tracks[number] for number in self._present[index]]
         for track in (track for track in here if track.type != PEDESTRIAN):
             k = index - track.first
-            length, width = self._run.scene.body(track.object, _CAR)
-            corners = _corners(track.x[k], track.y[k], track.angle[k], length, width)
+            shape = VehicleShape(*self._run.scene.body(track.object, _CAR))
+            corners = shape.corners(
+                np.array([track.x[k], track.y[k]]), angle_to_heading(float(track.angle[k]))
+            )
             ego = track.type == "ego"
             fill = BLUE if ego else "#B0B0B0"
             draw.polygon(self._pixels(corners, view), fill=fill, outline="#1A1A1A" if ego else GREY)
             if ego:
-                _, rear_left, rear_right, front_right = corners
-                along, across = front_right - rear_right, rear_left - rear_right
-                nose = rear_right + _NOSE[:, :1] * along + _NOSE[:, 1:] * across
-                draw.polygon(self._pixels(nose, view), fill="white")
+                draw.polygon(self._pixels(nose_of(corners), view), fill="white")
         for track in (track for track in here if track.type == PEDESTRIAN):
             k = index - track.first
             heading = np.deg2rad(90.0 - track.angle[k])
@@ -282,16 +282,6 @@ def _widened(box: Box, aspect: float) -> Box:
     width = max(width, height / aspect, _LEAST)
     middle = np.array([(box.left + box.right) / 2.0, (box.bottom + box.top) / 2.0])
     return Box.centred(middle, (width, aspect * width))
-
-
-def _corners(x: float, y: float, angle: float, length: float, width: float) -> Array:
-    """Return a vehicle's corners (4, 2) [m], front left first, from its front's middle."""
-    heading = np.deg2rad(90.0 - angle)
-    forward = np.array([np.cos(heading), np.sin(heading)])
-    left = np.array([-forward[1], forward[0]]) * width / 2.0
-    front = np.array([x, y])
-    rear = front - length * forward
-    return np.array([front + left, rear + left, rear - left, front - left])
 
 
 def _font(size: int) -> Any:

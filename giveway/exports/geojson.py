@@ -58,11 +58,6 @@ class Projection:
         longitude, latitude = self._proj(x - self._offset[0], y - self._offset[1], inverse=True)
         return np.asarray(longitude), np.asarray(latitude)
 
-    def to_network(self, longitude: Array, latitude: Array) -> tuple[Array, Array]:
-        """Return the points [m] of longitude and latitude [deg]."""
-        x, y = self._proj(longitude, latitude)
-        return np.asarray(x) + self._offset[0], np.asarray(y) + self._offset[1]
-
 
 def write_geojson(run: RunFolder, sampled: Sampled, file: Path) -> str:
     """Write the trajectories of a run as GeoJSON.

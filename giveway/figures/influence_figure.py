@@ -12,6 +12,7 @@ from matplotlib.quiver import Quiver
 from numpy.typing import NDArray
 
 from giveway.figures.style import BLACK, BLUE, keep_panels, styled
+from giveway.figures.view import NOSE
 from giveway.geometry.bodies import VehicleShape
 
 Influence = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
@@ -141,5 +142,5 @@ def _draw_vehicle(axes: Axes, shape: VehicleShape) -> None:
     axes.add_patch(
         Rectangle(corner, shape.length, shape.width, facecolor="#404040", edgecolor=BLACK, zorder=4)
     )
-    nose = np.array([[0.9, 0.5], [0.6, 0.85], [0.6, 0.15]]) * (shape.length, shape.width)
+    nose = NOSE * (shape.length, shape.width)
     axes.fill(*(nose + corner).T, color="white", zorder=5)

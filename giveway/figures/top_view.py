@@ -24,7 +24,7 @@ from giveway.figures.style import (
     keep_panels,
     styled,
 )
-from giveway.figures.view import Box
+from giveway.figures.view import Box, nose_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.groups import PedestrianGroups
 from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack
@@ -39,8 +39,6 @@ SURROUNDINGS = 8.0  # Distance [m] shown around the ego's positions in the snaps
 LARGEST_PART = 70.0
 VIEW = (50.0, 32.0)  # Width and height [m] of a view that follows the ego
 TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity tick
-# Corners of the ego's nose, as parts of its length and width
-NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])
 SEGMENTS = 150  # Largest number of segments per trajectory
 # Time [s] without a record after which a trajectory begins anew, since SUMO moved the person
 PAUSE = 2.5
@@ -157,17 +155,7 @@ def _colours(time: NDArray[np.float64]) -> Normalize:
 def rectangle(ego: EgoTrack, k: int, shape: VehicleShape) -> NDArray[np.float64]:
     """Return the ego's corners (4, 2) [m] at instant k, front left first, counter-clockwise."""
     front = np.array((ego.front_x[k], ego.front_y[k]))
-    return _corners(front, float(ego.heading[k]), shape.length, shape.width)
-
-
-def _corners(
-    front: NDArray[np.float64], heading: float, length: float, width: float
-) -> NDArray[np.float64]:
-    cos, sin = np.cos(heading), np.sin(heading)
-    half = width / 2.0
-    local = np.array([(0.0, half), (-length, half), (-length, -half), (0.0, -half)])
-    turned = local @ np.array([[cos, sin], [-sin, cos]])
-    return np.asarray(turned + front, dtype=np.float64)
+    return shape.corners(front, float(ego.heading[k]))
 
 
 def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:
@@ -247,9 +235,15 @@ def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> No
         driven = background.speed[b] * (time - known[-1])
         front = np.array((background.x[b], background.y[b]))
         front += driven * np.array((np.cos(heading), np.sin(heading)))
-        corners = _corners(front, heading, background.length[b], background.width[b])
+        shape = VehicleShape(float(background.length[b]), float(background.width[b]))
         axes.add_patch(
-            Polygon(corners, facecolor="#B0B0B0", edgecolor=GREY, zorder=1.5, label="background")
+            Polygon(
+                shape.corners(front, heading),
+                facecolor="#B0B0B0",
+                edgecolor=GREY,
+                zorder=1.5,
+                label="background",
+            )
         )
 
 
@@ -304,10 +298,7 @@ def _draw_scene(
 ) -> None:
     """Draw the ego as a rectangle with a nose, and pedestrians as circles with ticks."""
     axes.add_patch(Polygon(corners, facecolor="#404040", edgecolor=BLACK, zorder=2, label="ego"))
-    _, rear_left, rear_right, front_right = corners
-    along, across = front_right - rear_right, rear_left - rear_right
-    nose = rear_right + NOSE[:, :1] * along + NOSE[:, 1:] * across
-    axes.fill(*nose.T, color="white", zorder=2.5)
+    axes.fill(*nose_of(corners).T, color="white", zorder=2.5)
     here = crowd.step == k
     centre = np.column_stack((crowd.x[here], crowd.y[here]))
     ahead = centre + TICK * np.column_stack((crowd.vx[here], crowd.vy[here]))

@@ -11,6 +11,20 @@ from numpy.typing import NDArray
 # Largest ratio of height to width of the overview; that of width to height is twice as large
 SLENDEREST = 2.2
 
+# Corners of a vehicle's nose, as parts of its length and width
+NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])
+
+
+def nose_of(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the triangle (3, 2) [m] in a vehicle's outline that points forwards.
+
+    Args:
+        corners: Corners (4, 2) [m] of the vehicle, front left first, counter-clockwise.
+    """
+    _, rear_left, rear_right, front_right = corners
+    along, across = front_right - rear_right, rear_left - rear_right
+    return np.asarray(rear_right + NOSE[:, :1] * along + NOSE[:, 1:] * across)
+
 
 class Box(NamedTuple):
     """The limits of a view [m]."""

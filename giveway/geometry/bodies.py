@@ -1,6 +1,11 @@
 """The outlines of vehicles."""
 
 from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+
+from giveway.geometry.kernel import Array
 
 
 @dataclass(frozen=True)
@@ -9,6 +14,17 @@ class VehicleShape:
 
     length: float = 5.0  # [m]
     width: float = 2.0  # [m]
+
+    def corners(self, front: Array, heading: float) -> Array:
+        """Return the corners (4, 2) [m], front left first, counter-clockwise.
+
+        Args:
+            front: Middle (2,) [m] of the front.
+            heading: Heading [rad].
+        """
+        c, s, half = cos(heading), sin(heading), self.width / 2.0
+        local = np.array([(0.0, half), (-self.length, half), (-self.length, -half), (0.0, -half)])
+        return np.asarray(local @ np.array([[c, s], [-s, c]]) + front, dtype=np.float64)
 
 
 BODY = VehicleShape()

@@ -12,7 +12,7 @@ from giveway.metrics.delays import (
     gave_way,
     summarise_delays,
 )
-from giveway.metrics.encroachment import EGO, encroachment, post_encroachment_time
+from giveway.metrics.encroachment import EGO, encroachment
 from giveway.metrics.pedestrians import (
     PEDESTRIAN_FIELDS,
     WALK_SUMMARY_FIELDS,
@@ -55,7 +55,6 @@ __all__ = [
     "encroachment",
     "gave_way",
     "pedestrian_metrics",
-    "post_encroachment_time",
     "proximity",
     "severities",
     "stops",

@@ -92,13 +92,6 @@ def encroachment(
     return Encroachment(times, _WHO[first])
 
 
-def post_encroachment_time(
-    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> NDArray[np.float64]:
-    """Return the post-encroachment times (n,) [s], as :func:`encroachment` finds them."""
-    return encroachment(ego, crowd, shape, body_radius).time
-
-
 class _Leg(NamedTuple):
     """The walk of a pedestrian in one step."""
 

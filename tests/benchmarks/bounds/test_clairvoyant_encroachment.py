@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 
 import giveway
 from giveway.geometry.bodies import VehicleShape
-from giveway.metrics import post_encroachment_time
 from giveway.run_data.tracks import EgoTrack
 
 H = 0.05  # [s] of the records
@@ -205,7 +204,7 @@ def test_the_metric_in_the_egos_coordinates_is_the_metric():
     lattice = clairvoyant_lattice.Lattice.of(search.Limits(), ego.goal)
     bodies = encroachment.Bodies(run.shape, run.body_radius)
     exact = encroachment.stretches_of(people, lattice, bodies, H, encroachment.SECOND)
-    times = post_encroachment_time(track, ego.crowd, bodies.shape, bodies.body_radius)
+    times = encroachment_of(track, ego.crowd, bodies.shape, bodies.body_radius).time
     at = np.round(track.position[::2] / lattice.station).astype(np.int64)
     met = exact.at(at).any(axis=0)
     assert 0 < met.sum() <= (times < 1.0).sum()

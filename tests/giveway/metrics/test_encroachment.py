@@ -10,7 +10,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.metrics import post_encroachment_time
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
@@ -32,34 +31,34 @@ def test_the_pedestrian_first(driving, crowd, walking):
     # The ego at 4 m/s reaches x = 20 at t = 5 s. Walking +y at 1.3 m/s, the circle leaves the
     # strip's left edge (y = 1) at t = 3.02 s, between two records.
     crossing = crowd(walking(TIME, (20.0, 1.0 + R - 3.02 * 1.3), (0.0, 1.3)))
-    pet = post_encroachment_time(driving(TIME, 4.0), crossing, CAR, R)
+    pet = encroachment(driving(TIME, 4.0), crossing, CAR, R).time
     assert pet == pytest.approx([1.98 - rounded_off(1.3, 4.0)], abs=5e-4)
 
 
 def test_the_ego_first(driving, crowd, walking):
     # The rear bumper leaves x = 20 at (20 + 5) / 4 = 6.25 s; the walker enters at 8.03 s.
     crossing = crowd(walking(TIME, (20.0, -1.0 - R - 8.03 * 1.3), (0.0, 1.3)))
-    pet = post_encroachment_time(driving(TIME, 4.0), crossing, CAR, R)
+    pet = encroachment(driving(TIME, 4.0), crossing, CAR, R).time
     assert pet == pytest.approx([1.78 - rounded_off(1.3, 4.0)], abs=5e-4)
 
 
 def test_standing_in_the_way_until_taken_away(driving, crowd):
     # Gone after t = 2 s (its last record, step 40); the ego touches the place at (20 - R) / 4.
     standing = crowd((0, [(20.0, 0.0, 0.0, 0.0)] * 41))
-    pet = post_encroachment_time(driving(TIME, 4.0), standing, CAR, R)
+    pet = encroachment(driving(TIME, 4.0), standing, CAR, R).time
     assert pet == pytest.approx([(20.0 - R) / 4.0 - 2.0], abs=1e-9)
 
 
 def test_walking_ahead_on_the_egos_own_path(driving, crowd, walking):
     # 10 m ahead at the same speed: the ego's bumper touches the circle's place (10 - R) / 4 later.
     ahead = crowd(walking(TIME[:100], (10.0, 0.0), (4.0, 0.0)))
-    pet = post_encroachment_time(driving(TIME, 4.0), ahead, CAR, R)
+    pet = encroachment(driving(TIME, 4.0), ahead, CAR, R).time
     assert pet == pytest.approx([(10.0 - R) / 4.0], abs=1e-9)
 
 
 def test_a_collision_is_zero(driving, crowd, walking):
     crossing = crowd(walking(TIME, (20.0, -1.3 * 5.5), (0.0, 1.3)))
-    assert post_encroachment_time(driving(TIME, 4.0), crossing, CAR, R) == [0.0]
+    assert encroachment(driving(TIME, 4.0), crossing, CAR, R).time == [0.0]
 
 
 @pytest.mark.parametrize(
@@ -74,14 +73,14 @@ def test_a_collision_is_zero(driving, crowd, walking):
 )
 def test_paths_that_never_cross(driving, crowd, walking, case, place, velocity, instants):
     walk = crowd(walking(TIME[:instants], place, velocity))
-    pet = post_encroachment_time(driving(TIME, 4.0), walk, CAR, R)
+    pet = encroachment(driving(TIME, 4.0), walk, CAR, R).time
     assert np.isnan(pet).all(), case
 
 
 def test_an_ego_that_waits_before_the_crossing_never_reaches_it(ego, crowd, walking):
     front = np.column_stack((np.minimum(4.0 * TIME, 15.0), np.zeros(TIME.size)))
     crossing = crowd(walking(TIME, (20.0, -8.0), (0.0, 1.3)))
-    assert np.isnan(post_encroachment_time(ego(TIME, front), crossing, CAR, R)).all()
+    assert np.isnan(encroachment(ego(TIME, front), crossing, CAR, R).time).all()
 
 
 def test_every_pedestrian_gets_its_own(driving, crowd, walking):
@@ -90,7 +89,7 @@ def test_every_pedestrian_gets_its_own(driving, crowd, walking):
         walking(TIME, (5.0, 9.0), (0.0, 0.0)),
         walking(TIME, (20.0, -1.0 - R - 8.03 * 1.3), (0.0, 1.3)),
     )
-    pet = post_encroachment_time(driving(TIME, 4.0), track, CAR, R)
+    pet = encroachment(driving(TIME, 4.0), track, CAR, R).time
     less = rounded_off(1.3, 4.0)
     assert pet == pytest.approx([1.98 - less, nan, 1.78 - less], abs=5e-4, nan_ok=True)
 
@@ -103,14 +102,14 @@ def test_a_curve_counts_the_place_where_it_is_crossed(ego, crowd, walking):
     beyond = np.maximum(4.0 * TIME - 10.0 * pi, 0.0)
     front = np.column_stack((20.0 * np.sin(arc), 20.0 - 20.0 * np.cos(arc) + beyond))
     crossing = crowd(walking(TIME, (19.0 - R + 9.0, 25.0), (-1.0, 0.0)))
-    pet = post_encroachment_time(ego(TIME, front, arc, 4.0), crossing, CAR, R)
+    pet = encroachment(ego(TIME, front, arc, 4.0), crossing, CAR, R).time
     assert pet == pytest.approx([(10 * pi + 5) / 4 - 9.0 - rounded_off(1.0, 4.0)], abs=5e-4)
 
 
 @pytest.mark.parametrize(("place", "expected"), [((1.0, 0.0), nan), ((-1.0, 0.0), 0.0)])
 def test_a_run_of_one_instant(driving, crowd, place, expected):
     track = crowd((0, [(*place, 0.0, 1.3)]))
-    pet = post_encroachment_time(driving(TIME[:1], 4.0), track, CAR, R)
+    pet = encroachment(driving(TIME[:1], 4.0), track, CAR, R).time
     assert pet == pytest.approx([expected], nan_ok=True)
 
 
@@ -145,7 +144,7 @@ def test_agrees_with_brute_force(ego, crowd, walking, yaw_rate, speed, place, ve
     steps = DT * speed * np.column_stack((np.cos(heading), np.sin(heading)))[:-1]
     front = np.vstack(([0.0, 0.0], np.cumsum(steps, axis=0)))
     walk = walking(time, place, velocity)
-    pet = post_encroachment_time(ego(time, front, heading, speed), crowd(walk), CAR, R)[0]
+    pet = encroachment(ego(time, front, heading, speed), crowd(walk), CAR, R).time[0]
     pet = inf if np.isnan(pet) else pet
     # Both move 2 cm at most between the brute force's samples, so a body 2 cm wider is sure to
     # be sampled wherever the true one touches; between two records a walker may cut 9 mm of a
