@@ -18,7 +18,7 @@ from clairvoyant_lattice import cheapest, cheapest_by
 from clairvoyant_search import CONTACT, CONTACT_PRICE, arrival_tolls
 
 from giveway.geometry.kernel import kernel
-from giveway.metrics import post_encroachment_time
+from giveway.metrics import encroachment
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
@@ -232,7 +232,7 @@ def encroachments(
         vy=np.zeros(step.size),
         ids=tuple(str(i) for i in range(people.station.shape[1])),
     )
-    return post_encroachment_time(ego, crowd, bodies.shape, bodies.body_radius)
+    return encroachment(ego, crowd, bodies.shape, bodies.body_radius).time
 
 
 @kernel

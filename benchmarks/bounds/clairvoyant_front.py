@@ -56,7 +56,7 @@ from giveway.figures.style import (
     save_figure,
     styled,
 )
-from giveway.metrics import post_encroachment_time
+from giveway.metrics import encroachment
 
 if TYPE_CHECKING:
     from clairvoyant_encroachment import Stretches
@@ -170,9 +170,7 @@ class Crowd:
         gap = certain_gap(self.lattice, self.time_step)
         stretches = stretches_of(recorded.people, self.lattice, self.bodies, self.time_step, gap)
         ego = self.run.egos[0]
-        times = post_encroachment_time(
-            ego.track, ego.crowd, self.bodies.shape, self.bodies.body_radius
-        )
+        times = encroachment(ego.track, ego.crowd, self.bodies.shape, self.bodies.body_radius).time
         near = times < SECOND
         counted = np.ones_like(near), ~near
         everybody, others = (

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 import giveway
 from giveway.geometry.bodies import VehicleShape
+from giveway.metrics import encroachment as encroachment_of
 from giveway.run_data.tracks import EgoTrack
 
 H = 0.05  # [s] of the records

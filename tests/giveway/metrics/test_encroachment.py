@@ -10,6 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
+from giveway.metrics import encroachment
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
