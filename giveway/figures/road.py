@@ -1,7 +1,6 @@
 """The road underneath a picture: lanes, crossings, and traffic lights as coloured stop lines."""
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,34 +8,13 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from giveway.figures.conflict_points import Conflict
 from giveway.figures.style import GREY, LIGHT_GREY
 from giveway.figures.view import Box
-from giveway.run_data.road_marks import UNMARKED, RoadMarks, Zebra, shown
-from giveway.run_data.tracks import BackgroundTrack, SignalTrack
+from giveway.run_data.road_marks import RoadMarks, Zebra, shown
+from giveway.run_data.tracks import SignalTrack
 
 Road = Sequence[NDArray[np.float64]]
 """Lines (k, 2) [m] to draw underneath; a line that ends where it starts is a filled area."""
-
-
-class Backdrop(NamedTuple):
-    """The things that are drawn besides ego and crowd.
-
-    Attributes:
-        road: Areas and lines to draw underneath.
-        marks: Crossings and stop lines.
-        signals: States of the lights; in a snapshot, stop lines have the colour of that instant.
-        background: Other vehicles, drawn in the snapshots. After their latest instant they are
-            assumed to drive straight on.
-        conflicts: Conflicts to mark among the trajectories.
-    """
-
-    road: Road = ()
-    marks: RoadMarks = UNMARKED
-    signals: SignalTrack | None = None
-    background: BackgroundTrack | None = None
-    conflicts: Sequence[Conflict] = ()
-
 
 STRIPE = 0.5  # Length [m] of a painted stripe, and of the gap behind it
 LONGEST = 20.0  # Largest length [m] of a crossing that is drawn outside of the view

@@ -4,6 +4,7 @@ It follows the screenshots figure of Yang & Özgüner 2019 (section 5).
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -14,8 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from giveway.figures.conflict_points import mark_conflicts
-from giveway.figures.road import Backdrop, Road, draw_marks, draw_road, states_at
+from giveway.figures.conflict_points import Conflict, mark_conflicts
+from giveway.figures.road import Road, draw_marks, draw_road, states_at
 from giveway.figures.style import (
     BLACK,
     GREY,
@@ -27,7 +28,8 @@ from giveway.figures.style import (
 from giveway.figures.view import Box, nose_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.groups import PedestrianGroups
-from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack
+from giveway.run_data.road_marks import UNMARKED, RoadMarks
+from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, SignalTrack
 
 TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
 """Colours of time, without the last third, which is too light for a line on white."""
@@ -42,6 +44,27 @@ TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity 
 SEGMENTS = 150  # Largest number of segments per trajectory
 # Time [s] without a record after which a trajectory begins anew, since SUMO moved the person
 PAUSE = 2.5
+
+
+class Backdrop(NamedTuple):
+    """The things that are drawn besides ego and crowd.
+
+    Attributes:
+        road: Areas and lines to draw underneath.
+        marks: Crossings and stop lines.
+        signals: States of the lights; in a snapshot, stop lines have the colour of that instant.
+        background: Other vehicles, drawn in the snapshots. After their latest instant they are
+            assumed to drive straight on.
+        conflicts: Conflicts to mark among the trajectories.
+    """
+
+    road: Road = ()
+    marks: RoadMarks = UNMARKED
+    signals: SignalTrack | None = None
+    background: BackgroundTrack | None = None
+    conflicts: Sequence[Conflict] = ()
+
+
 NOTHING = Backdrop()
 
 

@@ -16,8 +16,8 @@ from giveway.figures import (
 )
 from giveway.figures.conflict_points import Conflict
 from giveway.figures.density import density_figure
-from giveway.figures.road import Backdrop
 from giveway.figures.state import FARTHEST_SHOWN
+from giveway.figures.top_view import Backdrop
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.measures import density_map

@@ -12,8 +12,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Polygon
 
 from giveway.figures import crowd_view_figure, top_view_figure
-from giveway.figures.road import LIGHTS, Backdrop
-from giveway.figures.top_view import VIEW, rectangle
+from giveway.figures.road import LIGHTS
+from giveway.figures.top_view import VIEW, Backdrop, rectangle
 from giveway.figures.view import SLENDEREST
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import pedestrian_metrics
