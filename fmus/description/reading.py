@@ -94,14 +94,12 @@ def describe(path: str | os.PathLike[str]) -> FmuDescription:
         FmuInterfaceError: the FMU has a version of FMI that cannot be run.
     """
     archive = open_archive(Path(path))
-    where = f"{archive.path}: {DESCRIPTION}"
-    root = parse(archive.description, where, ROOT, frozenset())
-    version = _version(root, archive.path)
+    model = model_of(archive)
     return FmuDescription(
-        name=clean(root.get("modelName"), LIMIT),
-        fmi_version=version,
-        guid=root.get("instantiationToken" if version == "3.0" else "guid"),
-        generation_tool=clean(root.get("generationTool"), LIMIT),
+        name=model.name,
+        fmi_version=model.fmi_version,
+        guid=model.guid,
+        generation_tool=model.generation_tool,
         sha256=archive.sha256,
     )
 

@@ -7,6 +7,7 @@ import tempfile
 import weakref
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from fmus import errors
 from fmus.errors import FmuCrashError, FmuError, FmuStartCrashError, FmuStepError
@@ -15,7 +16,7 @@ from fmus.isolation.hosted import Hosted
 from fmus.isolation.process_host import ProcessHost, make_process_host
 from fmus.isolation.wire import LOAD, QUIT, STEP, Client, GarbledError, Text
 from fmus.isolation.worker import Order
-from fmus.profile.preparation import PreparedFmu, unpack
+from fmus.profile.preparation import unpack
 from fmus.text import printable
 
 _END_TIMEOUT = 5.0  # [s] time for an FMU to end by itself
@@ -27,7 +28,7 @@ class FmuProcess:
 
     Args:
         hosted: Adapter that runs the FMU in that process.
-        prepared: Prepared vehicle or controller.
+        prepared: Prepared vehicle or controller, as the adapter takes it.
 
     Attributes:
         warnings: Warnings of the FMU, since its last start.
@@ -39,7 +40,7 @@ class FmuProcess:
         FmuError: the FMU cannot be unpacked, or no process can be started.
     """
 
-    def __init__(self, hosted: type[Hosted], prepared: PreparedFmu) -> None:
+    def __init__(self, hosted: type[Hosted], prepared: Any) -> None:
         self.path = prepared.path
         self.warnings: list[str] = []
         self.failed = False

@@ -4,45 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Protocol
 
+from fmus.driving.controller import ControllerFmu
 from fmus.driving.vehicle import VehicleFmu
 from fmus.profile.preparation import Prepared
-
-
-class Hosted(Protocol):
-    """The adapter that runs one FMU for one episode.
-
-    Attributes:
-        warnings: Warnings for the user.
-        time: Time [s] at the end of the last step.
-    """
-
-    def __init__(self, prepared: Any, folder: Path) -> None: ...
-
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings for the user."""
-
-    @property
-    def time(self) -> float:
-        """Time [s] at the end of the last step."""
-
-    @staticmethod
-    def numbers(prepared: Any, /) -> tuple[int, int]:
-        """Return the numbers of values in each request and in each reply."""
-
-    def start(self, numbers: Sequence[float]) -> None:
-        """Begin the episode at time 0."""
-
-    def step(self, numbers: Sequence[float]) -> None:
-        """Do one step; the first number is the client's processor."""
-
-    def state(self) -> Sequence[float]:
-        """Return the numbers of a reply."""
-
-    def close(self) -> None:
-        """End the FMU."""
 
 
 class HostedVehicle:
@@ -89,3 +54,8 @@ class HostedVehicle:
     def close(self) -> None:
         """End the FMU."""
         self._vehicle.close()
+
+
+Hosted = HostedVehicle | ControllerFmu
+"""The adapter that runs one FMU for one episode: START and STEP take the numbers of a request, of
+which a step's first is the client's processor; ``state`` has the numbers of a reply."""

@@ -25,7 +25,7 @@ class LinuxHost:
         folder: Temporary folder, which the watchdog removes when this process has ended.
 
     Attributes:
-        sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.
+        sound: True as long as the FMU has not crashed, hung or broken its connection.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:
@@ -34,7 +34,7 @@ class LinuxHost:
         self._watchdog = watchdog_for(path, folder)
 
     def start_process(self) -> socket.socket:
-        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        """Start a new process, as :class:`fmus.isolation.portable_host.PortableHost` does."""
         try:
             return self._request_worker()
         except OSError:
@@ -48,7 +48,7 @@ class LinuxHost:
         raise no_process(self._path, log.read_bytes() if log.exists() else b"")
 
     def end_process(self, patience: float = 0.0) -> ExitReport:
-        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        """End the process, as :class:`fmus.isolation.portable_host.PortableHost` does."""
         try:
             ms = b"%d" % round(1e3 * patience)
             return decode_report(self._watchdog.ask(END_WORKER, ms, patience + END_TIMEOUT))
@@ -58,7 +58,7 @@ class LinuxHost:
             return _UNKNOWN_END
 
     def close(self) -> None:
-        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        """End everything and wait until it has ended."""
         if not (self.sound and let_wait(self._watchdog)):
             self._watchdog.end()
 

@@ -24,7 +24,7 @@ class PortableHost:
         folder: Temporary folder.
 
     Attributes:
-        sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.
+        sound: True as long as the FMU has not crashed, hung or broken its connection.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:
@@ -35,7 +35,11 @@ class PortableHost:
         self._reader: threading.Thread | None = None
 
     def start_process(self) -> socket.socket:
-        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        """Start a new process for the FMU and return the connection to it.
+
+        Raises:
+            FmuCrashError: the process cannot be started.
+        """
         self.end_process()
         token = secrets.token_hex(16)
         with socket.create_server(("127.0.0.1", 0)) as server:
@@ -57,7 +61,11 @@ class PortableHost:
         raise no_process(self._path, self.end_process().printed.encode())
 
     def end_process(self, patience: float = 0.0) -> ExitReport:
-        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        """End the FMU's process and all processes that it has started; return how it ended.
+
+        Args:
+            patience: Time [s] in which it may end by itself.
+        """
         process, self._process = self._process, None
         if process is None or self._reader is None:
             return ExitReport(None, killed=False, oom=False, printed="")
@@ -71,7 +79,7 @@ class PortableHost:
         return ExitReport(process.returncode, killed, oom=False, printed=self._printed.last_line())
 
     def close(self) -> None:
-        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        """End everything and wait until it has ended."""
         self.end_process()
 
     def _read(self, process: subprocess.Popen[bytes]) -> None:

@@ -1,43 +1,16 @@
-"""The interface for starting and ending the FMU's processes."""
+"""The host of this platform that starts and ends the FMU's processes."""
 
 import pickle
-import socket
 import sys
 from pathlib import Path
-from typing import Protocol
 
 from fmus.isolation.cleanup import scratch_of
-from fmus.isolation.exit_report import ExitReport
 from fmus.isolation.linux_host import LinuxHost
 from fmus.isolation.portable_host import PortableHost
 from fmus.isolation.worker import Order
 
-
-class ProcessHost(Protocol):
-    """Starts and ends the processes of one FMU.
-
-    Attributes:
-        sound: True as long as the FMU has not crashed, hung or broken its connection.
-    """
-
-    sound: bool
-
-    def start_process(self) -> socket.socket:
-        """Start a new process for the FMU and return the connection to it.
-
-        Raises:
-            FmuCrashError: the process cannot be started.
-        """
-
-    def end_process(self, patience: float = 0.0) -> ExitReport:
-        """End the FMU's process and all processes that it has started; return how it ended.
-
-        Args:
-            patience: Time [s] in which it may end by itself.
-        """
-
-    def close(self) -> None:
-        """End everything and wait until it has ended."""
+ProcessHost = LinuxHost | PortableHost
+"""What starts and ends the processes of one FMU."""
 
 
 def make_process_host(order: Order, folder: Path) -> ProcessHost:

@@ -46,8 +46,10 @@ def reference_figure(
             xytext=(-4, 6), textcoords="offset points", rotation=90, ha="right", color="#505050",
         )  # fmt: skip
     axes.set(
-        xlim=(0.0, gaps[-1]), xlabel="Gap to who is in front [m]", ylabel="Reference speed [m/s]"
+        xlim=(0.0, gaps[-1]),
+        ylim=(0.0, None),
+        xlabel="Gap to who is in front [m]",
+        ylabel="Reference speed [m/s]",
     )
-    axes.set_ylim(bottom=0.0)
     figure.legend(loc="outside upper center", ncols=2)
     return figure

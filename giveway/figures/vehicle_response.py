@@ -151,9 +151,8 @@ def _draw_tests(axes: Axes, found: Identification) -> None:
     ends = [float(measured.min()), float(measured.max())]
     axes.plot(ends, ends, **MODEL)
     axes.plot(fitted, measured, ".", color=BLUE, markersize=3, alpha=0.5, zorder=3)
-    axes.set_title(f"Step tests, R² = {found.fit.r_squared:.4f}")
-    axes.set_xlabel("Fitted acceleration [m/s²]")
-    axes.set_ylabel("Measured [m/s²]")
+    title = f"Step tests, R² = {found.fit.r_squared:.4f}"
+    axes.set(title=title, xlabel="Fitted acceleration [m/s²]", ylabel="Measured [m/s²]")
 
 
 def _draw_errors(axes: Axes, found: Identification) -> None:
@@ -166,8 +165,10 @@ def _draw_errors(axes: Axes, found: Identification) -> None:
     axes.text(
         model.position_error, 8.0, f" 95 %: {model.position_error:.2g} m", fontsize=8, ha="left"
     )
-    axes.set_xlim(0.0, max(1.6 * model.position_error, 1e-3))
-    axes.set_ylim(0.0, 102.0)
-    axes.set_title(f"MPC's prediction, {model.horizon:g} s ahead")
-    axes.set_xlabel("Position error [m]")
-    axes.set_ylabel("Share below [%]")
+    axes.set(
+        xlim=(0.0, max(1.6 * model.position_error, 1e-3)),
+        ylim=(0.0, 102.0),
+        title=f"MPC's prediction, {model.horizon:g} s ahead",
+        xlabel="Position error [m]",
+        ylabel="Share below [%]",
+    )

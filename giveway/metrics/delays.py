@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.metrics.encroachment import CONTACT, EGO, PERSON
+from giveway.metrics.groups import PedestrianGroups
 from giveway.run_data.columns import Quantity, columns_of
 from giveway.run_data.walks import WalkTrack
 
@@ -96,12 +97,13 @@ def delays(run: WalkTrack, twin: WalkTrack) -> Delays:
         raise ValueError(f"time steps {run.time_step} and {twin.time_step} s; expected the same")
     count = len(run.ids)
     found = Delays(np.full(count, np.nan), np.full(count, "", dtype="U7"), np.full(count, np.nan))
-    ours, theirs = _Walks(run), _Walks(twin)
+    ours, theirs = PedestrianGroups(run), PedestrianGroups(twin)
     others = {name: j for j, name in enumerate(twin.ids)}
     for i in np.flatnonzero(run.near).tolist():
         j = others.get(run.ids[i])
         if j is not None:
-            one = _delay(ours.of(i), theirs.of(j), run.time_step, float(run.desired_speed[i]))
+            walks = _walk(run, ours, i), _walk(twin, theirs, j)
+            one = _delay(*walks, run.time_step, float(run.desired_speed[i]))
             found.delay[i], found.basis[i], found.detour[i] = one
     return found
 
@@ -160,21 +162,12 @@ class _Walk(NamedTuple):
     arrivals: NDArray[np.int64]  # control steps of the arrivals
 
 
-class _Walks:
-    """The records of a track, by person."""
-
-    def __init__(self, track: WalkTrack) -> None:
-        self._track = track
-        self._order = np.argsort(track.pedestrian, kind="stable")
-        sorted_ = track.pedestrian[self._order]
-        self._bounds = np.searchsorted(sorted_, np.arange(len(track.ids) + 1))
-
-    def of(self, i: int) -> _Walk:
-        track = self._track
-        rows = self._order[self._bounds[i] : self._bounds[i + 1]]
-        left = track.remaining[rows]
-        arrivals = track.arrival_step[track.arrival_pedestrian == i]
-        return _Walk(track.step[rows], left, track.walked[rows] + left, arrivals)
+def _walk(track: WalkTrack, groups: PedestrianGroups, i: int) -> _Walk:
+    """Return the records of one person."""
+    rows = groups.order[groups.bounds[i] : groups.bounds[i + 1]]
+    left = track.remaining[rows]
+    arrivals = track.arrival_step[track.arrival_pedestrian == i]
+    return _Walk(track.step[rows], left, track.walked[rows] + left, arrivals)
 
 
 def _delay(

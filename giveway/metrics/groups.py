@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.run_data.tracks import CrowdTrack
+from giveway.run_data.walks import WalkTrack
 
 
 class PedestrianGroups:
@@ -13,7 +14,7 @@ class PedestrianGroups:
     owns the entries ``bounds[i]`` to ``bounds[i + 1]`` of it.
     """
 
-    def __init__(self, crowd: CrowdTrack) -> None:
+    def __init__(self, crowd: CrowdTrack | WalkTrack) -> None:
         self.order = np.argsort(crowd.pedestrian, kind="stable")
         self.pedestrian = crowd.pedestrian[self.order]
         self.bounds = np.searchsorted(self.pedestrian, np.arange(len(crowd.ids) + 1))

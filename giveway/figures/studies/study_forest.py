@@ -132,8 +132,8 @@ def _draw(axes: Axes, column: ForestColumn, places: list[float], used: list[str]
                 estimate.published, y, "D", markersize=6.5, markerfacecolor="none",
                 markeredgecolor=PUBLISHED, markeredgewidth=1.3, zorder=5, label="published",
             )  # fmt: skip
-    axes.set_title(column.quantity)
-    axes.set_xlabel(with_unit("difference", column.unit) + _direction(column.better))
+    difference = with_unit("difference", column.unit)
+    axes.set(title=column.quantity, xlabel=difference + _direction(column.better))
     axes.margins(x=0.08)
     axes.locator_params(axis="x", nbins=5)
     axes.tick_params(axis="y", length=0)

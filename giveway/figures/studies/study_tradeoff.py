@@ -92,8 +92,7 @@ def tradeoff_figure(
             )
             for place, text in tags(points)
         ]  # fmt: skip
-    axes.set_xlabel(with_unit(*x_label))
-    axes.set_ylabel(with_unit(*y_label))
+    axes.set(xlabel=with_unit(*x_label), ylabel=with_unit(*y_label))
     axes.margins(0.08)
     levels = list(dict.fromkeys(point.level for point in points))
     handles = [
