@@ -143,7 +143,7 @@ def _drive_all(
 
 def _attempt(name: str, expected: Expected, opener: Opener) -> Attempt:
     speed = expected.start_speed if name == "rolling" else 0.0
-    return try_to_drive(opener, _phases(name, expected), speed=speed)
+    return try_to_drive((speed,), opener, _phases(name, expected))[0]
 
 
 def _look_closer(report: CheckReport, unguarded: Opener) -> None:

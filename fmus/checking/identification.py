@@ -128,7 +128,10 @@ def identify(
     )
     one_more()
     if found is None:
-        raise FmuOutputError(f"{path}: {_NOT_A_VEHICLE}; expected more speed with more force")
+        raise FmuOutputError(
+            f"{path}: it does not respond to forces like a vehicle; expected more speed with more "
+            "force"
+        )
     model = _rated(found, validation, limits, mpc)
     sides = fit_apart(drives, found.delay)
     if model.r_squared < NO_FIT:
@@ -152,9 +155,6 @@ def identify(
         ),
         sides=sides,
     )
-
-
-_NOT_A_VEHICLE = "it does not respond to forces like a vehicle"
 
 
 def _drive_tests(

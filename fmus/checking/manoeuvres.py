@@ -125,7 +125,7 @@ def drive(
     Raises:
         FmuError: the vehicle cannot be opened or started, or fails on the way.
     """
-    attempt = try_to_drive(opener, phases, speed=speed, fmu_step=fmu_step)
+    attempt = try_to_drive((speed,), opener, phases, fmu_step=fmu_step)[0]
     if attempt.error is not None:
         raise attempt.error
     assert attempt.trace is not None
@@ -141,25 +141,15 @@ class Attempt:
 
 
 def try_to_drive(
-    opener: Opener,
-    phases: Iterable[Phase],
-    *,
-    speed: float = 0.0,
-    fmu_step: float | None = None,
-) -> Attempt:
-    """Do the same as :func:`drive`, but return a failure together with the trace up to it."""
-    return try_to_drive_from((speed,), opener, phases, fmu_step=fmu_step)[0]
-
-
-def try_to_drive_from(
     speeds: Sequence[float],
     opener: Opener,
     phases: Iterable[Phase],
     *,
     fmu_step: float | None = None,
 ) -> list[Attempt]:
-    """Do the same as :func:`try_to_drive` from several speeds in turn, until one drive fails.
+    """Do the same as :func:`drive` from several speeds in turn, until one drive fails.
 
+    A failure is returned together with the trace up to it.
     One vehicle is started again for each speed, so that its FMU is unpacked only once.
     """
     attempts: list[Attempt] = []

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fmus.checking.manoeuvres import Opener, Phase, Trace, try_to_drive_from
+from fmus.checking.manoeuvres import Opener, Phase, Trace, try_to_drive
 from fmus.errors import (
     FmuCrashError,
     FmuError,
@@ -208,9 +208,7 @@ class _StepSizes:
         return max(done) - min(done) > 1 or len(blamed) > 1
 
     def _attempt(self, step: float | None) -> _Drives:
-        attempts = try_to_drive_from(
-            self._speeds, self._opener, manoeuvre(self._force), fmu_step=step
-        )
+        attempts = try_to_drive(self._speeds, self._opener, manoeuvre(self._force), fmu_step=step)
         error = attempts[-1].error
         if isinstance(error, FmuCrashError):
             raise error

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from math import isfinite
+from sys import float_info
 
 from fmus.description.model import Channel, Model, Value, Variable
 from fmus.errors import FmuVariableError
@@ -112,16 +112,9 @@ def _misfit(variable: Variable, value: object) -> str:
     number = value if isinstance(value, int | float) and not isinstance(value, bool) else None
     if variable.is_integer and not isinstance(number, int):
         return "expected a whole number"
-    if number is None or not _representable(number):
+    if number is None or not abs(number) <= float_info.max:
         return "expected a finite number"
     return _out_of_range(variable, number)
-
-
-def _representable(number: float) -> bool:
-    try:
-        return isfinite(number)
-    except OverflowError:  # a whole number beyond all floats
-        return False
 
 
 def _out_of_range(variable: Variable, value: float) -> str:

@@ -180,11 +180,9 @@ class _Group:
             elements += [_negated(variable, v) for v in start] if variable.negated else start
         convert = _converter(ctype)
         self._values: Any = (ctype.type * len(elements))(*map(convert, elements))
-        self._places = [(i, first[c.variable.name] + c.element) for i, c in channels]
-        self._negated = [
-            (i, first[c.variable.name] + c.element, c.variable)
+        self._places = [
+            (i, first[c.variable.name] + c.element, c.variable if c.variable.negated else None)
             for i, c in channels
-            if c.variable.negated
         ]
         self._convert = convert
         references = [variable.reference for variable in variables]
@@ -193,17 +191,15 @@ class _Group:
 
     def fill(self, view: memoryview[float]) -> None:
         values, convert = self._values, self._convert
-        for index, place in self._places:
-            values[place] = convert(view[index])
-        for index, place, variable in self._negated:
-            values[place] = convert(_negated(variable, view[index]))
+        for index, place, negated in self._places:
+            value = view[index]
+            values[place] = convert(_negated(negated, value) if negated else value)
 
     def empty(self, view: memoryview[float]) -> None:
         values = self._values
-        for index, place in self._places:
-            view[index] = values[place]
-        for index, place, variable in self._negated:
-            view[index] = _negated(variable, values[place])
+        for index, place, negated in self._places:
+            value = values[place]
+            view[index] = _negated(negated, value) if negated else value
 
 
 def _converter(ctype: CType) -> Callable[[float], Any]:

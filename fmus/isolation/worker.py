@@ -46,10 +46,6 @@ class Order:
     prepared: Any
     folder: Path
 
-    def load(self) -> Hosted:
-        """Return the adapter of the FMU, loaded into this process."""
-        return self.hosted(self.prepared, self.folder)
-
     def import_ahead(self) -> None:
         """Import the modules that the FMU will need, so that forked workers need not do it."""
         if self.prepared.wiring.interface.kind is Kind.MODEL_EXCHANGE:
@@ -143,7 +139,7 @@ class _Worker:
             self._follower.follow(int(numbers[0]))
             hosted.step(numbers)
         elif what == LOAD:
-            self._hosted = self._order.load()
+            self._hosted = self._order.hosted(self._order.prepared, self._order.folder)
         elif what == START and hosted is not None:
             hosted.start(numbers)
         elif what == QUIT and hosted is not None:

@@ -217,14 +217,12 @@ def _initial(model: Model) -> list[Entry]:
     ]
     states = [v for v in model.variables.values() if v.settable and v.causality == "output"]
     entries = []
-    for quantity, table in (("speed", "initial.speed"), ("position", "initial.position")):
+    for quantity in ("speed", "position"):
         ranked = [g for g in guesses(model, f"initial_{quantity}", free) if g.fits is not False]
         if not ranked:  # the output itself may have a start value
             ranked = [g for g in guesses(model, quantity, states) if g.fits]
-        if not unambiguous(ranked) or ranked[0].name_score < 9:
-            continue
-        entries.append(_axis("initial", quantity, ranked))
-        assert entries[-1].table == table
+        if unambiguous(ranked) and ranked[0].name_score >= 9:
+            entries.append(_axis("initial", quantity, ranked))
     return entries
 
 

@@ -6,7 +6,6 @@ process.
 """
 
 from collections.abc import Iterator
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +53,8 @@ class Painter:
         self._follows = whole.size[0] > _WHOLE and bool(self._egos)
         self._whole = _widened(whole, size[1] / size[0])
         self._signals = run.signals
+        self._large, self._small = (_font(_FINER * size[1] // parts) for parts in (24, 36))
+        self._outlines = [np.array(outline) for outline in run.scene.road if len(outline) > 2]
         self._present = sampled.present
 
     def frames(self) -> Iterator[Image.Image]:
@@ -95,10 +96,6 @@ class Painter:
                 if view.touches(band):
                     draw.polygon(self._pixels(band, view), fill="white" if k else UNPAINTED)
         return canvas
-
-    @cached_property
-    def _outlines(self) -> list[Array]:
-        return [np.array(outline) for outline in self._run.scene.road if len(outline) > 2]
 
     # --- the moving objects -------------------------------------------------------------------
 
@@ -179,14 +176,6 @@ class Painter:
         draw.line([(left, low), (right, low)], fill="#404040", width=max(3, canvas.height // 300))
         middle = ((left + right) / 2, low - pad / 3)
         draw.text(middle, f"{metres:g} m", fill="#404040", font=self._small, anchor="ms")
-
-    @cached_property
-    def _large(self) -> Any:
-        return _font(_FINER * self._size[1] // 24)
-
-    @cached_property
-    def _small(self) -> Any:
-        return _font(_FINER * self._size[1] // 36)
 
     def _pixels(self, points: Array, view: Box) -> list[tuple[float, float]]:
         width, height = _FINER * self._size[0], _FINER * self._size[1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +46,7 @@ class Net:
         self._lanes: list[tuple[str, str, float, shapely.LineString]] = []
         handlers = {"location": self._location, "edge": self._begin, "lane": self._lane}
         read_network(file, handlers)
+        self._tree = shapely.STRtree([line for *_, line in self._lanes])
 
     @classmethod
     def of(cls, run: RunFolder) -> Net:
@@ -77,10 +77,6 @@ class Net:
         points = [tuple(map(float, point.split(",")[:2])) for point in attributes["shape"].split()]
         line = shapely.LineString(points)
         self._lanes.append((self._edge, attributes["id"], float(attributes["length"]), line))
-
-    @cached_property
-    def _tree(self) -> shapely.STRtree:
-        return shapely.STRtree([line for *_, line in self._lanes])
 
     def nearest(self, x: Array, y: Array) -> list[Place]:
         """Return the nearest lane of a normal edge for each point [m].

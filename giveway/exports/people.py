@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from giveway.errors import ResultsError
-from giveway.exports.sampling import Sampled, Track, numbered
+from giveway.exports.sampling import Sampled, numbered
 from giveway.replays.run_folder import RunFolder
 
 _MARGIN = 2.0  # [m] margin of the ground around all places
@@ -29,8 +30,7 @@ def write_pedpy(run: RunFolder, sampled: Sampled, file: Path) -> str:
     Raises:
         ResultsError: nobody walked.
     """
-    people = _people(run, sampled)
-    columns, names = numbered(people)
+    columns, names = _people(run, sampled)
     head = [
         f"# framerate: {_rate(sampled):g} fps",
         f"# frame 0 is at {sampled.begin:g} s of SUMO's clock",
@@ -53,8 +53,7 @@ def write_jupedsim(run: RunFolder, sampled: Sampled, file: Path) -> str:
     Raises:
         ResultsError: nobody walked.
     """
-    people = _people(run, sampled)
-    columns, names = numbered(people)
+    columns, names = _people(run, sampled)
     turned = np.deg2rad(90.0 - columns["angle"])
     low = [float(columns[axis].min()) - _MARGIN for axis in ("x", "y")]
     high = [float(columns[axis].max()) + _MARGIN for axis in ("x", "y")]
@@ -98,11 +97,12 @@ def write_jupedsim(run: RunFolder, sampled: Sampled, file: Path) -> str:
     return f"{len(names)} people at {_rate(sampled):g} frames/s, for JuPedSim and its viewer"
 
 
-def _people(run: RunFolder, sampled: Sampled) -> list[Track]:
+def _people(run: RunFolder, sampled: Sampled) -> tuple[dict[str, NDArray[np.int64]], list[str]]:
+    """Return columns and names of the people, see :func:`numbered`."""
     people = sampled.people()
     if not people:
         raise ResultsError(f"{run.path}: nobody walked in this run; there is nothing to export")
-    return people
+    return numbered(people)
 
 
 def _rate(sampled: Sampled) -> float:
