@@ -210,8 +210,7 @@ def _examined(
         if info.is_dir():
             continue
         plain = unicodedata.normalize("NFC", info.filename).casefold()
-        other = folded.setdefault(plain, info.filename)
-        if other != info.filename:
+        if folded.setdefault(plain, info.filename) != info.filename:
             raise _refused(path, info, TWICE)
         if members.setdefault(info.filename, info) is not info:
             copies.append(info)

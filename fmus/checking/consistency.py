@@ -23,8 +23,7 @@ def position_follows_speed(response: Trace, expected: Expected) -> Finding:
     if expected.profile and expected.profile.outputs.position is None:
         return Finding(name, "skip", "no position among the outputs: the speed is integrated")
     way = np.cumsum(0.5 * (response.speed[1:] + response.speed[:-1])) * response.step_size
-    moved = response.position[1:] - response.position[0]
-    ratio, misfit = _ratio(way, moved)
+    ratio, misfit = _ratio(way, response.position[1:] - response.position[0])
     if not np.isfinite(ratio) or (ratio == 0.0 and misfit == 0.0):
         return Finding(name, "skip" if not np.any(way) else "fail", "the position does not move")
     if misfit > 0.05:

@@ -73,8 +73,7 @@ def idles(idle: Trace) -> Finding:
 def drives(response: Trace, expected: Expected) -> Finding:
     """Test whether a forward force drives the vehicle forwards."""
     name = "drives"
-    driven = response.force > 0.0
-    end = int(np.flatnonzero(driven)[-1]) + 1
+    end = int(np.flatnonzero(response.force > 0.0)[-1]) + 1
     gained = float(response.speed[end] - response.speed[0])
     seconds = end * response.step_size
     text = f"{seconds:g} s of {response.force[0]:.4g} N: {gained:+.4g} m/s"

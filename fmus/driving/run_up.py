@@ -28,8 +28,7 @@ def run_up(vehicle: Drivable, speed: float) -> float:
     h, integral, settled, first = vehicle.step_size, 0.0, 0.0, vehicle.speed
     for _ in range(round(_LIMIT / h)):
         error = speed - vehicle.speed
-        wanted = error / _RESPONSE + integral
-        acceleration = min(max(wanted, -_STRONGEST), _STRONGEST)
+        acceleration = min(max(error / _RESPONSE + integral, -_STRONGEST), _STRONGEST)
         if abs(error) < _CLOSE:  # farther away, the integrator would wind up
             integral += error * h / (_RESPONSE * _INTEGRATION)
         vehicle.step(mass * acceleration + friction * speed)

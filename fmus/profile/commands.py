@@ -130,5 +130,4 @@ def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: floa
         full_drive, full_brake = inputs.throttle.full_force, inputs.brake.full_force
         return PedalCommand(wires[0], wires[1], full_drive, full_brake)
     assert inputs.speed_setpoint is not None  # the profile has one of the five kinds of input
-    lead = inputs.speed_setpoint.lead or step_size
-    return SetpointCommand(wires[0], M, alpha, lead)
+    return SetpointCommand(wires[0], M, alpha, inputs.speed_setpoint.lead or step_size)

@@ -190,8 +190,7 @@ def write_gif(run: RunFolder, sampled: Sampled, file: Path) -> str:
     Returns:
         The written file, in words.
     """
-    painter = Painter(run, sampled, GIF_SIZE)
-    first, *others = _paletted(painter)
+    first, *others = _paletted(Painter(run, sampled, GIF_SIZE))
     first.save(
         file,
         format="GIF",

@@ -101,8 +101,7 @@ def sampled(run: RunFolder, step: float | None = None) -> Sampled:
         raise ResultsError(f"{run.path}: trajectories.csv has no rows; there is nothing to export")
     begin = float(rows["time"].min())
     count = math.floor((float(rows["time"].max()) - begin) / step + 1e-6) + 1
-    record = run.config.record
-    away = _AWAY * max(record.far_period, run.sumo_step, run.step)
+    away = _AWAY * max(run.config.record.far_period, run.sumo_step, run.step)
     tracks: list[Track] = []
     for name, of in rows.groupby("id", sort=False):
         of = of.sort_values("time", kind="stable")

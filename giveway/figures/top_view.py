@@ -177,8 +177,7 @@ def _colours(time: NDArray[np.float64]) -> Normalize:
 
 def rectangle(ego: EgoTrack, k: int, shape: VehicleShape) -> NDArray[np.float64]:
     """Return the ego's corners (4, 2) [m] at instant k, front left first, counter-clockwise."""
-    front = np.array((ego.front_x[k], ego.front_y[k]))
-    return shape.corners(front, float(ego.heading[k]))
+    return shape.corners(np.array((ego.front_x[k], ego.front_y[k])), float(ego.heading[k]))
 
 
 def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:

@@ -83,8 +83,7 @@ class EgoPath:
     def locate(self, x: float, y: float, *, near: float) -> tuple[float, float]:
         """Return station [m] and lateral offset [m] of (x, y), near the station ``near``."""
         first = segment_at(self.stations, near - _SEARCH)
-        last = segment_at(self.stations, near + _SEARCH)
-        part = slice(first, last + 2)
+        part = slice(first, segment_at(self.stations, near + _SEARCH) + 2)
         station, lateral = project(self.vertices[part], self.stations[part], x, y)
         return station, lateral
 

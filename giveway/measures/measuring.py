@@ -124,8 +124,7 @@ def _area_rows(
     measure: MeasureConfig, time: NDArray[np.float64], table: "pd.DataFrame"
 ) -> list[dict[str, Any]]:
     step = float(time[-1] - time[0]) / (len(time) - 1)
-    every = max(1, round(SAMPLING / step))
-    looked_at = np.arange(0, len(time) - 1, every)
+    looked_at = np.arange(0, len(time) - 1, max(1, round(SAMPLING / step)))
     classic, voronoi, speed = _area_series(measure, looked_at, step, table)
     rows = []
     for begin, end in _intervals(measure, time):

@@ -124,8 +124,7 @@ def vehicle_rows(clip: Clip, protocol: Protocol) -> Array:
     rows = np.empty((*clip.poses.shape[:2], 7))
     rows[:, :, :4] = clip.poses
     rows[:, :, 4:] = protocol.front, protocol.rear, protocol.width
-    unseen = np.isnan(rows).any(axis=2)
-    rows[unseen, :4] = _NOWHERE, _NOWHERE, 0.0, 0.0
+    rows[np.isnan(rows).any(axis=2), :4] = _NOWHERE, _NOWHERE, 0.0, 0.0
     return rows
 
 

@@ -36,8 +36,7 @@ class Polyline:
     def through(cls, points: Array) -> Self:
         """Return the polyline through ``points`` (k, 2) [m], without nearly straight vertices."""
         kept = points[_bends(points)]
-        steps = np.hypot(*np.diff(kept, axis=0).T)
-        return cls(kept, [0.0, *np.cumsum(steps).tolist()])
+        return cls(kept, [0.0, *np.cumsum(np.hypot(*np.diff(kept, axis=0).T)).tolist()])
 
     @property
     def length(self) -> float:

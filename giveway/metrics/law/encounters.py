@@ -120,8 +120,7 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
         moved = np.diff(walk.progress[begin:end], prepend=walk.progress[begin])
         moved[(moved < 0.0) & ~pushes[begin:end]] = 0.0
         progress = np.cumsum(moved)
-        farthest = np.maximum.accumulate(progress)
-        back = farthest - progress
+        back = np.maximum.accumulate(progress) - progress
         k = int(np.argmax(back))
         at = begin + int(np.argmax(progress[: k + 1]))
         distance = float(back[k]) - _goes_back_anyway(drive, area, walk, at, begin + k)
@@ -160,6 +159,5 @@ def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
 
 def waiting_time(drive: Drive, found: Encounter) -> float:
     """Return the time [s] for which a person stood although the ego had to let them pass."""
-    steps = found.walk.steps
-    lasting = np.append(np.diff(drive.ego.time), 0.0)[steps]
+    lasting = np.append(np.diff(drive.ego.time), 0.0)[found.walk.steps]
     return float(lasting[found.owed & (found.walk.speed < drive.stop_speed)].sum())

@@ -137,8 +137,7 @@ def _routes(drive: Drive, area: Area) -> list[_Route]:
     begins = np.flatnonzero(another)
     joined = np.ones(len(u), dtype=np.bool_)
     joined[begins] = False  # each leg ends at a place, except at the first one of a route
-    half = area.crossing.width / 2 + drive.body_radius
-    over = _along(u, w, area.length, half)
+    over = _along(u, w, area.length, area.crossing.width / 2 + drive.body_radius)
     over = np.add.reduceat(np.where(joined, over, 0.0), begins)
     found: list[_Route] = []
     ends: dict[int, int] = {}
