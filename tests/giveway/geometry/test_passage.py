@@ -16,7 +16,7 @@ BACK = EgoPath.through([(0.0, 0.0), (40.0, 0.0), (40.0, 2.0), (0.0, 2.0)])
 
 def seen(path: EgoPath, x: float, y: float, *, front: float = 0.0, reach: float = 0.0):
     last = len(path.vertices) - 2
-    return look(path.vertices, path.stations, 0, last, x, y, front, 1.25, reach)
+    return look(path.vertices, path.stations, (0, last), (x, y), front, 1.25, reach)
 
 
 @given(st.floats(1.0, 59.0), st.floats(-1.2, 1.2))

@@ -37,7 +37,7 @@ def test_gzip_is_seen_by_content(built: Callable[[str], Any], written: Callable[
     plain = built("grid")
     zipped = WalkNetwork.read(written(gzip.compress(plain.file.read_bytes())))
     assert zipped.signals == plain.network.signals
-    np.testing.assert_array_equal(zipped.wall_segments(), plain.network.wall_segments())
+    np.testing.assert_array_equal(zipped.wall_segments, plain.network.wall_segments)
 
 
 @pytest.mark.parametrize(
@@ -82,5 +82,5 @@ def test_the_nearest_lane_counts_in_sumos_metres(written: Callable[..., Path]) -
 def test_no_lane_is_near_where_there_is_none(written: Callable[..., Path]) -> None:
     network = WalkNetwork.read(written("<net/>"))
     assert network.nearest_lane(0.0, 0.0) is None
-    assert network.wall_segments().shape == (0, 4)
+    assert network.wall_segments.shape == (0, 4)
     assert network.boundary == (0.0, 0.0, 0.0, 0.0)
