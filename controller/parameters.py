@@ -88,9 +88,9 @@ class PidParameters:
     value.
     """
 
-    K_p: float = 2400.0  # [N s/m]
-    K_i: float = 10.0  # [N/m]
-    K_d: float = 100.0  # [N s^2/m]
+    K_p: float = 2400.0  # proportional gain [N s/m]
+    K_i: float = 10.0  # integral gain [N/m]
+    K_d: float = 100.0  # derivative gain [N s^2/m]
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     buffer_distance: float = BUFFER_DISTANCE  # d_buffer [m]

@@ -127,20 +127,21 @@ class Crowd:
         signals: Sequence[ArrayLike] | None = None,
         priority: ArrayLike = 0.0,
     ) -> Crowd:
-        """A new crowd, each pedestrian on the way to the first of its way-points.
+        """Return a new crowd, in which each pedestrian walks to the first of its way-points.
 
         Args:
-            position: (n, 2) centres [m].
-            velocity: (n, 2) [m/s].
-            desired_speed: (n,) or one number for all [m/s].
-            waypoints: Way-points of each, (k_i, 2) [m] with k_i >= 1; the last is the destination.
-            passages: Passages of each, (k_i, 3): direction_x, direction_y (of any length) and
-                half_width [m]; (0, 0, anything) is none. Default: none.
-            signals: Signals of each, (k_i,): index of a signal, -1 for none. Default: none.
-            priority: (n,) or one number for all, 0 to 1.
+            position: Centres (n, 2) [m].
+            velocity: Velocities (n, 2) [m/s].
+            desired_speed: Desired speeds (n,) [m/s], or one number for all.
+            waypoints: Way-points (k_i, 2) [m] of each pedestrian, k_i >= 1; the last one is the
+                destination.
+            passages: Passages (k_i, 3) of each: direction_x, direction_y (of any length) and
+                half_width [m]. (0, 0, anything) stands for a point. None if all are points.
+            signals: Signals (k_i,) of each: index of a signal, or -1. None if there are none.
+            priority: Priorities (n,), 0 to 1, or one number for all.
 
         Raises:
-            CrowdError: naming the array, the index and the value that is not as it should be.
+            CrowdError: a value is invalid; the message has the array, the index and the value.
         """
         x = as_floats(position, "position", CrowdError)
         x = x.reshape(0, 2) if x.size == 0 else x

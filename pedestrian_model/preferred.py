@@ -1,4 +1,4 @@
-"""The way to the next way-point of everybody, for models that plug in."""
+"""Computes desired velocities and goals of a crowd, for models that plug in."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from pedestrian_model._jit import kernel
 from pedestrian_model.routes import heading_for
 from pedestrian_model.stepping import first_insane
 
-_ARRIVES = 0.3  # Distance [m] from a way-point at which somebody slows down to stop
+_ARRIVES = 0.3  # distance [m] over which people slow down to stop at a way-point
 
 first_insane_of = kernel(first_insane)
 """The first pedestrian whose state is not finite, compiled for Python."""
@@ -24,15 +24,15 @@ def preferred_velocities(
     radii: tuple[float, float],
     out: tuple[Any, ...],
 ) -> None:
-    """Pass the way-points reached; tell where everybody walks to, and how fast they would like to.
+    """Pass the way-points reached, and fill the desired velocities, goals and stops.
 
     Args:
         state: Positions, velocities and way-point indices of a crowd; the indices are changed.
-        desired_speed: Desired speed (n,) [m/s].
-        routes: Arrays of the way-points.
-        closed: State of each signal, True if it holds people.
-        radii: Radii [m] of way-points and bodies.
-        out: Preferred velocities (n, 2) [m/s], goals (n, 2) [m] and stops (n,), to be filled.
+        desired_speed: Desired speeds (n,) [m/s].
+        routes: Arrays of the routes.
+        closed: Marks (signals,) of closed signals.
+        radii: Radius [m] of a way-point and of a body.
+        out: Desired velocities (n, 2) [m/s], goals (n, 2) [m] and stops (n,), filled.
     """
     position, _, waypoint_index = state
     preferred, goal, stops = out

@@ -38,7 +38,7 @@ class Plan(NamedTuple):
 
 
 class Road(NamedTuple):
-    """What the road allows over the horizon.
+    """The distances and speeds that the road allows over the horizon.
 
     Attributes:
         allowed: Distances (N,) [m] that may be driven until steps 1 ... N, by vehicles and

@@ -68,8 +68,8 @@ def plan_predictor(
 class EgoAssumptions(NamedTuple):
     """The ego's body and brakes, and the motions of people that it prepares for."""
 
-    shape: VehicleShape  # of the body
-    half_width: float  # of the corridor [m]
+    shape: VehicleShape  # length and width of the body
+    half_width: float  # half width [m] of the corridor
     clearance: float  # distance [m] that the safety layer keeps to pedestrians' bodies
     braking: float  # largest deceleration [m/s^2]
     worst: WorstMotion | None  # motion that the safety layer assumes; None without such a layer

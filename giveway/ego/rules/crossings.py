@@ -124,7 +124,7 @@ class Crossings:
         return None if stop == math.inf else Demand(stop, YIELD, self._latest)
 
     def _stop_at(self, front: float, speed: float, crowd: Crowd, leader: Leader) -> float:
-        """Station [m] at which the front bumper has to stop; inf: nowhere."""
+        """The station [m] at which the front bumper has to stop; inf if it need not stop."""
         self._latest = math.inf
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1

@@ -109,7 +109,7 @@ def gap_relaxation(
 
     Args:
         leader: Closest vehicle in front.
-        ahead: (N,) stations [m] of the closest vehicle at steps 1 ... N.
+        ahead: Stations (N,) [m] of the closest vehicle at steps 1 ... N.
         station: Station of the front bumper [m].
         speed: Speed of the ego [m/s].
         safe_distance: Safe distance d_safe [m].

@@ -41,7 +41,7 @@ class Situation:
     speed: float = 0.0  # speed of the ego [m/s]
     crowd: Crowd = field(default_factory=Crowd.empty)  # pedestrians as the ego sees them
     leader: Leader = NO_LEADER  # vehicle ahead, which may be one that merges
-    stop_at_light: float = inf  # station [m] at which a red light demands a stop; inf: nowhere
+    stop_at_light: float = inf  # station [m] of the stop at a red light; inf without one
     signals: Mapping[str, str] = field(
         default_factory=dict
     )  # state of each signal system, one letter per movement

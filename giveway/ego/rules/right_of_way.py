@@ -177,7 +177,7 @@ class RightOfWay:
         return None if stop == math.inf else Demand(stop, YIELD)
 
     def _stop_at(self, front: float, speed: float, leader: Leader) -> float:
-        """Station [m] at which the front bumper has to stop; inf: nowhere."""
+        """The station [m] at which the front bumper has to stop; inf if it need not stop."""
         stop = self._stop
         for place in self._junctions[self._next :]:
             if place.entry < front:

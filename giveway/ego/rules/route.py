@@ -145,5 +145,5 @@ class RouteContext:
 
     @cached_property
     def times_ahead(self) -> Array:
-        """(N,) times [s] of the steps that the ego looks ahead, from now on."""
+        """The times (N,) [s] from now on of the steps that the ego looks ahead."""
         return self.time_step * np.arange(1.0, self.ego.horizon + 1.0)

@@ -58,7 +58,7 @@ class RuleSet:
         speed: Speed [m/s] not to be exceeded now; inf without a limit.
         advice: Speed [m/s] advised to a controller that plans ahead; inf without advice.
         leader: Vehicle to be followed as if it were ahead; `NO_LEADER` without one.
-        lane_speeds: (N,) speeds [m/s] not to be exceeded in the steps ahead, or None.
+        lane_speeds: Speeds (N,) [m/s] not to be exceeded in the steps ahead, or None.
     """
 
     def __init__(self, rules: Sequence[Rule] = (), time: float = 0.0) -> None:

@@ -69,7 +69,7 @@ class ScheduledStops:
         return None if stop == math.inf else Demand(stop, STOP)
 
     def _stop_at(self, front: float, speed: float) -> float:
-        """Station [m] at which the front bumper has to halt; inf: nowhere."""
+        """The station [m] at which the front bumper has to halt; inf if it need not halt."""
         following = self._next
         if following is None or front > following.end + _PASSED:
             return math.inf

@@ -14,7 +14,7 @@ class SpeedLimits:
 
     Args:
         profile: Speed of a free ego at each station of the path.
-        times: (N,) times [s] of the steps that the ego looks ahead.
+        times: Times (N,) [s] of the steps that the ego looks ahead.
     """
 
     def __init__(self, profile: SpeedProfile, times: Array) -> None:

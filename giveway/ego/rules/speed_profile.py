@@ -46,7 +46,7 @@ class SpeedProfile:
         departure: Station [m] at which the ego enters.
 
     Attributes:
-        speeds: (k,) speeds [m/s] at the stations 0, 0.5 m, 1 m, ...
+        speeds: Speeds (k,) [m/s] at the stations 0, 0.5 m, 1 m, ...
         fastest: Highest speed [m/s] from the departure on.
     """
 
@@ -98,12 +98,12 @@ class SpeedProfile:
         return lowest if lowest < self.fastest else math.inf
 
     def ahead(self, station: float, speed: float, times: Array) -> Array:
-        """(N,) speed limits [m/s] of a plan at ``times`` (N,) [s] from now on.
+        """The speed limits (N,) [m/s] of a plan at ``times`` (N,) [s] from now on.
 
         Args:
             station: Station of the front bumper now [m].
             speed: Speed of the ego now [m/s]. An excess is reduced with the deceleration b.
-            times: (N,) ascending times [s].
+            times: Ascending times (N,) [s].
         """
         now = np.interp(station, self._stations, self._times)
         along = np.interp(now + times, self._times, self.speeds)

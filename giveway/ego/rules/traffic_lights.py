@@ -126,7 +126,7 @@ class TrafficLights:
         return Demand(stop, LIGHT, advice=advice)
 
     def _stop_at(self, front: float, speed: float) -> float:
-        """Station [m] at which the front bumper has to stop; inf: nowhere."""
+        """The station [m] at which the front bumper has to stop; inf if it need not stop."""
         while self._next < len(self._lights) and self._lights[self._next].station <= front:
             self._next += 1
             self._greens = ()  # they belonged to the light that was passed

@@ -53,11 +53,11 @@ def scene(
 
     Args:
         step: Step of the drive.
-        horizon: N of the controller.
+        horizon: Prediction horizon N of the controller [steps].
         setup: Setup of the drive.
         seed: Seed of the people.
-        turned: the whole scene is turned and shifted.
-        order: -1: people stand in the opposite order.
+        turned: Whether the whole scene is turned and shifted.
+        order: Step through the people: 1, or -1 for the opposite order.
     """
     random, h = np.random.default_rng(seed), setup.time_step
     steps = np.arange(1, max(1, horizon) + 1)

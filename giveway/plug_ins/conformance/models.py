@@ -36,7 +36,7 @@ _MOST = 100.0  # Acceleration [m/s^2], ten times that of a fall; more is an expl
 
 
 class _Scene:
-    """The made-up scene, perhaps turned and shifted, its people perhaps in another order."""
+    """The made-up scene, which may be turned and shifted, with its people in another order."""
 
     def __init__(self, *, seed: int = 1, turned: bool = False, order: int = 1) -> None:
         random = np.random.default_rng(seed)
@@ -119,7 +119,7 @@ def check_model(
 
 
 class _Copied:
-    """A model that is told in arrays of its own, which nobody overwrites."""
+    """A model that gets copies of all arrays, which are not overwritten later."""
 
     def __init__(self, model: object) -> None:
         self._step = model.step  # type: ignore[attr-defined]
@@ -129,7 +129,7 @@ class _Copied:
 
 
 class _Watched:
-    """A model whose answers are looked at before they are limited."""
+    """A model whose answers are examined before they are limited."""
 
     def __init__(self, model: object, speed: float) -> None:
         self._step = model.step  # type: ignore[attr-defined]
