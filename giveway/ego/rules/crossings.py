@@ -109,7 +109,7 @@ class Crossings:
         """Take note of the lights' states.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         self._states = situation.signals
 
@@ -117,7 +117,7 @@ class Crossings:
         """The stop before a crossing at which the ego gives way, or which it could not leave.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         leader = situation.leader_at_rest()
         stop = self._stop_at(situation.station, situation.speed, situation.crowd, leader)

@@ -66,7 +66,7 @@ class Merging:
         """Decide which vehicles go first at the merge points in sight.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         if situation.merging:
             self._see(situation.merging, situation.station, situation.speed)
@@ -140,7 +140,7 @@ class Merging:
         """The merging vehicle that the ego follows, and the stop at which it waits for others.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         if not self._first:
             return None
@@ -163,7 +163,7 @@ class Merging:
         """Move the merging vehicles on between SUMO's steps, and measure the ego's wait.
 
         Args:
-            situation: What the rules know after the control step.
+            situation: Situation after the control step.
             time_step: Length of the step [s].
         """
         speed = situation.speed

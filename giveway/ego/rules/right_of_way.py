@@ -55,7 +55,7 @@ _GOING = 0.3  # time margin [s] to a vehicle that passes after an ego that has d
 _STAYS = 3.0  # time [s] after which a vehicle that stands without need is assumed to stay
 _BOXED_IN = 1.0  # time [s] after which this is assumed of a vehicle without room to go on
 _CLOSE = 3.0  # gap [m] to a standing vehicle ahead, below which a vehicle has no room to go on
-_BRIEFLY = 1.0  # time [s] of driving at the present speed, by which a moving vehicle's gap shrinks
+_BRIEFLY = 1.0  # time [s] whose driving distance is added to this gap for a moving vehicle
 _AT_LINE = 4.0  # distance [m] before the line, within which a vehicle stands at it
 _DECIDED = 10.0  # distance [m] before the line, within which the ego keeps its decision to go
 # Letters of movements that yield to no vehicle: priority, and zippers (see the rule Merging)
@@ -135,7 +135,7 @@ class RightOfWay:
         """Decide where to wait.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         time, front, speed = situation.time, situation.station, situation.speed
         states, traffic = situation.signals, situation.traffic
@@ -171,7 +171,7 @@ class RightOfWay:
         """The stop before or inside a junction at which the ego waits for others.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         stop = self._stop_at(situation.station, situation.speed, situation.leader_at_rest())
         return None if stop == math.inf else Demand(stop, YIELD)

@@ -63,7 +63,7 @@ class ScheduledStops:
         """A stop at the next scheduled stop, if the ego is able to brake for it.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         stop = self._stop_at(situation.station, situation.speed)
         return None if stop == math.inf else Demand(stop, STOP)
@@ -81,7 +81,7 @@ class ScheduledStops:
         """Find out whether the ego has halted, may drive on, or has driven past.
 
         Args:
-            situation: What the rules know after the control step.
+            situation: Situation after the control step.
         """
         front, speed = situation.station, situation.speed
         self._steps += 1

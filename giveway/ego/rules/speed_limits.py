@@ -31,7 +31,7 @@ class SpeedLimits:
         """The speeds not to be exceeded.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         station, speed = situation.station, situation.speed
         limit = self._profile.limit(station, speed)

@@ -23,7 +23,7 @@ _SLOWED = 0.8  # share of the speed at the decision to pass at yellow, below whi
 _SLOWEST = 2.0  # lowest advisory speed [m/s]
 _FAR = 150.0  # distance [m] within which the ego receives a signal plan
 _STARTS = 1.0  # start-up time [s] of the first vehicle after the light turns green
-_COASTING = 0.4  # largest drop [m/s] of the advisory speed below the present one, for 1 m/s^2
+_COASTING = 0.4  # largest drop [m/s] of the advisory speed below the present one (1 m/s^2)
 _WAVE = 4.2  # speed [m/s] of the start-up wave in a queue, 15 km/h (Treiber & Kesting 2013)
 
 
@@ -92,7 +92,7 @@ class TrafficLights:
         """Take note of the lights' states.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         states, front, speed = situation.signals, situation.station, situation.speed
         for i in range(self._next, len(self._lights)):
@@ -117,7 +117,7 @@ class TrafficLights:
         """A stop before a red light, and the speed at which the ego arrives at green.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
         """
         stop = self._stop_at(situation.station, situation.speed)
         advice = self._advised(situation) if self._greens else math.inf

@@ -46,7 +46,7 @@ class PluggedInRule:
         """The demand of the rule, checked.
 
         Args:
-            situation: What the rules know now.
+            situation: Present situation of the ego.
 
         Raises:
             RuleError: it raises, or answers with no sound `Demand`.
