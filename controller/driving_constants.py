@@ -1,4 +1,4 @@
-"""The accelerations and speeds that describe how egos drive, and how they expect others to.
+"""The accelerations, speeds and safe times of egos, and of others as egos expect them.
 
 The planner, the rules of the road, the safety of their plans and the law that judges drives share
 these constants. The sources name where a value comes from; the others are giveway's own choice.
@@ -36,8 +36,25 @@ PULL_AWAY_USUAL: Final = 2.0
 """Acceleration [m/s²] with which others that wait are expected to pull away, and with which the law
 expects the ego to come nearer; giveway's own choice."""
 
-APPROACH_OTHERS: Final = 1.0
-"""Acceleration [m/s²] with which others approach a junction; giveway's own choice."""
+UNHURRIED: Final = 1.0
+"""Acceleration [m/s²] with which others approach a junction, and with which others expect the ego
+to leave one; giveway's own choice."""
+
+FOLLOW_LIMIT: Final = 4.0
+"""Largest deceleration [m/s²] with which the tuned PID follows a falling limit; giveway's own."""
+
+LATERAL_ACCELERATION: Final = 2.0
+"""Largest lateral acceleration [m/s²] in a bend. Roads are designed for the side friction that
+drivers still find comfortable: 0.20 g at 30 mph (AASHTO, A Policy on Geometric Design of Highways
+and Streets, 2011, section 3.3)."""
 
 STOPS_AT_YELLOW: Final = 2.5
 """Deceleration [m/s²] with which others stop at a yellow light; giveway's own choice."""
+
+SAFE_TIME: Final = 1.0
+"""Time [s] between the ego and a road user who passes its path after it, or a person who passes its
+path before it; giveway's own choice."""
+
+SAFE_TIME_BEHIND: Final = 0.5
+"""Time [s] behind a vehicle that passes the ego's path before it, or behind a person for whom the
+ego has already waited; giveway's own choice."""

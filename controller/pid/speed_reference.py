@@ -5,11 +5,11 @@ from math import copysign, inf, sqrt
 from typing import Literal
 
 from controller.defaults import BUFFER_DISTANCE, REFERENCE_SPEED, SAFE_DISTANCE
+from controller.driving_constants import FOLLOW_LIMIT
 from controller.parameters import require, require_not_negative, require_positive
 
 ProfileName = Literal["braking-curve", "linear"]
 
-_OTHERS_CURVE = 4.0  # Largest deceleration [m/s^2] to follow an external limit
 _STANDS = 0.005  # Reference speed [m/s] below which the brake holds the vehicle
 
 
@@ -120,7 +120,7 @@ class SpeedReference:
         self._wanted, self._asked = self.target(gap, limit), (gap, limit)
         wanted, needed = self._wanted, self._braking(speed, gap)
         # Limits for stop lines and vehicles are braking curves themselves, and must be followed.
-        down = needed if limit == inf else min(max(needed, _OTHERS_CURVE), self._strongest)
+        down = needed if limit == inf else min(max(needed, FOLLOW_LIMIT), self._strongest)
         away = wanted - now
         jerk = self._jerk if away >= 0.0 else min(self._sharpest, needed / self._build_up)
         a = self._slope(speed, wanted, limit)
@@ -158,7 +158,7 @@ class SpeedReference:
             return 0.0
         if wanted == limit:
             change = (limit - self._limit) / self.time_step
-            return change if abs(change) <= _OTHERS_CURVE else 0.0  # 0 for a limit that is new
+            return change if abs(change) <= FOLLOW_LIMIT else 0.0  # 0 for a limit that is new
         if p.profile == "linear":
             return -speed * p.reference_speed / p.buffer_distance
         return -speed * self._down / (wanted + self._down * p.approach_lag)

@@ -17,6 +17,7 @@ from math import inf, sqrt
 
 import numpy as np
 
+from controller.driving_constants import STANDING
 from controller.observation import Observation
 from controller.parameters import require_not_negative, require_positive
 from controller.plug_in import Acceleration, Setup
@@ -24,7 +25,6 @@ from controller.reference_drivers.people_ahead import people_ahead
 
 _G = 9.81  # acceleration of gravity [m/s^2]
 _SLOWEST = 1.0  # least speed [m/s] for the computation of arrival times
-_CREEP = 0.2  # speed [m/s] below which the vehicle stands
 _AT_LINE = 0.5  # distance [m] to a stop line at standstill
 _NEARLY = 0.1  # least distance [m] of a stop, against a division by zero
 _URGENT = 1.2  # factor on comfortable deceleration, beyond which a person has cut in
@@ -120,7 +120,7 @@ class CarefulDriver:
     def _is_urgent(self, room: float, speed: float) -> bool:
         """Return whether comfortable braking is too weak for a person at distance ``room`` [m]."""
         o = self._options
-        if speed < _CREEP or room / max(speed, _SLOWEST) >= o.horizon:
+        if speed < STANDING or room / max(speed, _SLOWEST) >= o.horizon:
             return False
         needed = speed * speed / (2.0 * max(room - o.gap, _NEARLY))
         return needed > _URGENT * o.comfort or self._braking > 0.0

@@ -9,17 +9,22 @@ is in the junction already stops before the two paths cross.
 
 from collections.abc import Mapping
 
-from controller.driving_constants import FIRM, PULL_AWAY_USUAL
+from controller.driving_constants import (
+    FIRM,
+    PULL_AWAY,
+    PULL_AWAY_USUAL,
+    SAFE_TIME,
+    SAFE_TIME_BEHIND,
+    UNHURRIED,
+)
 from giveway.ego.ego import Ego
 from giveway.ego.rules.gap_acceptance import travel_time
 from giveway.ego.rules.junctions import RED, SIGHT, Approach, PathJunction, Traffic, letter_of
-from giveway.ego.rules.yielding import AFTER, BEFORE, USUAL_SPEED, needed_braking
+from giveway.ego.rules.yielding import USUAL_SPEED, needed_braking
 from giveway.geometry.conflict import Conflict
 
 # Distance [m] before the ego's path at which a vehicle in the junction stops
 _BEFORE_CONFLICT = 1.0
-# Accelerations [m/s^2] of the ego for its earliest entry and latest exit
-_COMING, _LEAVING = 1.5, 1.0
 
 
 def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[str, float]:
@@ -71,11 +76,11 @@ def _gives_way(
     if its in RED or its == "G" or not named or (mutual and not inside):
         return False
     speed, front = ego.vehicle.speed, ego.front
-    comes = travel_time(where.enter - front, speed, _COMING, max(USUAL_SPEED, speed))
-    goes = travel_time(where.leave + ego.shape.length - front, speed, _LEAVING, max(speed, 4.0))
+    comes = travel_time(where.enter - front, speed, PULL_AWAY, max(USUAL_SPEED, speed))
+    goes = travel_time(where.leave + ego.shape.length - front, speed, UNHURRIED, max(speed, 4.0))
     fastest = max(USUAL_SPEED, other.speed)
     enters, clears = (
         travel_time(other.distance + station, other.speed, PULL_AWAY_USUAL, fastest)
         for station in (where.other_enter, where.other_leave + other.length)
     )
-    return clears + AFTER > comes and goes + BEFORE > enters
+    return clears + SAFE_TIME > comes and goes + SAFE_TIME_BEHIND > enters

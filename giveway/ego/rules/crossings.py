@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from controller.driving_constants import FIRM, PULL_AWAY
+from controller.driving_constants import FIRM, PULL_AWAY, SAFE_TIME, SAFE_TIME_BEHIND
 from giveway.crowd.crossings import (
     KERB_DISTANCE,
     have_priority,
@@ -37,8 +37,6 @@ from giveway.ego.rules.yielding import (
 from giveway.sumo.signal_plans import ChangeOf, untold
 from pedestrian_model import Crowd
 
-_BEFORE = 1.0  # time margin [s] between the ego and a pedestrian who crosses before or after it
-_AFTER = 0.5  # time margin [s] behind a pedestrian for whom the ego has already waited
 _PATIENCE = 4.5  # time [s]: a pedestrian who reaches the ego's path within it always counts
 _CLEAR = 0.3  # least distance [m] between a stop and the crossing
 _LAST = 2.0  # distance [m]; farther away, a stop at the very edge of the crossing is early enough
@@ -207,8 +205,8 @@ class Crossings:
         starts = speed <= CRAWLING or number == self._waits_for
         enters, clears = self._own_times(place, front, speed, starts)
         has_waited = number == self._next and self._place < math.inf
-        first = leaves + (_AFTER if starts or has_waited else _BEFORE) < enters
-        later = arrives > max(clears + _BEFORE, _PATIENCE) + sure
+        first = leaves + (SAFE_TIME_BEHIND if starts or has_waited else SAFE_TIME) < enters
+        later = arrives > max(clears + SAFE_TIME, _PATIENCE) + sure
         return bool((coming & (to_leave > 0.0) & ~first & ~later).any())
 
     def _open_for(self, place: PathCrossing) -> float:

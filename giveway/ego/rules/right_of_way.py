@@ -19,12 +19,14 @@ import math
 from collections.abc import Mapping, Sequence, Set
 
 from controller.driving_constants import (
-    APPROACH_OTHERS,
     FIRM,
     PULL_AWAY,
     PULL_AWAY_BRISK,
+    SAFE_TIME,
+    SAFE_TIME_BEHIND,
     STANDING,
     STOPS_AT_YELLOW,
+    UNHURRIED,
 )
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.gap_acceptance import travel_time
@@ -40,8 +42,6 @@ from giveway.ego.rules.junctions import (
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.yielding import (
-    AFTER,
-    BEFORE,
     CRAWLING,
     STOP_BEFORE,
     USUAL_SPEED,
@@ -223,7 +223,7 @@ class RightOfWay:
             critical = self._critical_headway
         if first and before and letter not in "GMyY" and self._time - self._followed < follow_up:
             return line
-        margin = AFTER
+        margin = SAFE_TIME
         if first and self._going:
             critical, margin = 0.0, _GOING
         stop, stay = math.inf, set[str]()
@@ -315,14 +315,14 @@ class RightOfWay:
         enter = travel_time(where.enter - front, speed, PULL_AWAY_BRISK, fastest)
         to_enter = other.distance + where.other_enter
         to_leave = other.distance + where.other_leave + other.length
-        comes = travel_time(to_enter, other.speed, APPROACH_OTHERS, max(USUAL_SPEED, other.speed))
+        comes = travel_time(to_enter, other.speed, UNHURRIED, max(USUAL_SPEED, other.speed))
         goes = math.inf
         if other.speed >= STANDING:  # inside the junction it keeps its lanes' speed limit
             inside = min(other.speed, place.movements[other.number].speed)
             outside = min(max(other.distance, 0.0), to_leave)
             goes = outside / other.speed + (to_leave - outside) / inside
         in_time = comes >= max(clear + margin, line + critical if front <= place.entry else 0.0)
-        return not in_time and goes + BEFORE > enter
+        return not in_time and goes + SAFE_TIME_BEHIND > enter
 
 
 def _has_to_wait(movement: Movement, traffic: Traffic) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from controller import LongitudinalModel, SafetyLayer
-from controller.driving_constants import COMFORTABLE
+from controller.driving_constants import COMFORTABLE, LATERAL_ACCELERATION
 from giveway.config.option import LANE
 from giveway.ego.perception.path_ahead import HALF, PathView
 from giveway.ego.waiting_ego import WaitingEgo
@@ -20,12 +20,6 @@ from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import SpeedLimit
-
-LATERAL_ACCELERATION = 2.0
-"""Largest lateral acceleration [m/s^2] in a bend. Roads are designed for the side friction that
-drivers still find comfortable: 0.20 g at 30 mph (AASHTO, A Policy on Geometric Design of Highways
-and Streets, 2011, section 3.3).
-"""
 
 _STRAIGHT = 1e-9  # least curvature [1/m], against a division by zero
 _SLOWEST = 0.1  # least speed [m/s] of the profile, so that the ego never stands still for it

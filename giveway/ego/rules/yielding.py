@@ -8,7 +8,6 @@ from giveway.ego.perception.leader import Leader
 STOP_BEFORE = 1.0  # distance [m] of a stop before a line or a crossing
 CRAWLING = 2.0  # speed [m/s] below which a vehicle is assumed to be about to stop
 USUAL_SPEED = 13.9  # speed [m/s] to which other vehicles are expected to accelerate
-AFTER, BEFORE = 1.0, 0.5  # time margins [s] to a road user who passes after or before the ego
 _CAR = 5.0  # length [m] of the vehicle ahead that stops at a red light
 _QUEUE = 100.0  # distance [m] before a red light, within which a queue may stand
 

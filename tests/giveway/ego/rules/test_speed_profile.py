@@ -8,10 +8,11 @@ from contextlib import ExitStack
 import numpy as np
 import pytest
 
+from controller.driving_constants import LATERAL_ACCELERATION
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.preparation import make_waiting_ego
-from giveway.ego.rules.speed_profile import LATERAL_ACCELERATION, SpeedProfile, profile_of
+from giveway.ego.rules.speed_profile import SpeedProfile, profile_of
 from giveway.errors import ScenarioError
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import SpeedLimit
