@@ -203,7 +203,7 @@ def _explain(error: Any) -> str:
     if error["type"] == "value_error":
         return str(error["ctx"]["error"])
     if error["type"] == "missing":
-        return f"{where[0]} is missing: expected {keys[where[0]].description}"
+        return f"{where[0]} is missing ({keys[where[0]].description})"
     if error["type"] == "extra_forbidden":
         known = PeopleConfig.model_fields if where[0] == "people" else keys
         return f"unknown key '{where[-1]}'; expected one of {', '.join(known)}"

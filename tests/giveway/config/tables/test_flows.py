@@ -62,7 +62,7 @@ PLACES = "from = [0,0,1,1]\nto = [5,5]\n"
 WRONG = {
     "flow = 3": "expected tables, each headed [[crowd.flow]]",
     'flow = ["north"]': "expected tables, each headed [[crowd.flow]]",
-    "[[flow]]": "from is missing: expected where they appear",
+    "[[flow]]": "from is missing (Place where people appear",
     f"[[flow]]\n{PLACES}": "rate is missing",
     f"[[flow]]\n{PLACES}rate = 0": "rate = 0: should be greater than 0 [persons/h]: 0 is no flow",
     f"[[flow]]\n{PLACES}rate = 1e9": "should be less than or equal to 50000",
