@@ -207,7 +207,7 @@ class Ego:
         Args:
             step: Number k of the step, for messages.
             time: SUMO's clock t_k [s].
-            seen: What the ego reacts to.
+            seen: Percept, rules and predictions that the ego reacts to.
 
         Raises:
             ControlError: the controller gave no finite force.
