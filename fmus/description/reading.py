@@ -124,12 +124,8 @@ def _version(root: Element, path: Path) -> str:
 def _interfaces(root: Element, version: str, where: str) -> dict[Kind, Interface]:
     if version == "1.0":
         return _fmi1_interface(root, where)
-    found = {}
-    for kind, tag in TAGS.items():
-        element = root.first(tag)
-        if element is not None:
-            found[kind] = _interface(kind, element, version, where)
-    return found
+    elements = ((kind, root.first(tag)) for kind, tag in TAGS.items())
+    return {kind: _interface(kind, e, version, where) for kind, e in elements if e is not None}
 
 
 def _interface(kind: Kind, element: Element, version: str, where: str) -> Interface:

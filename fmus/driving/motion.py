@@ -162,8 +162,6 @@ class Motion:
 
 def names_of(wiring: Wiring) -> dict[str, str]:
     """Return the FMU's names of the quantities of the motion."""
-    names = {}
-    for role in ("speed", "position", "acceleration"):
-        index = wiring.output(role)
-        names[role] = f"{role} (derived)" if index is None else wiring.outputs[index].channel.name
-    return names
+    given = {wire.role: wire.channel.name for wire in wiring.outputs}
+    roles = ("speed", "position", "acceleration")
+    return {role: given.get(role, f"{role} (derived)") for role in roles}

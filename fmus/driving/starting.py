@@ -18,10 +18,11 @@ def start_values(prepared: Prepared, position: float, speed: float) -> dict[Chan
     if wiring.grade is not None:
         at_rest[wiring.grade] = wiring.grade_to_raw(0.0)
     Motion(prepared).keep_bounds(at_rest)
-    values: dict[Channel, Value] = {}
-    for wire, value in zip(wiring.inputs, at_rest, strict=True):
-        if wire.channel.variable.settable and wire.channel.variable.is_real:
-            values[wire.channel] = value
+    values: dict[Channel, Value] = {
+        wire.channel: value
+        for wire, value in zip(wiring.inputs, at_rest, strict=True)
+        if wire.channel.variable.settable and wire.channel.variable.is_real
+    }
     values |= wiring.start_values
     for initial, value in ((wiring.initial_position, position), (wiring.initial_speed, speed)):
         if initial is not None:

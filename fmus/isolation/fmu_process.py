@@ -95,8 +95,8 @@ class FmuProcess:
         assert self._client is not None  # it exists while no call is refused
         try:
             done, state, text = self._client.ask(what, numbers, timeout)
-            if text:
-                self.warnings += _warnings(text)
+            if isinstance(warnings := text.get("warnings"), list):
+                self.warnings += [printable(warning, 1000) for warning in warnings]
             if not done:
                 raise self._reported_error(text, state)
         except (TimeoutError, EOFError, GarbledError) as problem:
@@ -181,8 +181,3 @@ def _close(owner: int, host: ProcessHost, folder: Path) -> None:
             host.close()
         finally:  # also after a Ctrl-C during the wait
             remove(folder)
-
-
-def _warnings(text: Text) -> list[str]:
-    warnings = text.get("warnings")
-    return [printable(w, 1000) for w in warnings] if isinstance(warnings, list) else []

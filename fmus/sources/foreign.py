@@ -181,27 +181,24 @@ def _of_build_description(archive: Archive) -> dict[str, Sources]:
     root = parse(data, f"{archive.path}: {BUILD}", "fmiBuildDescription", kept)
     found = {}
     for configuration in root.every("BuildConfiguration"):
-        sets = list(configuration.every("SourceFileSet"))
-        files = [file.get("name") for group in sets for file in group.every("SourceFile")]
-        includes = [place.get("name") for place in _in_each(sets, "IncludeDirectory")]
-        definitions = []
-        for entry in _in_each(sets, "PreprocessorDefinition"):
-            value = entry.attributes.get("value")
-            definitions.append(entry.get("name") + ("" if value is None else f"={value}"))
+        files = [file.get("name") for file in configuration.every("SourceFileSet", "SourceFile")]
+        includes = configuration.every("SourceFileSet", "IncludeDirectory")
+        entries = configuration.every("SourceFileSet", "PreprocessorDefinition")
         identifier = configuration.get("modelIdentifier")
         if files and identifier not in found:
             found[identifier] = Sources(
                 identifier,
                 _members(archive, files),
-                tuple(_inside(archive, name) for name in includes),
-                tuple(definitions),
+                tuple(_inside(archive, place.get("name")) for place in includes),
+                tuple(map(_definition, entries)),
             )
     return found
 
 
-def _in_each(sets: list[Element], tag: str) -> Iterator[Element]:
-    for group in sets:
-        yield from group.every(tag)
+def _definition(entry: Element) -> str:
+    """Return a definition of the preprocessor, ``NAME`` or ``NAME=VALUE``."""
+    value = entry.attributes.get("value")
+    return entry.get("name") + ("" if value is None else f"={value}")
 
 
 def _members(archive: Archive, names: list[str]) -> tuple[str, ...]:

@@ -95,10 +95,8 @@ def _tracks(found: Validation, parameters: VciParameters) -> Figure:
     start = window.position[None]
     ahead = {name: np.concatenate([start, by[name](window)]) for name in shown}
     clip = found.clips[window.clip]
-    bodies = []
-    for k in (0, longest // 2, longest - 1) if window.vehicles.shape[1] else ():
-        x, y, heading, _, front, rear, width = window.vehicles[k, 0]
-        bodies.append(Body(x, y, heading, front, rear, width))
+    rows = window.vehicles[[0, longest // 2, longest - 1], :1].reshape(-1, 7)  # none: no vehicle
+    bodies = [Body(x, y, heading, *body) for x, y, heading, _, *body in rows]
     return tracks_figure(
         np.concatenate([start, window.observed]),
         ahead,

@@ -40,7 +40,8 @@ def beside(way: Array, network: WalkNetwork, near: tuple[float, float] | None = 
     wanted = _PREFERRED * line.length if near is None else line.project(shapely.Point(near))
     earliest = min(_HEAD_START, line.length / 2)
     station = float(np.clip(wanted, earliest, max(earliest, line.length - _HALF)))
-    middle, behind = (_point(line, at) for at in (station, station - 0.5))
+    places = (line.interpolate(at) for at in (station, station - 0.5))
+    middle, behind = (np.array(place.coords[0][:2]) for place in places)
     side = network.nearest_place(*middle)
     across = np.zeros(2) if side is None else np.array(side) - middle
     if not _NEAREST <= np.hypot(*across) <= _FARTHEST:
@@ -51,7 +52,3 @@ def beside(way: Array, network: WalkNetwork, near: tuple[float, float] | None = 
         (float(x - _HALF), float(y - _HALF), float(x + _HALF), float(y + _HALF)),
         (float(-2.0 * across[0]), float(-2.0 * across[1])),
     )
-
-
-def _point(line: shapely.LineString, station: float) -> Array:
-    return np.array(line.interpolate(station).coords[0][:2])

@@ -103,11 +103,9 @@ class Pieces:
         track = g.track_of(side)
         pieces = []
         for here, there in itertools.pairwise(stretches):
-            pieces.append(self._over(here.exit, there.entry, track))
-            if there is stretches[-1]:
-                pieces.append(self.partly(there, None, arrival))
-            else:
-                pieces.append(self.bends(there))
+            last = there is stretches[-1]
+            onwards = self.partly(there, None, arrival) if last else self.bends(there)
+            pieces += [self._over(here.exit, there.entry, track), onwards]
         return pieces
 
     def _new_hop(self, start: End, end: End) -> Hop:

@@ -43,10 +43,8 @@ def areas_of(drive: Drive) -> tuple[Area, ...]:
     if not drive.way.crossings:
         return ()
     line = _Line(drive)
-    found: list[Area] = []
-    for crossing in drive.way.crossings:
-        found += _visits(line, drive.shape, crossing)
-    kept = (area for area in found if area.entry < drive.end)
+    visits = (_visits(line, drive.shape, crossing) for crossing in drive.way.crossings)
+    kept = (area for areas in visits for area in areas if area.entry < drive.end)
     return tuple(sorted(kept, key=lambda area: area.entry))
 
 

@@ -17,7 +17,6 @@ from giveway.metrics.law.drive import Drive, spread
 from giveway.metrics.law.encounters import AHEAD, Encounter
 from giveway.metrics.law.standing import BEFORE, Owed
 from giveway.metrics.standing import runs
-from giveway.run_data.way import JunctionOnWay
 
 AFTER = 2.0
 """Time [s] for which a cause still counts after it has gone."""
@@ -114,13 +113,8 @@ def _foes(drive: Drive, front: float) -> float:
     It reaches to the end of the junction in which or before which the ego stands. From a waiting
     place inside a junction, the paths may cross 17 m ahead.
     """
-    ends = [place.exit - front for place in drive.way.junctions if _at(place, front)]
-    return max([SIGHT, *ends])
-
-
-def _at(place: JunctionOnWay, front: float) -> bool:
-    """Return whether the front is in a junction, or right before it."""
-    return place.entry - SIGHT <= front < place.exit
+    there = (place for place in drive.way.junctions if place.entry - SIGHT <= front < place.exit)
+    return max([SIGHT, *(place.exit - front for place in there)])
 
 
 def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple[Mask, float]]:

@@ -1,5 +1,6 @@
 """A drive judged by the law of the road: the numbers, and each event as a row of a table."""
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -143,10 +144,7 @@ def ledger(drive: Drive, vehicles: Sequence[VehicleContact] = ()) -> Ledger:
 
 def count(events: Iterable[Event]) -> dict[str, int]:
     """Count the events of each kind; the kinds are in the order of their first events."""
-    found: dict[str, int] = {}
-    for event in events:
-        found[event.kind] = found.get(event.kind, 0) + 1
-    return found
+    return Counter(event.kind for event in events)
 
 
 def _of_encounter(drive: Drive, found: Encounter) -> Event:
