@@ -184,10 +184,11 @@ from pathlib import Path
 from giveway.api import run_checked
 from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
+from giveway.results.folder import Destination
 settings = {"crowd": {"pedestrians": 3}, "time_limit": 1.0}
 journal, results = map(Path, sys.argv[1:])
 checked = preflight(*load([as_layer(settings)]))
-run_checked(checked, results=results, journal=journal, pictures=False)
+run_checked(checked, Destination(results, pictures=False), journal=journal)
 """
 _RATE: Final = 29.97  # [1/s] of the clips
 

@@ -17,8 +17,8 @@ from giveway.processes.heartbeat import Phase
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.results.folder import (
     ARGUMENTS,
-    FLAGS,
-    Wording,
+    NOWHERE,
+    Destination,
     release_folder,
     require_parquet,
     sumo_folder,
@@ -62,39 +62,29 @@ def run(
     """
     return run_checked(
         preflight(*load([as_layer(config)])),
-        results=results,
-        wording=ARGUMENTS,
-        force=force,
-        parquet=parquet,
-        pictures=pictures,
+        Destination(
+            None if results is None else Path(results), force, parquet, pictures, ARGUMENTS
+        ),
         watcher=watcher,
     )
 
 
 def run_checked(
     checked: CheckedRun,
+    destination: Destination = NOWHERE,
     *,
-    results: str | Path | None,
-    force: bool = False,
-    parquet: bool = False,
-    pictures: bool = True,
     watcher: Watcher | None = None,
     journal: Path | None = None,
-    wording: Wording = FLAGS,
 ) -> RunResult:
     """Do the same as :func:`run` for a run that has passed the preflight.
 
     Args:
         checked: Run that has passed the preflight.
-        results: Folder, see :func:`run`.
-        force: Flag, see :func:`run`.
-        parquet: Flag, see :func:`run`.
-        pictures: Flag, see :func:`run`.
+        destination: Folder and files of the results.
         watcher: Function, see :func:`run`.
         journal: Empty folder for the rows, which can be read if this process dies.
-        wording: Wording of the caller, for messages.
     """
-    folder = None if results is None else Path(results)
+    folder, force, parquet, pictures, wording = destination
     if parquet:
         require_parquet()
     with ExitStack() as stack:

@@ -12,6 +12,7 @@ from giveway.cli.check_commands import build_check
 from giveway.cli.completion import complete_scenario
 from giveway.cli.fmu_commands import build_export, build_fmu
 from giveway.cli.help import Commands, JsonFlag
+from giveway.cli.option_groups import RunOutputs, ungrouped
 from giveway.cli.study_commands import add_studies
 from giveway.cli.validation_commands import add_validation
 
@@ -34,7 +35,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     command = next((word for word in arguments if not word.startswith("-")), None)
     app = Commands(HELP, completion=True)
     app.callback()(_main)
-    app.add("run", _with_flags(_run, command))
+    app.add("run", _with_flags(ungrouped(_run), command))
     add_studies(app)
     add_validation(app)
     app.add("scenarios", _scenarios)
@@ -101,6 +102,7 @@ def _main(
 
 def _run(
     settings: dict[str, object],
+    *,
     scenario: Annotated[
         str | None,
         typer.Argument(
@@ -111,21 +113,7 @@ def _run(
     config: Annotated[
         Path | None, typer.Option(help="TOML file with options; flags override it.")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="Results folder (default: a new one in results/).")
-    ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
-    parquet: Annotated[
-        bool,
-        typer.Option("--parquet", help="Write the tables as Parquet too.", rich_help_panel="Run"),
-    ] = False,
-    pictures: Annotated[
-        bool, typer.Option(help="Draw the pictures.", rich_help_panel="Run")
-    ] = True,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
-    ] = False,
-    as_json: JsonFlag = False,
+    outputs: RunOutputs,
     isolate: Annotated[
         bool,
         typer.Option(
@@ -146,11 +134,8 @@ def _run(
             _require_scenario(scenario)
         if isolate:
             raise typer.Exit(run_isolated())
-    from giveway.cli.commands.run_command import Outputs, run_command
+    from giveway.cli.commands.run_command import run_command
 
-    outputs = Outputs(
-        out, force=force, parquet=parquet, pictures=pictures, quiet=quiet, as_json=as_json
-    )
     supervised(journal, lambda: run_command(scenario, config, settings, outputs, journal))
 
 

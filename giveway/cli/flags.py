@@ -115,7 +115,7 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
             value = arguments.pop(name)
             if value is not None:
                 _put(settings, option.location, value)
-        command(settings, **arguments)
+        command(settings=settings, **arguments)
 
     own = list(inspect.signature(command, eval_str=True).parameters.values())[1:]
     keyword = inspect.Parameter.KEYWORD_ONLY

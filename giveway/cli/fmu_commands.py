@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli.help import Commands, JsonFlag
+from giveway.cli.help import Commands
+from giveway.cli.option_groups import DryRun, ReplaceFile, StepTests, ungrouped
 from giveway.errors import ConfigError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]
@@ -14,9 +15,6 @@ _Profile = Annotated[
     Path | None,
     typer.Option(help="Vehicle profile (TOML); without it, drafted from names and units."),
 ]
-_Step = Annotated[float, typer.Option(help="Control step in s.", min=0.001, max=0.5)]
-_Limit = Annotated[float, typer.Option(help="Largest force in N.", min=1.0, max=1e6)]
-_Force = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 
 
 def _formats(incomplete: str) -> list[str]:
@@ -28,8 +26,8 @@ def build_fmu() -> typer.Typer:
     """Return the commands about vehicle FMUs."""
     app = Commands("Look at, try and fit a vehicle FMU.")
     app.add("inspect", _inspect)
-    app.add("check", _check)
-    app.add("identify", _identify)
+    app.add("check", ungrouped(_check))
+    app.add("identify", ungrouped(_identify))
     app.add("compile", _compile)
     return app
 
@@ -69,7 +67,7 @@ def _run(
         float | None,
         typer.Option(help="Between two instants in s (default: the run's; MP4 0.05, GIF 0.1)."),
     ] = None,
-    force: _Force = False,
+    force: ReplaceFile = False,
 ) -> None:
     """Write a run for SUMO, PedPy, JuPedSim or a map, or as a film."""
     from giveway.cli.commands.export_run_command import export_run_command
@@ -94,82 +92,34 @@ def _inspect(
 
 
 def _check(
+    *,
     fmu: _Fmu,
     profile: _Profile = None,
-    step: _Step = 0.05,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for the picture (default results/FMU_check).")
-    ] = None,
-    mass: Annotated[
-        float | None,
-        typer.Option(help="What the vehicle weighs, M of the controller, in kg.", min=1e-3),
-    ] = None,
-    ego_class: Annotated[
-        str | None, typer.Option(help="SUMO's vehicle class, where its mass is not known.")
-    ] = None,
-    friction: Annotated[float, typer.Option(help="alpha of it in N.s/m.", min=0.0)] = 100.0,
-    force_limit: _Limit = 8000.0,
-    speed: Annotated[float, typer.Option(help="Rolling start in m/s.", min=0.0)] = 4.0,
-    as_json: JsonFlag = False,
+    trial: DryRun,
 ) -> None:
     """Drive an FMU for some seconds: pass, or what is wrong and the line that mends it."""
     from giveway.cli.commands.fmu_tools.fmu_check import check_command
 
-    code = check_command(
-        fmu,
-        profile,
-        step=step,
-        out=out or Path("results") / f"{fmu.stem}_check",
-        mass=mass,
-        ego_class=ego_class,
-        friction=friction,
-        force_limit=force_limit,
-        speed=speed,
-        as_json=as_json,
-    )
-    raise typer.Exit(code)
+    out = trial.out or Path("results") / f"{fmu.stem}_check"
+    raise typer.Exit(check_command(fmu, profile, trial._replace(out=out)))
 
 
 def _identify(
+    *,
     fmu: _Fmu,
     profile: _Profile = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Profile to write, with the model in it.")
-    ] = None,
-    step: _Step = 0.05,
-    horizon: Annotated[int, typer.Option(help="Of the MPC in steps.", min=2, max=200)] = 15,
-    force_limit: _Limit = 8000.0,
-    speeds: Annotated[
-        str, typer.Option(help="Speeds in m/s that the tests start from, comma-separated.")
-    ] = "0,2,4,8,12",
-    picture: Annotated[
-        Path | None,
-        typer.Option(
-            help="Measured against fitted (default results/FMU_identify/FMU_identify.png)."
-        ),
-    ] = None,
-    force: _Force = False,
+    tests: StepTests,
 ) -> None:
     """Estimate M, alpha and the actuator's lag by step tests, for the controller."""
     from giveway.cli.commands.fmu_tools.fmu_identify import identify_command
 
     try:
-        starts = [float(part) for part in speeds.split(",")]
+        starts = [float(part) for part in tests.speeds.split(",")]
     except ValueError:
-        raise ConfigError(f"--speeds {speeds}: expected numbers like 0,4,8 [m/s]") from None
+        raise ConfigError(f"--speeds {tests.speeds}: expected numbers like 0,4,8 [m/s]") from None
     name = f"{fmu.stem}_identify"
-    code = identify_command(
-        fmu,
-        profile,
-        out=out,
-        step=step,
-        horizon=horizon,
-        force_limit=force_limit,
-        speeds=starts,
-        picture=picture or Path("results") / name / f"{name}.png",
-        force=force,
-    )
-    raise typer.Exit(code)
+    picture = tests.picture or Path("results") / name / f"{name}.png"
+    raise typer.Exit(identify_command(fmu, profile, tests._replace(picture=picture), starts))
 
 
 def _compile(
@@ -178,7 +128,7 @@ def _compile(
         Path | None,
         typer.Option("--out", "-o", help="FMU to write (default FMU_PLATFORM.fmu, here)."),
     ] = None,
-    force: _Force = False,
+    force: ReplaceFile = False,
 ) -> None:
     """Compile an FMU's C sources for this platform, into a copy of it."""
     from giveway.cli.commands.fmu_tools.fmu_compile import compile_command
@@ -192,7 +142,7 @@ def _controller(
     scenario: Annotated[str | None, typer.Argument(help="As for run.")] = None,
     config: Annotated[Path | None, typer.Option(help="As for run.")] = None,
     fmi: Annotated[str, typer.Option(help="FMI version: 2.0 or 3.0.")] = "2.0",
-    force: _Force = False,
+    force: ReplaceFile = False,
 ) -> None:
     """Write the controller (MPC with PID, or PID) as an FMU, with a run's settings."""
     from giveway.cli.commands.export_command import export_command

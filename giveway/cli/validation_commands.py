@@ -6,21 +6,19 @@ from typing import Annotated
 import typer
 
 from giveway.cli.help import Commands
+from giveway.cli.option_groups import FitSettings, ungrouped
 
 _Clips = Annotated[Path, typer.Argument(help="A data set's folder, or any part of it with clips.")]
 _Dataset = Annotated[
     str | None,
     typer.Option(help="Which one it is: citr, dut, or its description (TOML); docs/validation.md."),
 ]
-_PARAMETERS = (
-    "destination_gain,repulsion_strength,navigation_strength,vehicle_strength,vehicle_lookahead"
-)
 
 
 def add_validation(app: Commands) -> None:
     """Add the commands about recorded trajectories to ``app``."""
     app.add("validate", _validate)
-    app.add("calibrate", _calibrate)
+    app.add("calibrate", ungrouped(_calibrate))
 
 
 def _validate(
@@ -42,21 +40,11 @@ def _validate(
 
 
 def _calibrate(
+    *,
     clips: _Clips,
     out: Annotated[Path, typer.Option(help="Preset file (TOML) to write.")],
     dataset: _Dataset = None,
-    parameters: Annotated[
-        str, typer.Option(help="What is fitted, comma-separated; see docs/validation.md.")
-    ] = _PARAMETERS,
-    start: Annotated[
-        str, typer.Option("--preset", help="Where the fit starts: SIM, TABLE2 or a preset file.")
-    ] = "SIM",
-    held_out: Annotated[float, typer.Option(help="Share of the clips to judge the fit by.")] = 0.3,
-    seed: Annotated[int, typer.Option(help="Of the choice of these clips.", min=0)] = 0,
-    own_pace: Annotated[
-        bool, typer.Option(help="Desired speed: each one's present one; or the parameters'.")
-    ] = True,
-    evaluations: Annotated[int, typer.Option(help="Of the error, at most.", min=1)] = 400,
+    fit: FitSettings,
     force: Annotated[bool, typer.Option("--force", help="Replace the file.")] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")
@@ -65,16 +53,4 @@ def _calibrate(
     """Fit parameters of the pedestrian model to recorded trajectories: a preset file."""
     from giveway.cli.commands.calibrate_command import calibrate_command
 
-    calibrate_command(
-        clips,
-        dataset=dataset,
-        parameters=parameters,
-        out=out,
-        start=start,
-        held_out=held_out,
-        seed=seed,
-        own_pace=own_pace,
-        evaluations=evaluations,
-        force=force,
-        quiet=quiet,
-    )
+    calibrate_command(clips, out, dataset, fit, force=force, quiet=quiet)

@@ -10,6 +10,7 @@ from giveway.replays import write_replay
 from giveway.reports.examples import Drive, drives_of
 from giveway.reports.kept_runs import KeptRuns
 from giveway.reports.report_page import shown_runs, write_report
+from giveway.results.folder import Destination
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
 from giveway.studies.folder.study_folder import StudyFolder
@@ -77,7 +78,8 @@ def _make(
             folder = Path(temporary) / run
             try:
                 checked = checked_run(study, run, predictions=True, trusted=trusted)
-                result = _whole(rerun(study, run, folder, checked=checked, pictures=False))
+                files = Destination(folder, pictures=False)
+                result = _whole(rerun(study, run, files, checked=checked))
             except GivewayError as error:
                 lost[run] = error  # the run's scenario has changed or is missing
                 continue

@@ -35,6 +35,19 @@ FLAGS = Wording("--force", "--out")
 ARGUMENTS = Wording("force=True", "results=")
 
 
+class Destination(NamedTuple):
+    """The folder of a run's results, and the files that are written to it."""
+
+    folder: Path | None = None  # None if nothing is written
+    force: bool = False  # True to replace existing results
+    parquet: bool = False  # True to write the tables also as Parquet
+    pictures: bool = True  # True to draw the state figure and the top view
+    wording: Wording = FLAGS  # wording of messages
+
+
+NOWHERE = Destination()
+
+
 def check_folder(
     folder: Path,
     *,

@@ -9,6 +9,7 @@ from giveway.api import run_checked
 from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.errors import GivewayError
+from giveway.results.folder import NOWHERE, Destination
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending, Watcher
 from giveway.studies.execution.perform import rows_of
@@ -49,11 +50,9 @@ def checked_run(
 def rerun(
     study: StudyFolder,
     run_id: str,
-    out: Path | None,
+    destination: Destination = NOWHERE,
     *,
     checked: CheckedRun | None = None,
-    force: bool = False,
-    pictures: bool = True,
     watcher: Watcher | None = None,
     journal: Path | None = None,
 ) -> RunResult:
@@ -62,10 +61,8 @@ def rerun(
     Args:
         study: Folder of the study.
         run_id: Id of the run, such as ``c2-s17``.
-        out: Folder for the results, or None to write nothing.
+        destination: Folder and files of the results.
         checked: The run, or None to find it by :func:`checked_run`.
-        force: True to replace existing results.
-        pictures: True to draw also the state figure and the top view.
         watcher: Watcher that is told about every control step.
         journal: Empty folder for the rows, which can be read if this process dies.
 
@@ -75,9 +72,7 @@ def rerun(
     """
     result = run_checked(
         checked or checked_run(study, run_id),
-        results=out,
-        force=force,
-        pictures=pictures,
+        destination,
         watcher=watcher,
         journal=journal,
     )

@@ -15,9 +15,7 @@ SHORT = {"crowd": {"pedestrians": 3}, "ego": {"travel_distance": 8.0}}
 
 
 def test_a_journal_that_cannot_be_written_is_told_to_the_user(tmp_path: Path) -> None:
-    result = run_checked(
-        preflight(*load([as_layer(SHORT)])), results=None, journal=tmp_path / "gone"
-    )
+    result = run_checked(preflight(*load([as_layer(SHORT)])), journal=tmp_path / "gone")
     assert result.completed
     assert any("the journal cannot be written" in remark for remark in result.remarks)
     assert result.manifest["remarks"] == list(result.remarks)
@@ -26,9 +24,7 @@ def test_a_journal_that_cannot_be_written_is_told_to_the_user(tmp_path: Path) ->
 def test_after_a_crash_an_ego_that_had_arrived_has_arrived(tmp_path: Path) -> None:
     far = {"ego": {"id": "far", "depart_position": 12.0, "travel_distance": 30.0}}
     egos = ({"ego": {"id": "near"}}, far)
-    result = run_checked(
-        preflight(*load([as_layer(SHORT | {"egos": egos})])), results=None, journal=tmp_path
-    )
+    result = run_checked(preflight(*load([as_layer(SHORT | {"egos": egos})])), journal=tmp_path)
     arrived = [ego for ego in result.egos if ego.id == "near"]
     assert len(arrived[0].track.time) < len(result.time)
     rows = tmp_path / ROWS_FILE
@@ -47,7 +43,7 @@ def test_after_a_crash_an_ego_that_had_arrived_has_arrived(tmp_path: Path) -> No
 def test_after_a_crash_it_is_still_known_who_people_were(tmp_path: Path) -> None:
     crowd = {"pedestrians": 12, "groups": 0.8, "people": {"elderly": 0.5}}
     checked = preflight(*load([as_layer(SHORT | {"crowd": crowd})]))
-    result = run_checked(checked, results=None, journal=tmp_path)
+    result = run_checked(checked, journal=tmp_path)
     pulse = Pulse(Phase.SUMO, 20, 1.0, 0, 0)
     rescued = recover(tmp_path, Verdict(139, True, False, "SIGSEGV", pulse, "", "")).result
     assert rescued is not None

@@ -14,6 +14,7 @@ from giveway.metrics.law import LAW_FIELDS
 from giveway.processes.heartbeat import Phase, Pulse
 from giveway.processes.supervisor import Verdict
 from giveway.recovery import recover
+from giveway.results.folder import Destination
 from giveway.results.run_result import RunResult
 
 LAW = ("ledger.csv", "people.csv", "signals.csv")
@@ -35,7 +36,7 @@ def run(folder: Path, priority: str, *, twin: bool = False) -> RunResult:
     (folder / "journal").mkdir()
     checked = preflight(*load([as_layer(settings)]))
     return run_checked(
-        checked, results=folder / "results", pictures=False, journal=folder / "journal"
+        checked, Destination(folder / "results", pictures=False), journal=folder / "journal"
     )
 
 
@@ -101,7 +102,7 @@ def test_a_note_says_what_the_ledger_says_with_a_twin_too(tmp_path: Path) -> Non
 
 def test_where_the_law_has_no_say_the_files_are_the_same_as_ever(tmp_path: Path) -> None:
     checked = preflight(*load([as_layer({"time_limit": 0.2, "crowd": {"pedestrians": 3}})]))
-    result = run_checked(checked, results=tmp_path / "plaza", pictures=False)
+    result = run_checked(checked, Destination(tmp_path / "plaza", pictures=False))
     assert not {column.name for column in LAW_FIELDS} & set(result.summary)
     assert not set(LAW) & {path.name for path in (tmp_path / "plaza").iterdir()}
     assert "ways" not in json.loads((tmp_path / "plaza" / "scene.json").read_text())

@@ -25,6 +25,7 @@ from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import locked
 from giveway.processes.supervisor import Verdict
 from giveway.recovery import recover, recover_left
+from giveway.results.folder import Destination
 
 MANY = 600
 LONG = ["--pedestrians", str(MANY), "--spawn-area", "20,-200,120,-10", "--no-pictures"]
@@ -140,7 +141,7 @@ def journalled(folder: Path) -> Path:
     journal.mkdir()
     settings = {"crowd": {"pedestrians": 3}, "time_limit": 2.0}
     checked = preflight(*load([as_layer(settings)]))
-    run_checked(checked, results=folder / "r", journal=journal, pictures=False)
+    run_checked(checked, Destination(folder / "r", pictures=False), journal=journal)
     for file in (folder / "r").iterdir():
         if file.name != "ego.csv":
             file.unlink()
@@ -246,7 +247,7 @@ def test_a_full_disk_keeps_the_journal_and_a_manifest(
     with pytest.raises(
         ResultsError, match=rf"trajectories\.csv: cannot be written \(No space.*{command}"
     ):
-        run_checked(checked, results=tmp_path / "r", journal=journal, pictures=False)
+        run_checked(checked, Destination(tmp_path / "r", pictures=False), journal=journal)
     assert Heartbeat(journal).kept  # the supervisor leaves it
     assert not (tmp_path / "r" / "trajectories.csv").exists()
     manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())

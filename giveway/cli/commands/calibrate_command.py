@@ -7,6 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from giveway.cli.option_groups import FitSettings
 from giveway.cli.screen.printing import escape, print_place, writing
 from giveway.cli.screen.progress_bars import counting
 from giveway.config.files.presets import SUFFIX, parameters_of, preset_text
@@ -19,19 +20,22 @@ from giveway.validation.fitting import FACTOR
 
 def calibrate_command(
     clips_in: Path,
-    *,
-    dataset: str | None,
-    parameters: str,
     out: Path,
-    start: str,
-    held_out: float,
-    seed: int,
-    own_pace: bool,
-    evaluations: int,
+    dataset: str | None,
+    fit: FitSettings,
+    *,
     force: bool,
     quiet: bool,
 ) -> None:
     """Fit, print the errors before and after the fit, and write the preset.
+
+    Args:
+        clips_in: Folder of the data set, or a part of it.
+        out: Preset file to write.
+        dataset: Name or description of the data set, or None to recognise it.
+        fit: Settings of the fit.
+        force: True to replace the file.
+        quiet: True to print nothing.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -43,25 +47,25 @@ def calibrate_command(
         raise ResultsError(
             f"{out}: exists; replace it with --force or name another file with --out"
         )
-    names = [name.strip() for name in parameters.split(",")]
+    names = [name.strip() for name in fit.parameters.split(",")]
     clips = read_clips(clips_in, dataset_of(dataset))
-    first = parameters_of(start)
+    first = parameters_of(fit.start)
     compile_kernels_once(console)
     with counting(console, "Fitting") as count:
         found = calibrate(
             clips,
             first,
             names,
-            held_out=HeldOut(held_out, seed),
-            own_pace=own_pace,
-            evaluations=evaluations,
+            held_out=HeldOut(fit.held_out, fit.seed),
+            own_pace=fit.own_pace,
+            evaluations=fit.evaluations,
             progress=lambda done, of, best: count(done, of, f"error {best:.4f} m"),
         )
     settings = {
         "dataset": clips[0].dataset.name,
-        "start": start,
-        "seed": seed,
-        "own_pace": own_pace,
+        "start": fit.start,
+        "seed": fit.seed,
+        "own_pace": fit.own_pace,
     }
     text = preset_text(out.stem, found.parameters, _provenance(found, settings))
     with writing(out, "name another file with --out"):

@@ -5,11 +5,12 @@ from pathlib import Path
 
 from rich.console import Console
 
-from giveway.cli.commands.run_command import Outputs, interrupted, show
+from giveway.cli.commands.run_command import interrupted, show
+from giveway.cli.option_groups import RerunOutputs
 from giveway.cli.screen.printing import escape
 from giveway.cli.screen.progress_bars import run_progress
 from giveway.precompile import compile_kernels_once
-from giveway.results.folder import check_folder
+from giveway.results.folder import Destination, check_folder
 from giveway.run_data.progress import Ending
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.repeated_run import checked_run, rerun
@@ -18,9 +19,8 @@ from giveway.studies.repeated_run import checked_run, rerun
 def rerun_command(
     study: Path,
     run: str,
-    outputs: Outputs,
+    outputs: RerunOutputs,
     *,
-    predictions: bool,
     journal: Path | None,
     trusted: Collection[str] = (),
 ) -> int:
@@ -30,7 +30,6 @@ def rerun_command(
         study: Folder of the study.
         run: Id of the run.
         outputs: Outputs to keep and to print.
-        predictions: True to keep the predicted positions.
         trusted: Code, as module:Class, that the study may import.
         journal: Folder for the rows in case this process dies.
 
@@ -39,21 +38,13 @@ def rerun_command(
     """
     console = Console(quiet=outputs.quiet)
     folder = StudyFolder.open(study)
-    checked = checked_run(folder, run, predictions=predictions, trusted=trusted)
-    out = outputs.folder or study / "reruns" / run
+    checked = checked_run(folder, run, predictions=outputs.predictions, trusted=trusted)
+    out = outputs.out or study / "reruns" / run
     check_folder(out, force=outputs.force)
     compile_kernels_once(console)
     with run_progress(console, checked.config) as watcher:
-        result = rerun(
-            folder,
-            run,
-            out,
-            checked=checked,
-            force=outputs.force,
-            pictures=outputs.pictures,
-            watcher=watcher,
-            journal=journal,
-        )
+        kept = Destination(out, force=outputs.force, pictures=outputs.pictures)
+        result = rerun(folder, run, kept, checked=checked, watcher=watcher, journal=journal)
     if result.ending is Ending.INTERRUPTED:
         return interrupted(result, out)
     show(console, result, out)

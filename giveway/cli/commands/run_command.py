@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -10,27 +9,16 @@ from typing import Any
 from rich.console import Console
 
 from giveway.cli.exit import INTERRUPTED, fail
+from giveway.cli.option_groups import RunOutputs
 from giveway.cli.screen.printing import escape, print_json
 from giveway.cli.screen.progress_bars import run_progress
 from giveway.config import RunConfig
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.errors import GivewayError
-from giveway.results.folder import check_folder, require_parquet
+from giveway.results.folder import Destination, check_folder, require_parquet
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
-
-
-@dataclass(frozen=True)
-class Outputs:
-    """The outputs that the user wants to keep and to see."""
-
-    folder: Path | None
-    force: bool
-    parquet: bool
-    pictures: bool
-    quiet: bool
-    as_json: bool = False
 
 
 def layers_of(
@@ -46,7 +34,7 @@ def run_command(
     scenario: str | None,
     config: Path | None,
     settings: Mapping[str, Any],
-    outputs: Outputs,
+    outputs: RunOutputs,
     journal: Path | None = None,
 ) -> int:
     """Run once and return the exit code: 0, or 130 if the user interrupted.
@@ -69,7 +57,7 @@ def run_command(
     from giveway.precompile import compile_kernels_once
 
     checked = preflight(effective, found)
-    folder = outputs.folder or default_folder(effective, found.name)
+    folder = outputs.out or default_folder(effective, found.name)
     check_folder(folder, force=outputs.force)
     compile_kernels_once(console, threads=effective.crowd.threads)
     from giveway.api import run_checked
@@ -78,10 +66,7 @@ def run_command(
         try:
             result = run_checked(
                 checked,
-                results=folder,
-                force=outputs.force,
-                parquet=outputs.parquet,
-                pictures=outputs.pictures,
+                Destination(folder, outputs.force, outputs.parquet, outputs.pictures),
                 watcher=watcher,
                 journal=journal,
             )

@@ -14,6 +14,7 @@ from giveway.processes.heartbeat import Phase, Pulse
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.processes.supervisor import Verdict
 from giveway.recovery import recover
+from giveway.results.folder import Destination
 from giveway.run_data.progress import Ending
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def test_a_twin_that_fails_or_dies_loses_no_row_of_its_run(
     monkeypatch.setattr("giveway.api.simulation.twin_of", fail)
     checked = preflight(*load([as_layer(OPEN | {"twin": True})]))
     with refused(SumoError, "in the twin", "SUMO failed at 3.0 s") as caught:
-        run_checked(checked, results=tmp_path / "kept", pictures=False, journal=journal)
+        run_checked(checked, Destination(tmp_path / "kept", pictures=False), journal=journal)
     partial = caught.value.result
     assert partial.summary == {name: whole.summary[name] for name in partial.summary}
     assert columns(tmp_path / "kept" / "pedestrians.csv")

@@ -285,7 +285,7 @@ def test_the_guides_study_is_resumed_with_its_own_settings(careful, study_of, tm
     assert not len(study.failures)
     assert set(study.runs["driver"]) == {"careful", "mpc"}
     keys = {record.run: record.key for _, _, record in study.records}
-    assert rerun(StudyFolder.open(study.path), "c1-s1", None, pictures=False)
+    assert rerun(StudyFolder.open(study.path), "c1-s1")
     careful.write_text(careful.read_text(encoding="utf-8") + "# other\n", encoding="utf-8")
     with pytest.raises(ConfigError, match="made with another content of careful-driver"):
         checked_run(StudyFolder.open(study.path), "c1-s1")

@@ -94,7 +94,7 @@ def test_the_pid_alone_predicts_nothing() -> None:
 
 def test_a_journal_has_it_too(tmp_path: Path) -> None:
     layer = as_layer({**SETTINGS, "time_limit": 6.0, "record": {"predictions": 0.25}})
-    result = run_checked(preflight(*load([layer])), results=None, journal=tmp_path)
+    result = run_checked(preflight(*load([layer])), journal=tmp_path)
     contents = read_journal(tmp_path)
     (drive,) = RecordedRows(contents.tables, contents.names).egos()
     mine = result.egos[0].predictions

@@ -102,7 +102,7 @@ def lost(changed: Callable[..., StudyFolder]) -> StudyFolder:
 @pytest.fixture(scope="session")
 def again(study: StudyFolder) -> Callable[[str], Any]:
     """The drives of a run that is made again, each only once."""
-    return cache(lambda run: drives_of(rerun(study, run, None)))
+    return cache(lambda run: drives_of(rerun(study, run)))
 
 
 class Page(HTMLParser):

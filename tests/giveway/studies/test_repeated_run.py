@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from giveway.errors import ResultsError
+from giveway.results.folder import Destination
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.identity import software_identity
@@ -13,7 +14,7 @@ from giveway.studies.repeated_run import OtherNumbersError, rerun
 
 
 def test_a_rerun_gives_the_studys_row_and_all_trajectories(small_study, tmp_path):
-    result = rerun(small_study, "c3-s2", tmp_path / "again", pictures=False)
+    result = rerun(small_study, "c3-s2", Destination(tmp_path / "again", pictures=False))
     assert len(result.egos) == 1
     summary = pd.read_csv(tmp_path / "again" / "summary.csv").iloc[0]
     row = pd.read_csv(small_study.path / "runs.csv").set_index("run").loc["c3-s2"]
@@ -32,7 +33,7 @@ def test_a_rerun_with_other_numbers_says_which(small_study, study_of, small_stud
     rows = ({**record.rows[0], "mean_speed": 3.21},)
     store.put(dataclasses.replace(record, rows=rows))
     with pytest.raises(OtherNumbersError, match=r"mean_speed = .* where .* has 3\.21"):
-        rerun(StudyFolder.open(study.path), "c1-s1", None)
+        rerun(StudyFolder.open(study.path), "c1-s1")
 
 
 def test_the_folder_names_the_cells_as_they_were_run(study_of, tmp_path):
@@ -55,7 +56,7 @@ def test_the_folder_names_the_cells_as_they_were_run(study_of, tmp_path):
         ("c3-s1", "one", "mpc-paper"),
     ):
         assert (rows["crowd_of"][name], rows["controller"][name]) == (crowd, controller)
-        again = rerun(study, name, None)
+        again = rerun(study, name)
         assert again.config.controller == controller
         assert again.config.crowd.pedestrians == {"two": 2, "one": 1}[crowd]
 
@@ -63,4 +64,4 @@ def test_the_folder_names_the_cells_as_they_were_run(study_of, tmp_path):
 @pytest.mark.parametrize("run", ["c9-s1", "c01-s1", "1-s1", "c1-s99", "c1", "17", "", "c1-s-1"])
 def test_a_run_that_is_not_in_the_study(small_study, run):
     with pytest.raises(ResultsError, match="expected c<cell>-s<seed>, c1-s1 to c4-s5"):
-        rerun(small_study, run, None)
+        rerun(small_study, run)

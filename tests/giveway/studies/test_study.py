@@ -30,7 +30,7 @@ def test_runs_csv_has_a_row_per_run_and_the_summarys_numbers(small_study):
 
 def test_pairs_meet_the_same_crowd(small_study):
     """Until the ego reacts, nothing but the controller differs."""
-    mpc, pid = (rerun(small_study, f"c{cell}-s3", None) for cell in (1, 2))
+    mpc, pid = (rerun(small_study, f"c{cell}-s3") for cell in (1, 2))
     assert mpc.config.controller != pid.config.controller
     first = [(r.crowd_track.x[:3].tolist(), r.crowd_track.y[:3].tolist()) for r in (mpc, pid)]
     assert first[0] == first[1]

@@ -109,7 +109,7 @@ def _works(process):
 
 
 def test_a_run_made_again_has_the_studys_delays(study, tmp_path):
-    result = rerun(study, "c1-s2", None)
+    result = rerun(study, "c1-s2")
     row = study.runs[study.runs["run"] == "c1-s2"].iloc[0]
     assert result.summary["people_delay"] == pytest.approx(row["people_delay"], abs=1e-6)
 

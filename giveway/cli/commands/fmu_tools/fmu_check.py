@@ -16,6 +16,7 @@ from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
 from giveway.cli.guards.fmu_arguments import profile_in, require_fmu, require_number, save_picture
+from giveway.cli.option_groups import DryRun
 from giveway.cli.screen.printing import findings_table, print_json, print_place
 from giveway.errors import ConfigError
 
@@ -24,34 +25,15 @@ _STYLES = {
 }  # fmt: skip
 
 
-def check_command(
-    path: Path,
-    profile: Path | None = None,
-    *,
-    step: float = 0.05,
-    out: Path | None = None,
-    mass: float | None = None,
-    ego_class: str | None = None,
-    friction: float = 100.0,
-    force_limit: float = 8000.0,
-    speed: float = 4.0,
-    as_json: bool = False,
-) -> int:
+def check_command(path: Path, profile: Path | None, trial: DryRun) -> int:
     """Dry-run a vehicle FMU, print the findings, and draw its response.
 
     Args:
         path: File .fmu.
         profile: Profile of the FMU, or None to draft one from names and units.
-        step: Control step [s].
-        out: Folder for the picture, or None for no picture.
-        mass: M of the controller's model [kg], which a profile's [model] overrides. With None it is
-            1000 kg for the controller, and the vehicle's mass is unknown.
-        ego_class: Vehicle class in SUMO, from which the mass is roughly known.
-        friction: Friction alpha of the controller's model [N.s/m], which a profile's [model]
-            overrides.
-        force_limit: Largest force u_max [N].
-        speed: Speed of the rolling start [m/s].
-        as_json: True to print the findings as JSON.
+        trial: Settings of the dry run. Without a folder no picture is drawn. A profile's [model]
+            comes before its mass and friction. Without a mass the controller assumes 1000 kg, and
+            nothing is known of the vehicle.
 
     Returns:
         0 if every test passed, with or without warnings; 1 if a test failed.
@@ -61,6 +43,7 @@ def check_command(
         ResultsError: the picture cannot be written.
     """
     require_fmu(path)
+    step, out, mass, ego_class, friction, force_limit, speed, as_json = trial
     require_number("--step", step, 0.0, 1.0, "s")
     if mass is not None:
         require_number("--mass", mass, 0.0, 1e6, "kg")

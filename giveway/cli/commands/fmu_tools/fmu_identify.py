@@ -11,41 +11,28 @@ from rich.text import Text
 
 from fmus import FmuError
 from fmus.checking import Identification, Mpc, identify, opener_of, require_converged
-from fmus.checking.identification import SPEEDS
 from fmus.checking.profile_file import profile_text, with_model
 from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
 from giveway.cli.guards.fmu_arguments import profile_in, require_fmu, require_number, save_picture
+from giveway.cli.option_groups import StepTests
 from giveway.cli.screen.printing import escape, print_place, writing
 from giveway.config.files.schema_names import PROFILE, with_schema
 from giveway.errors import ConfigError, VehicleError, retold
 
 
 def identify_command(
-    path: Path,
-    profile: Path | None = None,
-    *,
-    out: Path | None = None,
-    step: float = 0.05,
-    horizon: int = 15,
-    force_limit: float = 8000.0,
-    speeds: Sequence[float] = SPEEDS,
-    picture: Path | None = None,
-    force: bool = False,
+    path: Path, profile: Path | None, tests: StepTests, speeds: Sequence[float]
 ) -> int:
     """Find M and alpha by step tests, print them, and write the profile with them.
 
     Args:
         path: File .fmu.
-        profile: Profile of the FMU, or None for ``out`` if it exists, else for a draft.
-        out: Profile to write, or None to print only.
-        step: Time step of the MPC [s].
-        horizon: Prediction horizon of the MPC [steps].
-        force_limit: Largest force u_max [N].
+        profile: Profile of the FMU, or None for ``tests.out`` if it exists, else for a draft.
+        tests: Settings of the step tests. Without a profile to write, the model is only printed;
+            without a picture, none is drawn.
         speeds: Speeds from which the tests start [m/s].
-        picture: Picture to draw (.png, .svg or .pdf), or None for no picture.
-        force: True to replace another file at ``out``.
 
     Raises:
         ConfigError: a file, a value or the profile cannot be used.
@@ -53,6 +40,7 @@ def identify_command(
         ResultsError: a file cannot be written.
     """
     require_fmu(path)
+    out, step, horizon, force_limit, _, picture, force = tests
     require_number("--step", step, 0.0, 1.0, "s")
     require_number("--horizon", horizon, 1, 200, "steps")
     require_number("--force-limit", force_limit, 0.0, 1e6, "N")

@@ -1,0 +1,226 @@
+"""The options of commands, in groups that belong together.
+
+An option is declared once, as a field with its flag, help and default. A command takes whole
+groups; :func:`ungrouped` shows typer one parameter for each of their fields.
+"""
+
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+import typer
+
+from giveway.cli.completion import complete_study
+from giveway.cli.help import JsonFlag
+
+Force = Annotated[bool, typer.Option("--force", help="Replace the results there.")]
+Pictures = Annotated[bool, typer.Option(help="Draw the pictures.")]
+NoSummary = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")]
+NoTables = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")]
+ControlStep = Annotated[float, typer.Option(help="Control step in s.", min=0.001, max=0.5)]
+ForceLimit = Annotated[float, typer.Option(help="Largest force in N.", min=1.0, max=1e6)]
+ReplaceFile = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
+
+
+class RunOutputs(NamedTuple):
+    """The outputs of a run that the user wants to keep and to see."""
+
+    out: Annotated[
+        Path | None, typer.Option(help="Results folder (default: a new one in results/).")
+    ] = None
+    force: Force = False
+    parquet: Annotated[
+        bool,
+        typer.Option("--parquet", help="Write the tables as Parquet too.", rich_help_panel="Run"),
+    ] = False
+    pictures: Annotated[bool, typer.Option(help="Draw the pictures.", rich_help_panel="Run")] = True
+    quiet: NoSummary = False
+    as_json: JsonFlag = False
+
+
+class RerunOutputs(NamedTuple):
+    """The outputs of a repeated run that the user wants to keep and to see."""
+
+    out: Annotated[Path | None, typer.Option(help="Results folder (default STUDY/reruns/RUN).")] = (
+        None
+    )
+    force: Force = False
+    predictions: Annotated[
+        bool, typer.Option("--predictions", help="Keep the predicted positions too.")
+    ] = False
+    pictures: Pictures = True
+    quiet: NoSummary = False
+
+
+class StudyChoice(NamedTuple):
+    """The study that the user names, or varies by flags."""
+
+    study: Annotated[
+        str | None,
+        typer.Argument(
+            help="Bundled study (see giveway studies) or .toml. Without one see --vary.",
+            autocompletion=complete_study,
+        ),
+    ] = None
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=A,B,...",
+            help="Without a study: an option and its values, like crowd.pedestrians=10,20.",
+        ),
+    ] = None
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FACTOR=LEVEL",
+            help="Of the study this level of a factor alone, like controller=mpc; repeatable.",
+        ),
+    ] = None
+    config: Annotated[
+        Path | None, typer.Option(help="With --vary: a run's TOML file with the other settings.")
+    ] = None
+
+
+class StudySeeds(NamedTuple):
+    """The seeds of a study's runs."""
+
+    runs: Annotated[
+        int | None,
+        typer.Option("--runs", "--seeds", help="Seeds per cell, instead of the study's.", min=1),
+    ] = None
+    first_seed: Annotated[
+        int | None, typer.Option(help="First seed, instead of the study's.", min=0)
+    ] = None
+
+
+class StudyComputation(NamedTuple):
+    """The options of a study's computation; see ``StudyOptions``."""
+
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with what is in the folder.")] = (
+        False
+    )
+    force: Annotated[bool, typer.Option("--force", help="Replace the study there.")] = False
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="With --resume: make failed runs again.")
+    ] = False
+    jobs: Annotated[
+        int | None, typer.Option(help="Worker processes (default: one per processor).", min=1)
+    ] = None
+    cluster: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler to compute on, tcp://HOST:PORT, or local:N."),
+    ] = None
+    hang_limit: Annotated[
+        float, typer.Option(help="Seconds without progress after which a run is ended.", min=1.0)
+    ] = 120.0
+    run_limit: Annotated[
+        float | None, typer.Option(help="Seconds that one run may take (default: any).", min=0.1)
+    ] = None
+
+
+class StudyOutputs(NamedTuple):
+    """The outputs of a study that the user wants to see."""
+
+    report: Annotated[bool, typer.Option(help="Write figures and report.html.")] = True
+    quiet: NoTables = False
+    as_json: JsonFlag = False
+
+
+class FitSettings(NamedTuple):
+    """The settings of a fit of the pedestrian model."""
+
+    parameters: Annotated[
+        str, typer.Option(help="What is fitted, comma-separated; see docs/validation.md.")
+    ] = "destination_gain,repulsion_strength,navigation_strength,vehicle_strength,vehicle_lookahead"
+    start: Annotated[
+        str, typer.Option("--preset", help="Where the fit starts: SIM, TABLE2 or a preset file.")
+    ] = "SIM"
+    held_out: Annotated[float, typer.Option(help="Share of the clips to judge the fit by.")] = 0.3
+    seed: Annotated[int, typer.Option(help="Of the choice of these clips.", min=0)] = 0
+    own_pace: Annotated[
+        bool, typer.Option(help="Desired speed: each one's present one; or the parameters'.")
+    ] = True
+    evaluations: Annotated[int, typer.Option(help="Of the error, at most.", min=1)] = 400
+
+
+class DryRun(NamedTuple):
+    """The settings of an FMU's dry run, and its outputs."""
+
+    step: ControlStep = 0.05
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the picture (default results/FMU_check).")
+    ] = None
+    mass: Annotated[
+        float | None,
+        typer.Option(help="What the vehicle weighs, M of the controller, in kg.", min=1e-3),
+    ] = None
+    ego_class: Annotated[
+        str | None, typer.Option(help="SUMO's vehicle class, where its mass is not known.")
+    ] = None
+    friction: Annotated[float, typer.Option(help="alpha of it in N.s/m.", min=0.0)] = 100.0
+    force_limit: ForceLimit = 8000.0
+    speed: Annotated[float, typer.Option(help="Rolling start in m/s.", min=0.0)] = 4.0
+    as_json: JsonFlag = False
+
+
+class StepTests(NamedTuple):
+    """The settings of an FMU's step tests, and their outputs."""
+
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Profile to write, with the model in it.")
+    ] = None
+    step: ControlStep = 0.05
+    horizon: Annotated[int, typer.Option(help="Of the MPC in steps.", min=2, max=200)] = 15
+    force_limit: ForceLimit = 8000.0
+    speeds: Annotated[
+        str, typer.Option(help="Speeds in m/s that the tests start from, comma-separated.")
+    ] = "0,2,4,8,12"
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            help="Measured against fitted (default results/FMU_identify/FMU_identify.png)."
+        ),
+    ] = None
+    force: ReplaceFile = False
+
+
+def ungrouped(command: Callable[..., None]) -> Callable[..., None]:
+    """Return ``command`` with one parameter for each field of the groups that it takes."""
+    own = inspect.signature(command, eval_str=True).parameters
+    flat: list[inspect.Parameter] = []
+    for parameter in own.values():
+        flat += _fields(parameter.annotation) if _is_group(parameter) else [parameter]
+    # values arrive by keyword, so that one without a default may follow one that has one
+    shown = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in flat]
+
+    def call(**given: Any) -> None:
+        command(
+            **{
+                name: (
+                    parameter.annotation(*(given[key] for key in parameter.annotation._fields))
+                    if _is_group(parameter)
+                    else given[name]
+                )
+                for name, parameter in own.items()
+            }
+        )
+
+    call.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
+    call.__annotations__ = {parameter.name: parameter.annotation for parameter in shown}
+    call.__doc__, call.__name__ = command.__doc__, command.__name__
+    return call
+
+
+def _is_group(parameter: inspect.Parameter) -> bool:
+    return hasattr(parameter.annotation, "_fields")
+
+
+def _fields(group: Any) -> list[inspect.Parameter]:
+    kinds, defaults = group.__annotations__, group._field_defaults
+    return [
+        inspect.Parameter(
+            name, inspect.Parameter.KEYWORD_ONLY, default=defaults[name], annotation=kinds[name]
+        )
+        for name in group._fields
+    ]
