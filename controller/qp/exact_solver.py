@@ -1,12 +1,18 @@
 """The solution of both quadratic programs: exact start, solver, verification of the optimum."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from controller._jit import Array, kernel
 from controller.qp.active_set import INFEASIBLE, solve_exactly
 from controller.qp.least_squares import LeastSquares, Outcome
-from controller.qp.osqp_backend import OsqpBackend
 from controller.qp.verification import certifies_infeasibility, refine
+
+if TYPE_CHECKING:
+    from controller.qp.osqp_backend import OsqpBackend
 
 _SOLVED, _INFEASIBLE = Outcome.SOLVED, Outcome.INFEASIBLE
 

@@ -215,12 +215,7 @@ def _build_plot() -> Commands:
     plot = Commands("Draw figures.")
     plot.add("influence", _influence)
     plot.add("reference", _reference)
-    plot.callback()(_plot)
     return plot
-
-
-def _plot() -> None:
-    """Draw figures."""
 
 
 def _influence(

@@ -34,12 +34,7 @@ def build_check() -> Commands:
     check = Commands("Check code of other packages.")
     for command in (_controller, _model, _rule, _sensor, _metric):
         check.add(command.__name__.removeprefix("_"), command)
-    check.callback()(_check)
     return check
-
-
-def _check() -> None:
-    """Check code of other packages."""
 
 
 def _controller(

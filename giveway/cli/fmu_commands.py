@@ -41,12 +41,7 @@ def build_export(with_flags: Callable[[Callable[..., None]], Callable[..., None]
     app = Commands("Write the controller as an FMU, or a run in other formats.")
     app.add("controller", with_flags(_controller))
     app.add("run", _run)
-    app.callback()(_export)
     return app
-
-
-def _export() -> None:
-    """Write the controller as an FMU, or a run in other formats."""
 
 
 def _run(

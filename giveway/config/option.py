@@ -2,7 +2,8 @@
 
 import math
 import shlex
-from typing import Annotated, Any, Literal, get_args
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, Protocol, TypeVar, get_args
 
 from pydantic import (
     AfterValidator,
@@ -193,3 +194,40 @@ class Section(BaseModel):
             expected = f"should be {'0, or ' if zero else ''}at least {least:g}"
             raise PydanticCustomError(_TOO_SMALL, "{expected}", {"expected": expected})
         return value
+
+
+class NamedTable(Protocol):
+    """A table of an array of tables, which has a name."""
+
+    @property
+    def name(self) -> str:
+        """The name of the table."""
+        ...
+
+
+_Table = TypeVar("_Table", bound=NamedTable)
+
+
+def read_tables(
+    value: Any, kind: type[_Table], what: str, heading: str, read: Callable[[Any, int], _Table]
+) -> tuple[_Table, ...]:
+    """Read the tables of an array in a TOML file or a dictionary, each with a name of its own.
+
+    Args:
+        value: Tables, as dictionaries or as they are read.
+        kind: Class of a table, with the attribute ``name``.
+        what: Key of the array, for messages.
+        heading: Heading of a table, for messages.
+        read: Function that reads one dictionary, given its index.
+
+    Raises:
+        ValueError: a table is not valid; the message names it.
+    """
+    if not isinstance(value, list | tuple) or not all(isinstance(t, dict | kind) for t in value):
+        raise ValueError(f"{what} = {value!r}: expected tables, each headed {heading}")
+    tables = [t if isinstance(t, kind) else read(t, number) for number, t in enumerate(value)]
+    names = [table.name for table in tables]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{what} '{name}': two have this name; give each its own")
+    return tuple(tables)

@@ -5,7 +5,7 @@ The TOML file, the flags of the command line and the Python API are derived from
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     BeforeValidator,
@@ -16,7 +16,6 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from controller import Defaults
 from giveway.config.option import LANE, Section, expectation, option
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
 from giveway.config.tables.basics import (
@@ -43,6 +42,9 @@ from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.plug_ins.finding import is_fmu, shown
 from giveway.plug_ins.options import read_options
 from giveway.plug_ins.sockets import MODEL
+
+if TYPE_CHECKING:
+    from controller import Defaults
 
 PAPER_STEP = 0.05
 """Default control step [s] (Yang & Özgüner 2019, table 1)."""

@@ -1,10 +1,8 @@
 """The trial of a scenario in a child process, for a report even if SUMO crashes or hangs."""
 
 import json
-import os
 import shlex
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,11 +11,12 @@ import numpy as np
 from giveway.doctor.finding import Finding, error, note, ok, warning
 from giveway.doctor.meetings import meetings
 from giveway.errors import GivewayError
+from giveway.processes import interpreter
 from giveway.processes.causes import cause_of_end
 from giveway.walkways import WalkNetwork, beside
 
 PATIENCE: Final = 120.0  # [s] time limit for loading and a short run
-_HOUSE: Final = Path(__file__).resolve().parents[2]
+_CHILD: Final = "from giveway.sumo.probe import main; main(*arguments)"
 _SHOWN: Final = 12  # largest number of edges shown of a route
 
 
@@ -36,20 +35,15 @@ def try_in_sumo(
         people: True if the scenario has people of its own, to find encounters with them.
         net_file: Network of the scenario, or None to search no place for added people.
     """
-    # -P: giveway's modules must come before a controller.py in the user's folder.
-    command = [sys.executable, "-P", "-m", "giveway.sumo.probe", str(config_file)]
-    command += ["--people"] if people else []
-    ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
     try:
         result = subprocess.run(
-            command,
+            interpreter.command(_CHILD, [str(config_file), people]),
             capture_output=True,
             text=True,
             errors="replace",
             check=False,
             timeout=patience,
             stdin=subprocess.DEVNULL,
-            env=os.environ | {"PYTHONPATH": ours},
         )
     except subprocess.TimeoutExpired:
         text = f"SUMO was still busy after {patience:g} s"

@@ -2,18 +2,19 @@
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 _PATHS: Final = "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
 
 
-def command(code: str, arguments: list[int | str]) -> list[str]:
+def command(code: str, arguments: Sequence[float | str]) -> list[str]:
     """Return the command of an interpreter like this one, with its flags and ``sys.path``.
 
     Args:
         code: Code to run, in which the name ``arguments`` is defined.
-        arguments: Arguments for the code.
+        arguments: Arguments for the code; they pass through JSON.
     """
     flags = {
         "-E": sys.flags.ignore_environment,

@@ -3,12 +3,12 @@
 A vehicle that no file declares will never depart. An added person needs a name that is not taken.
 """
 
-import difflib
 import re
 from collections.abc import Iterable, Iterator
 from html import unescape
 from pathlib import Path
 
+from giveway.errors import suggestion
 from giveway.scenario_files.reading import pieces
 
 _VEHICLE = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
@@ -37,11 +37,9 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
                 known[declared + ".0" if kind == b"flow" else declared] = None
     except (OSError, EOFError):
         return None  # SUMO reports the fault in the file
-    close = difflib.get_close_matches(name, known, n=1)
     shown = ", ".join(list(known)[:3])
-    if close:
-        return f"did you mean '{close[0]}'?"
-    return f"name one like {shown}" if shown else "it has no vehicles; insert one with --ego-route"
+    none = "it has no vehicles; insert one with --ego-route"
+    return suggestion(name, known, f"name one like {shown}" if shown else none, cutoff=0.6)
 
 
 def declares(name: str, files: Iterable[Path]) -> bool:

@@ -1,21 +1,12 @@
 """The reading of a SUMO network file as a stream, gzipped or not."""
 
-import gzip
 import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Protocol
 from xml.parsers import expat
 
 from giveway.errors import ScenarioError
-
-_GZIP_MAGIC = b"\x1f\x8b"
-
-
-class _Stream(Protocol):
-    """A stream that expat reads from."""
-
-    def read(self, size: int = ..., /) -> bytes: ...
+from giveway.scenario_files.reading import opened
 
 
 def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]], None]]) -> None:
@@ -29,13 +20,19 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
     Raises:
         ScenarioError: the file is unreadable, damaged, or no SUMO network.
     """
-    reader = _Reader(handlers)
+    parser, found = expat.ParserCreate(), set[str]()
+    parser.buffer_text = True
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        found.add(tag)
+        handler = handlers.get(tag)
+        if handler is not None:
+            handler(attributes)
+
+    parser.StartElementHandler = start
     try:
-        with net_file.open("rb") as raw:
-            zipped = raw.read(2) == _GZIP_MAGIC
-            raw.seek(0)
-            with gzip.GzipFile(fileobj=raw) if zipped else raw as stream:
-                reader.read(stream)
+        with opened(net_file) as stream:
+            parser.ParseFile(stream)
     except OSError as error:
         # Errors of gzip are OSErrors without a strerror.
         raise ScenarioError(
@@ -51,34 +48,11 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
         ) from error
     except (KeyError, ValueError) as error:
         reason = f"attribute {error} is missing" if isinstance(error, KeyError) else str(error)
+        line = parser.CurrentLineNumber
         raise ScenarioError(
-            f"{net_file}: line {reader.line}: {reason}; expected a SUMO network, made by netconvert"
+            f"{net_file}: line {line}: {reason}; expected a SUMO network, made by netconvert"
         ) from error
-    if not reader.is_network:
+    if "net" not in found:
         raise ScenarioError(
             f"{net_file}: no <net> in it; expected a SUMO network, made by netconvert"
         )
-
-
-class _Reader:
-    """Passes start tags to handlers."""
-
-    def __init__(self, handlers: Mapping[str, Callable[[dict[str, str]], None]]) -> None:
-        self.is_network = False
-        self._handlers = handlers
-        self._parser = expat.ParserCreate()
-        self._parser.buffer_text = True
-        self._parser.StartElementHandler = self._start
-
-    def read(self, stream: _Stream) -> None:
-        self._parser.ParseFile(stream)
-
-    @property
-    def line(self) -> int:
-        return self._parser.CurrentLineNumber
-
-    def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        self.is_network = self.is_network or tag == "net"
-        handler = self._handlers.get(tag)
-        if handler is not None:
-            handler(attributes)

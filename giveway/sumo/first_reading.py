@@ -4,9 +4,7 @@ A few broken networks and demands crash the process that reads them. In a superv
 of a study that costs one run; in the user's own process, which has called :func:`giveway.run`, it
 would cost everything. Therefore a child process tries the same command first, once for each content
 of the scenario's files. What SUMO refuses with a message is left to the second reading, which
-reports it better.
-
-``python -m giveway.sumo.first_reading OPTION ...`` is the child.
+reports it better. The child runs :func:`main`.
 """
 
 import hashlib
@@ -21,14 +19,14 @@ from typing import Any, Final
 
 from giveway._environment import user_cache
 from giveway.errors import InstallationError, SumoError
+from giveway.processes import interpreter
 from giveway.processes.causes import cause_of_end
 from giveway.processes.child import is_supervised
 from giveway.sumo.library import import_libsumo, version
 
 # Longest time [s] to load a scenario; the largest city scenarios take some minutes
 PATIENCE: Final = 600.0
-_HOUSE: Final = Path(__file__).resolve().parents[2]
-_MODULE: Final = "giveway.sumo.first_reading"
+_CHILD: Final = "from giveway.sumo.first_reading import main; main(arguments)"
 _ROUTE_STEPS: Final = "--route-steps"  # with 0, SUMO reads all routes at once, not as they depart
 _ADDRESS: Final = re.compile(r"[^/\\\s]{2,}:\d+")
 _DONE: Final = "read"
@@ -70,18 +68,14 @@ def read_first(
 
 
 def _try(config_file: Path, command: Sequence[str], patience: float) -> None:
-    # -P: giveway's modules must come before a controller.py in the user's folder.
-    child = [sys.executable, "-P", "-m", _MODULE, *command]
-    ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
     remedy = f"look at it alone: sumo -c {config_file}; netconvert may rebuild the network"
     try:
         result = subprocess.run(
-            child,
+            interpreter.command(_CHILD, command),
             capture_output=True,
             check=False,
             timeout=patience,
             stdin=subprocess.DEVNULL,
-            env=os.environ | {"PYTHONPATH": ours},
         )
     except subprocess.TimeoutExpired:
         raise SumoError(
@@ -127,7 +121,3 @@ def main(command: Sequence[str]) -> None:
     sys.stdout.write(f"\n{_DONE}\n")
     sys.stdout.flush()
     os._exit(0)  # skips the destructors of native code
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

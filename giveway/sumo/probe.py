@@ -1,6 +1,6 @@
-"""A trial of a scenario in SUMO: ``python -m giveway.sumo.probe CONFIG`` prints a JSON line.
+"""A trial of a scenario in SUMO, which prints a JSON line.
 
-It is a process of its own, because SUMO may crash or hang, and one process holds one simulation.
+It runs in a process of its own, because SUMO may crash or hang, and a process holds one simulation.
 """
 
 import json
@@ -85,14 +85,10 @@ def _way(lanes: Lanes, vehicles: dict[str, list[str]]) -> list[list[float]]:
     return []
 
 
-def main(config_file: Path, people: bool) -> None:
+def main(config_file: str, people: bool) -> None:
     """Print how SUMO read the scenario, or why it refused to."""
     try:
-        answer = look(config_file, people)
+        answer = look(Path(config_file), people)
     except Exception as error:  # an error of libsumo or giveway; further reasons are on stderr
         answer = {"refused": " ".join(str(error).split())}
     sys.stdout.write("\n" + json.dumps(answer) + "\n")
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]), "--people" in sys.argv)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,7 +64,7 @@ class SumoVehicles:
         self._sumo = sumo
         self._call = call
         self._lanes = lanes
-        self._shapes: dict[str, tuple[str, float, float]] = {}
+        self._size = cache(self._type_length_width)
         self._id_list = direct(sumo, "vehicle", "getIDList")
         self._position = direct(sumo, "vehicle", "getPosition")
         self._angle = direct(sumo, "vehicle", "getAngle")
@@ -98,12 +99,8 @@ class SumoVehicles:
 
     def _bodies(self, names: Sequence[str]) -> BackgroundVehicles:
         """Return the positions and bodies of at least one vehicle."""
-        vehicle, ids = self._vehicle, tuple(names)
-        for name in ids:
-            if name not in self._shapes:
-                size = vehicle.getLength(name), vehicle.getWidth(name)
-                self._shapes[name] = (vehicle.getTypeID(name), *size)
-        types, lengths, widths = zip(*map(self._shapes.__getitem__, ids), strict=True)
+        ids = tuple(names)
+        types, lengths, widths = zip(*map(self._size, ids), strict=True)
         places = np.array(list(map(self._position, ids)), dtype=np.float64)
         return BackgroundVehicles(
             ids=ids,
@@ -115,6 +112,10 @@ class SumoVehicles:
             length=np.array(lengths),
             width=np.array(widths),
         )
+
+    def _type_length_width(self, name: str) -> tuple[str, float, float]:
+        vehicle = self._vehicle
+        return vehicle.getTypeID(name), vehicle.getLength(name), vehicle.getWidth(name)
 
     def state(self, name: str) -> VehicleState:
         """Return the state of one vehicle as SUMO has it now."""

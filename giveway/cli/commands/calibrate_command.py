@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from giveway.cli.option_groups import FitSettings
-from giveway.cli.screen.printing import escape, print_place, writing
+from giveway.cli.screen.printing import escape, numbers_of, print_place, writing
 from giveway.cli.screen.progress_bars import counting
 from giveway.config.files.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
@@ -116,16 +116,13 @@ def _rounded(name: str, fit: Fit) -> dict[str, float | list[float]]:
 
 
 def _print(console: Console, found: Calibration) -> None:
-    values = Table(title="Parameters")
-    for heading in ("", "before", "after"):
-        values.add_column(heading, justify="right" if heading else "left")
+    values = Table(*numbers_of("before", "after"), title="Parameters")
     for name in found.fitted:
         before, after = (getattr(p, name) for p in (found.start, found.parameters))
         values.add_row(name, f"{before:.5g}", f"{after:.5g}")
     console.print(values)
-    errors = Table(title=escape("Displacement error [m], mean ADE of the horizons"))
-    for heading in ("", "clips", "before", "after", "difference [95 %]"):
-        errors.add_column(escape(heading), justify="right" if heading else "left")
+    columns = numbers_of("clips", "before", "after", "difference [95 %]")
+    errors = Table(*columns, title=escape("Displacement error [m], mean ADE of the horizons"))
     for name, clips, fit in (
         ("training", found.training, found.train),
         ("held out", found.held_out, found.test),

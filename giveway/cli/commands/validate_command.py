@@ -7,7 +7,7 @@ import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from giveway.cli.screen.printing import escape, print_place
+from giveway.cli.screen.printing import escape, numbers_of, print_place
 from giveway.cli.screen.progress_bars import counting
 from giveway.config.files.presets import parameters_of, require_steady_preset
 from giveway.precompile import compile_kernels_once
@@ -71,12 +71,10 @@ def _print(console: Console, found: Validation, preset: str) -> None:
 def _errors(rows: pd.DataFrame, title: str) -> Table:
     """Return a table of ADE / FDE per predictor and horizon, with the FDE's intervals below."""
     caption = "ADE / FDE [95 % interval of the FDE, clips resampled]"
-    table = Table(title=escape(title), caption=escape(caption))
-    table.add_column("")
-    horizons = list(dict.fromkeys(rows["horizon"]))
-    for horizon in horizons:
-        count = int(rows.loc[rows["horizon"] == horizon, "count"].iloc[0])
-        table.add_column(f"{horizon:g} s (n = {count})", justify="right")
+    first = rows.drop_duplicates("horizon")
+    horizons = dict(zip(first["horizon"], first["count"], strict=True))
+    columns = numbers_of(*(f"{horizon:g} s (n = {int(n)})" for horizon, n in horizons.items()))
+    table = Table(*columns, title=escape(title), caption=escape(caption))
     for name in dict.fromkeys(rows["predictor"]):
         mine = rows[rows["predictor"] == name]
         table.add_row(name, *(_cell(mine[mine["horizon"] == horizon]) for horizon in horizons))
@@ -92,9 +90,8 @@ def _cell(rows: pd.DataFrame) -> str:
 
 def _contacts(contacts: pd.DataFrame) -> Table:
     pedestrians = int(contacts.loc[contacts["predictor"] == ORDER[0], "pedestrians"].sum())
-    table = Table(title=f"Touching the vehicle in whole clips, of {pedestrians}")
-    for heading in ("", "touching", "closest [m]"):
-        table.add_column(escape(heading), justify="right" if heading else "left")
+    title = f"Touching the vehicle in whole clips, of {pedestrians}"
+    table = Table(*numbers_of("touching", "closest [m]"), title=title)
     for row in _totals(contacts):
         table.add_row(*row)
     return table

@@ -8,7 +8,7 @@ from typing import Any
 
 from rich import markup
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from giveway.cli.exit import visible
@@ -32,17 +32,26 @@ def findings_table(
         findings: Level, subject, text and remedy of each finding; the remedy may be empty.
     """
     table = Table(
-        title=Text(title), title_justify="left", show_header=False, box=None, pad_edge=False
+        Column(no_wrap=True),
+        Column(no_wrap=True),
+        Column(overflow="fold", ratio=1),
+        title=Text(title),
+        title_justify="left",
+        show_header=False,
+        box=None,
+        pad_edge=False,
     )
-    table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold", ratio=1)
     for level, subject, finding, remedy in findings:
         text = Text(visible(finding))  # not markup: ids, names and paths may contain brackets
         if remedy:
             text.append(f"\n-> {remedy}", style="italic")
         table.add_row(Text(level, style=styles[level]), Text(visible(subject)), text)
     return table
+
+
+def numbers_of(*headings: str) -> list[Column]:
+    """Return the columns of a table with names on the left and numbers under these headings."""
+    return [Column(), *(Column(escape(heading), justify="right") for heading in headings)]
 
 
 def print_place(console: Console, what: str, path: Path) -> None:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from giveway.results.ego_result import EgoResult
@@ -67,15 +67,15 @@ def summary_table(result: RunResult) -> Table:
 
     A missing number is shown as a dash.
     """
+    names = [ego.id for ego in result.egos] or [""]
     table = Table(
-        title=Text(_title(result)), show_header=len(result.egos) > 1, title_justify="left"
+        "",
+        *(Column(Text(name), justify="right") for name in names),
+        "",
+        title=Text(_title(result)),
+        show_header=len(result.egos) > 1,
+        title_justify="left",
     )
-    table.add_column()
-    for ego in result.egos:
-        table.add_column(Text(ego.id), justify="right")
-    if not result.egos:
-        table.add_column(justify="right")
-    table.add_column()
     for label, name, unit in _shown(result):
         cells = [_formatted(ego.summary.get(name), unit) for ego in result.egos]
         table.add_row(label, *(value for value, _ in cells), max(unit for _, unit in cells))

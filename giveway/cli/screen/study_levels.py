@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from rich import box
 from rich.console import Console, Group
-from rich.table import Table
+from rich.table import Column, Table
 
 from giveway.cli.screen.printing import escape
 from giveway.reports.tables.level_table import BETTER, WORSE, LevelTable, Mean, level_table
@@ -68,11 +68,14 @@ def _parts(table: LevelTable, width: int) -> Iterator[list[int]]:
 
 def _part(table: LevelTable, columns: Sequence[int]) -> Table:
     widths = _widths(table)
-    drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    drawn.add_column("", overflow="fold")
-    for column in columns:
-        heading = escape(_heading(*table.headings[column]))
-        drawn.add_column(heading, justify="right", no_wrap=True, width=widths[column])
+    headings = {k: escape(_heading(*table.headings[k])) for k in columns}
+    drawn = Table(
+        Column(overflow="fold"),
+        *(Column(h, justify="right", no_wrap=True, width=widths[k]) for k, h in headings.items()),
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+        show_edge=False,
+    )
     context = ""
     for row in table.rows:
         if row.context != context:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich import box
 from rich.padding import Padding
-from rich.table import Table
+from rich.table import Column, Table
 
 from giveway.cli.screen.printing import escape
 from giveway.cli.screen.study_levels import print_levels
@@ -45,11 +45,13 @@ def print_plan(
     definition = planned.definition
     title = f"Study {definition.name}"
     title += f": {definition.description}" if definition.description else ""
-    table = Table(title=escape(title))
-    table.add_column("cell", justify="right")
-    for factor in planned.design.factors:
-        table.add_column(escape(factor.name), justify="right", overflow="fold")
-    table.add_column("s per run", justify="right")
+    names = (escape(factor.name) for factor in planned.design.factors)
+    table = Table(
+        Column("cell", justify="right"),
+        *(Column(name, justify="right", overflow="fold") for name in names),
+        Column("s per run", justify="right"),
+        title=escape(title),
+    )
     for entry in planned.cells:
         labels = [escape(level.label) for level in entry.cell.levels.values()]
         number = str(entry.cell.number)
@@ -167,15 +169,19 @@ def _print_lacking(console: Console, study: StudyFolder, fewest: float) -> None:
 
 def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
     wanted = study.definition.comparison
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     names = other_factors(study.design, wanted)
     names += ["ego"] if study.comparison["ego"].nunique() > 1 else []
     names += ["treatment"] if study.comparison["treatment"].nunique() > 1 else []
-    for heading in _short([wanted.factor if name == "treatment" else name for name in names]):
-        table.add_column(escape(heading), overflow="fold")
-    for heading in ("mean", f"{100 * wanted.confidence:g} % interval", "n"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("", no_wrap=True)
+    short = _short([wanted.factor if name == "treatment" else name for name in names])
+    numbers = ("mean", f"{100 * wanted.confidence:g} % interval", "n")
+    table = Table(
+        *(Column(escape(heading), overflow="fold") for heading in short),
+        *(Column(heading, justify="right", no_wrap=True) for heading in numbers),
+        Column(no_wrap=True),
+        box=box.SIMPLE_HEAD,
+        pad_edge=False,
+        show_edge=False,
+    )
     for row in chosen.to_dict("records"):
         table.add_row(*(escape(level_label(row[name])) for name in names), *_cells(row))
     return table
@@ -236,12 +242,14 @@ def _print_reference(console: Console, study: StudyFolder) -> None:
     situations = list(dict.fromkeys(situation for _, situation in PUBLISHED))
     percent = f"{100 * study.definition.comparison.confidence:g} %"
     title = f"Yang & Özgüner 2019, table 2: MPC minus PID in s, mean and {percent} interval"
-    table = Table(title=escape(title), show_lines=True)
-    for name in (*others, "pedestrians"):
-        table.add_column(escape(name))
-    for situation in situations:
-        what = "longest wait" if situation == "stop-and-wait" else "completion time"
-        table.add_column(f"{situation}\n({what})", justify="right")
+    what = {"stop-and-wait": "longest wait"}
+    headings = [f"{one}\n({what.get(one, 'completion time')})" for one in situations]
+    table = Table(
+        *map(escape, (*others, "pedestrians")),
+        *(Column(heading, justify="right") for heading in headings),
+        title=escape(title),
+        show_lines=True,
+    )
     for context, rows in frame.groupby([*others, "ego", "pedestrians"], sort=False):
         labels = [escape(str(value)) for value in (*context[: len(others)], context[-1])]
         by_situation = rows.set_index("situation").to_dict("index")

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Final
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from giveway.config.option import Section, expectation, is_number, option
+from giveway.config.option import Section, expectation, is_number, option, read_tables
 from giveway.config.tables.people import SHARE, PeopleConfig
 
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
@@ -170,21 +170,9 @@ def read_flows(value: Any) -> tuple[FlowConfig, ...]:
     Raises:
         ValueError: a flow is not valid; the message names it.
     """
-    if not isinstance(value, list | tuple) or not all(
-        isinstance(entry, dict | FlowConfig) for entry in value
-    ):
-        raise ValueError(f"flow = {value!r}: expected tables, each headed [[crowd.flow]]")
-    if len(value) > _MOST:
+    if isinstance(value, list | tuple) and len(value) > _MOST:
         raise ValueError(f"{len(value)} flows: expected {_MOST} at most")
-    read = tuple(
-        entry if isinstance(entry, FlowConfig) else _read(entry, number)
-        for number, entry in enumerate(value)
-    )
-    names = [flow.name for flow in read]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"flow '{name}': two have this name; give each its own")
-    return read
+    return read_tables(value, FlowConfig, "flow", "[[crowd.flow]]", _read)
 
 
 def _read(entry: dict[str, Any], number: int) -> FlowConfig:

@@ -7,7 +7,7 @@ from typing import Any
 import shapely
 from pydantic import Field
 
-from giveway.config.option import Section, is_number
+from giveway.config.option import Section, is_number, read_tables
 
 _KEYS = ("name", "line", "area", "interval")
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
@@ -40,19 +40,7 @@ def read_measures(value: Any) -> tuple[MeasureConfig, ...]:
     Raises:
         ValueError: a measure is not valid; the message names it.
     """
-    if not isinstance(value, list | tuple) or not all(
-        isinstance(entry, dict | MeasureConfig) for entry in value
-    ):
-        raise ValueError(f"measure = {value!r}: expected tables, each headed [[measure]]")
-    read = tuple(
-        entry if isinstance(entry, MeasureConfig) else _read(entry, number)
-        for number, entry in enumerate(value)
-    )
-    names = [measure.name for measure in read]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"measure '{name}': two have this name; give each its own")
-    return read
+    return read_tables(value, MeasureConfig, "measure", "[[measure]]", _read)
 
 
 def _read(entry: dict[str, Any], number: int) -> MeasureConfig:

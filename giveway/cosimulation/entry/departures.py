@@ -4,7 +4,6 @@ An ego that is to be inserted enters at its time if there is room for it. Otherw
 as soon as SUMO's own check finds room, and giveway takes it over there.
 """
 
-import difflib
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -16,7 +15,7 @@ from giveway.cosimulation.entry.entrance import Entrance, initial_speed, require
 from giveway.cosimulation.entry.room import Entry, has_room
 from giveway.ego.ego import Ego
 from giveway.ego.waiting_ego import WaitingEgo
-from giveway.errors import ConfigError, ScenarioError
+from giveway.errors import ConfigError, ScenarioError, suggestion
 from giveway.geometry.bodies import BODY
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.geometry.path import EgoPath
@@ -270,11 +269,9 @@ class Departures:
                 f"before its departure at {departure:.12g} s; let it depart earlier"
             )
         names = list(self._departed)
-        close = difflib.get_close_matches(ego.id, names, n=1)
-        hint = "nobody did; look at its begin and end"
-        if names:
-            shown = ", ".join(names[:3])
-            hint = f"did you mean '{close[0]}'?" if close else f"name one that does, like {shown}"
+        some = f"name one that does, like {', '.join(names[:3])}"
+        none = "nobody did; look at its begin and end"
+        hint = suggestion(ego.id, names, some if names else none, cutoff=0.6)
         return (
             f"--ego {ego.id}: no such vehicle departed in {self._config_file} until "
             f"{self._session.time:.12g} s ({len(names)} others did); {hint}"

@@ -6,18 +6,15 @@ while its objects are deleted. In a process of its own this does no harm, and th
 in a few words.
 """
 
-import json
 import os
 import subprocess
-import sys
 import threading
 from typing import Any, Final, NoReturn
 
+from giveway.processes import interpreter
+
 _START: Final = 60.0  # Time [s] for Python and Dask to start, on a busy machine
-_BOOT: Final = (
-    "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
-    "from giveway.studies.execution.cluster_probe import main; main(*arguments)"
-)
+_CHILD: Final = "from giveway.studies.execution.cluster_probe import main; main(*arguments)"
 # Share of the time limit given to Dask's own timeout, so that its message comes before ours
 _OF_IT: Final = 0.8
 _ANSWER: Final = "answer: "
@@ -33,10 +30,9 @@ def reason_against(address: str, limit: float) -> str:
         address: Address as Dask writes it.
         limit: Time [s] within which the address has to answer.
     """
-    given = json.dumps([sys.path, [address, limit]])
     try:
         probe = subprocess.run(
-            [sys.executable, "-P", "-c", _BOOT, given],
+            interpreter.command(_CHILD, [address, limit]),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

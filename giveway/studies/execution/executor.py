@@ -1,10 +1,14 @@
 """The interface of an executor, which makes the runs of a study on this machine or on others."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
-from typing import Protocol, Self
+from typing import TYPE_CHECKING, Protocol, Self
 
 from giveway.errors import GivewayError
-from giveway.studies.record import RunRecord, Task
+
+if TYPE_CHECKING:
+    from giveway.studies.record import RunRecord, Task
 
 
 class WorkerError(GivewayError):

@@ -5,6 +5,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from giveway.sumo.network.lanes import admits
@@ -44,8 +45,8 @@ class FootPaths:
 
     def __init__(self, sumo: Any) -> None:
         self._sumo = sumo
-        self._lanes: dict[str, _Lane | None] = {}
-        self._ends: dict[str, tuple[str, str]] = {}
+        self._lane = cache(self._find)
+        self._joined = cache(self._ends)
 
     def lane(self, edge: str) -> str | None:
         """Return the lane on which SUMO lets people walk along ``edge``, or None."""
@@ -125,17 +126,10 @@ class FootPaths:
 
         return min(candidates, key=distance)
 
-    def _joined(self, edge: str) -> tuple[str, str]:
+    def _ends(self, edge: str) -> tuple[str, str]:
         """Return the junctions at both ends of an edge."""
-        if edge not in self._ends:
-            edges = self._sumo.edge
-            self._ends[edge] = edges.getFromJunction(edge), edges.getToJunction(edge)
-        return self._ends[edge]
-
-    def _lane(self, edge: str) -> _Lane | None:
-        if edge not in self._lanes:
-            self._lanes[edge] = self._find(edge)
-        return self._lanes[edge]
+        edges = self._sumo.edge
+        return edges.getFromJunction(edge), edges.getToJunction(edge)
 
     def _find(self, edge: str) -> _Lane | None:
         """Find the lane that SUMO uses: one for pedestrians alone, else the first to admit them."""

@@ -3,7 +3,7 @@
 import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -36,15 +36,21 @@ class Lanes:
     Args:
         sumo: The libsumo module, as ``SumoSession`` owns it.
         config_file: The scenario, for messages.
+
+    Attributes:
+        shape: Function that returns the centre line (k, 2) [m] of a lane.
+        length: Function that returns the length [m] of a lane's centre line.
+        onwards: Function that returns the lanes right after a lane, in the junction or behind it,
+            towards an edge.
     """
 
     def __init__(self, sumo: Any, config_file: Path) -> None:
         self._sumo = sumo
         self._config_file = config_file
         self._edges = frozenset(sumo.edge.getIDList())
-        self._shapes: dict[str, Array] = {}
-        self._lengths: dict[str, float] = {}
-        self._onwards: dict[tuple[str, str], tuple[str, ...]] = {}
+        self.shape = cache(self._shape)
+        self.length = cache(self._length)
+        self.onwards = cache(self._onwards)
 
     def along(
         self,
@@ -136,19 +142,11 @@ class Lanes:
         """Width [m] of a lane."""
         return float(self._sumo.lane.getWidth(lane))
 
-    def shape(self, lane: str) -> Array:
-        """Return the centre line (k, 2) [m] of a lane."""
-        shape = self._shapes.get(lane)
-        if shape is None:
-            shape = self._shapes[lane] = np.array(self._sumo.lane.getShape(lane), dtype=np.float64)
-        return shape
+    def _shape(self, lane: str) -> Array:
+        return np.array(self._sumo.lane.getShape(lane), dtype=np.float64)
 
-    def length(self, lane: str) -> float:
-        """Length [m] of a lane's centre line."""
-        length = self._lengths.get(lane)
-        if length is None:
-            length = self._lengths[lane] = _length(self.shape(lane))
-        return length
+    def _length(self, lane: str) -> float:
+        return _length(self.shape(lane))
 
     def speed_limit(self, lane: str) -> float:
         """Return the speed limit [m/s] of a lane, for any vehicle."""
@@ -175,14 +173,10 @@ class Lanes:
         junction = self._sumo.edge.getFromJunction(edge)
         return frozenset(self._sumo.junction.getIncomingEdges(junction))
 
-    def onwards(self, lane: str, edge: str) -> tuple[str, ...]:
-        """Return the lanes right after ``lane``, in the junction or behind it, towards ``edge``."""
-        found = self._onwards.get((lane, edge))
-        if found is None:
-            links = self._sumo.lane.getLinks(lane)
-            leading = [link for link in links if self._sumo.lane.getEdgeID(link[0]) == edge]
-            found = self._onwards[lane, edge] = tuple(link[4] or link[0] for link in leading)
-        return found
+    def _onwards(self, lane: str, edge: str) -> tuple[str, ...]:
+        links = self._sumo.lane.getLinks(lane)
+        leading = [link for link in links if self._sumo.lane.getEdgeID(link[0]) == edge]
+        return tuple(link[4] or link[0] for link in leading)
 
     def out_of_junction(self, lane: str) -> tuple[str, ...]:
         """Return the lanes after one inside a junction, up to the first one outside."""

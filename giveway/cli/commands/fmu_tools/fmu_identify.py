@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from fmus import FmuError
@@ -103,12 +103,15 @@ def _identified(
 def _summary(path: Path, found: Identification) -> Table:
     model, (mass, friction) = found.model, found.intervals
     table = Table(
-        title=Text(f"{printable(path.name, 60)}: M v' + alpha v = u"), title_justify="left",
-        show_header=False, box=None, pad_edge=False,
-    )  # fmt: skip
-    table.add_column()
-    table.add_column(justify="right")
-    table.add_column()
+        "",
+        Column(justify="right"),
+        "",
+        title=Text(f"{printable(path.name, 60)}: M v' + alpha v = u"),
+        title_justify="left",
+        show_header=False,
+        box=None,
+        pad_edge=False,
+    )
     for label, value, unit in (
         ("M", f"{model.mass:.6g}", f"kg ± {_small(mass)} (95 %)"),
         ("alpha", f"{model.friction:.6g}", f"N.s/m ± {_small(friction)} (95 %)"),

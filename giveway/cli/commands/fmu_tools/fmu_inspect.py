@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from fmus import FmuError
@@ -96,9 +96,8 @@ def _parts(model: Model, sha256: str, *, everything: bool) -> Iterator[Table]:
 
 
 def _overview(model: Model, sha256: str) -> Table:
-    table = Table.grid(padding=(0, 2))
-    table.add_column(style="dim", no_wrap=True)
-    table.add_column(overflow="fold")
+    columns = Column(style="dim", no_wrap=True), Column(overflow="fold")
+    table = Table.grid(*columns, padding=(0, 2))
     rows: list[tuple[str, Text]] = [
         ("model", Text(printable(model.name) or "without a name", style="bold")),
         ("file", Text(str(model.path))),
@@ -164,12 +163,16 @@ def _experiment(model: Model) -> str:
 
 
 def _variables(title: str, variables: Sequence[Variable], shown: int) -> Table:
-    table = _list(title, len(variables), shown)
-    table.add_column("name", overflow="fold", max_width=34)
-    table.add_column("type", style="dim", no_wrap=True)
-    table.add_column("unit", no_wrap=True, max_width=12)
-    table.add_column("start", justify="right", no_wrap=True, max_width=12)
-    table.add_column("description", overflow="fold", style="dim")
+    table = _list(
+        title,
+        len(variables),
+        shown,
+        Column("name", overflow="fold", max_width=34),
+        Column("type", style="dim", no_wrap=True),
+        Column("unit", no_wrap=True, max_width=12),
+        Column("start", justify="right", no_wrap=True, max_width=12),
+        Column("description", overflow="fold", style="dim"),
+    )
     for variable in variables[:shown]:
         shape = "x".join(map(str, variable.shape))
         no_unit = Text("none", style="yellow") if _wants_unit(variable) else Text("")
@@ -188,11 +191,8 @@ def _wants_unit(variable: Variable) -> bool:
 
 
 def _units(model: Model, names: Sequence[str], shown: int) -> Table:
-    table = _list("Units", len(names), shown)
-    table.add_column("unit", no_wrap=True)
-    table.add_column("is", no_wrap=True)
-    table.add_column("in SI", no_wrap=True)
-    table.add_column("", style="dim", no_wrap=True)
+    headings = [Column(heading, no_wrap=True) for heading in ("unit", "is", "in SI")]
+    table = _list("Units", len(names), shown, *headings, Column(style="dim", no_wrap=True))
     for name in names[:shown]:
         declared = model.units.get(name, Unit(name))
         unit = to_si(declared)
@@ -207,17 +207,18 @@ def _units(model: Model, names: Sequence[str], shown: int) -> Table:
 
 
 def _findings(found: Sequence[str], shown: int) -> Table:
-    table = _list("Not as the standard wants it (no reason not to run it)", len(found), shown)
+    title = "Not as the standard wants it (no reason not to run it)"
+    table = _list(title, len(found), shown, Column(overflow="fold", style="yellow"))
     table.show_header = False
-    table.add_column(overflow="fold", style="yellow")
     for finding in found[:shown]:
         table.add_row(Text(finding))
     return table
 
 
-def _list(title: str, count: int, shown: int) -> Table:
+def _list(title: str, count: int, shown: int, *columns: Column) -> Table:
     more = f"... and {count - shown} more; --all shows them" if count > shown else None
     return Table(
+        *columns,
         title=Text(title, style="bold"),
         title_justify="left",
         caption=more,
