@@ -22,26 +22,11 @@ UNEQUAL = 1.15  # Factor between the two masses from which a remark is made
 
 
 @dataclass(frozen=True)
-class Side:
-    """The result of the tests for driving or for braking.
-
-    Attributes:
-        mass: Mass [kg] that fits the vehicle's motion.
-        lag: Lag of its actuator, first order [s].
-        delay: Dead time of its actuator [s].
-    """
-
-    mass: float
-    lag: float
-    delay: float
-
-
-@dataclass(frozen=True)
 class Sides:
-    """The results for driving and braking; None where the tests do not determine them."""
+    """The models of driving and braking; None where the tests do not determine them."""
 
-    drive: Side | None
-    brake: Side | None
+    drive: ResistanceModel | None
+    brake: ResistanceModel | None
 
 
 def fit_apart(drives: Sequence[Drive], delay: float) -> Sides:
@@ -54,7 +39,7 @@ def fit_apart(drives: Sequence[Drive], delay: float) -> Sides:
     return Sides(_fit_side(drives, 1.0, delay), _fit_side(drives, -1.0, delay))
 
 
-def _fit_side(drives: Sequence[Drive], sign: float, delay: float) -> Side | None:
+def _fit_side(drives: Sequence[Drive], sign: float, delay: float) -> ResistanceModel | None:
     own = [_of_side(drive, sign) for drive in drives]
     if sum(int(drive.used.sum()) for drive in own) < ENOUGH:
         return None
@@ -71,9 +56,7 @@ def _fit_side(drives: Sequence[Drive], sign: float, delay: float) -> Side | None
         lags = [best, *np.linspace(low, high, FINE).tolist()]
         lags.sort()
     found = fitted(min(lags, key=lambda lag: fitted(lag).residual))
-    if not np.isfinite(found.mass):
-        return None
-    return Side(ResistanceModel.of(found, own).mass, found.lag, found.delay)
+    return ResistanceModel.of(found, own) if np.isfinite(found.mass) else None
 
 
 def _of_side(drive: Drive, sign: float) -> Drive:
