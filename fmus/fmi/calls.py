@@ -280,10 +280,7 @@ class Stepper:
     progress: Callable[[], Progress]  # function to call after an incomplete step
 
 
-if sys.platform == "win32":
-    _c_library = ctypes.cdll.msvcrt
-else:
-    _c_library = ctypes.CDLL(None)
+_c_library = ctypes.cdll.msvcrt if sys.platform == "win32" else ctypes.CDLL(None)
 
 
 def allocators() -> tuple[c_void_p, c_void_p]:

@@ -149,10 +149,8 @@ def _sources(archive: Archive, model: Model) -> Iterator[Sources]:
             f"{archive.path}: no C sources in the archive; expected sources/*.c; export the FMU "
             f"with its sources, or for {this_platform()}"
         )
-    if BUILD in archive.members:
-        listed = _of_build_description(archive)
-    else:
-        listed = _of_description(archive, model)
+    described = BUILD in archive.members
+    listed = _of_build_description(archive) if described else _of_description(archive, model)
     everything = tuple(name for name in code if name.count("/") == 1)
     for identifier in dict.fromkeys(i.identifier for i in model.interfaces.values()):
         yield listed.get(identifier) or Sources(identifier, everything or tuple(code))

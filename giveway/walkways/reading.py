@@ -152,9 +152,8 @@ class _Reader:
         found = self.survey
         if not (self._walked(source) or self._walked(target)):
             return
-        signal = None
-        if "tl" in attributes:
-            signal = attributes["tl"], int(attributes["linkIndex"])
+        lit = "tl" in attributes
+        signal = (attributes["tl"], int(attributes["linkIndex"])) if lit else None
         found.links.append(Link(source, target, signal))
 
     def _walked(self, edge: str) -> bool:

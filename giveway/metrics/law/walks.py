@@ -107,9 +107,8 @@ def _priority(
     beside = np.maximum(np.abs(aside) - half, 0.0)
     kerb = (progress < 0.0) & (np.hypot(progress, beside) <= KERB)
     priority = np.empty(len(progress), dtype=np.bool_)
-    before = bool(on[0] and progress[0] > _ON)
-    if before and not area.crossing.system and not area.crossing.zebra:
-        before = False  # nobody has a right to enter such a crossing
+    by_right = area.crossing.system or area.crossing.zebra  # others nobody enters by right
+    before = bool(on[0] and progress[0] > _ON and by_right)
     for k, (now, there, enters) in enumerate(
         zip(open_at.tolist(), on.tolist(), kerb.tolist(), strict=True)
     ):
