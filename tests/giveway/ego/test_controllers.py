@@ -20,6 +20,7 @@ from controller import (
     StyleName,
     TunedPidParameters,
 )
+from controller.driving_constants import STANDING
 from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
@@ -67,6 +68,10 @@ def test_the_paper_s_gains_are_the_configurations():
         gains.derivative_gain,
     )
     assert PlannerParameters().horizon == round(PLANNING.horizon / STEP)
+
+
+def test_a_stop_is_recorded_below_the_speed_at_which_an_ego_stands():
+    assert CONFIG.record.stop_speed == STANDING
 
 
 def test_the_safety_layers_defaults_are_the_configurations():
