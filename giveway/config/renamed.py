@@ -139,7 +139,11 @@ def renamed_flag(word: str) -> str | None:
     if positive not in derived:
         return None
     said = advice(RENAMED[derived[positive]], as_flag=True)
-    return said if name == positive else said.replace("write --", "write --no-", 1)
+    if name == positive:
+        return said
+    if said.endswith("=VALUE"):
+        return said.removesuffix("VALUE") + "false"
+    return said.replace("write --", "write --no-", 1)
 
 
 def _holds(values: Any, location: Location) -> bool:

@@ -30,6 +30,7 @@ def test_a_flag_that_moved_is_told_its_new_name():
 
 def test_a_negative_flag_is_told_the_negative_one():
     assert renamed_flag("--no-obey-lights") == "write --no-rules-traffic-lights"
+    assert renamed_flag("--no-crowd-detour") == "write --set-model detour=false"
     assert renamed_flag("--no-regulation-traffic-lights") == "write --no-rules-traffic-lights"
 
 
