@@ -1,6 +1,7 @@
 """The command line as a user types it: real SUMO, and where it matters real processes."""
 
 import contextlib
+import io
 import os
 import re
 import signal
@@ -206,14 +207,12 @@ def test_the_influence_picture(
     assert "SIM" in refused("plot", "influence", "--preset", "SIMM")
 
 
-def test_a_terminal_without_our_characters_is_no_error(tmp_path: Path) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "giveway", "run", "--pedestrians", "0", "--no-pictures"],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONIOENCODING": "ascii"},
-        capture_output=True,
-        timeout=300,
-        check=False,
-    )
+def test_a_terminal_without_our_characters_is_no_error(
+    type_here: Type, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = io.BytesIO()
+    terminal = io.TextIOWrapper(shown, encoding="ascii", write_through=True)
+    monkeypatch.setattr(sys, "stdout", terminal)
+    done = type_here("run", "--pedestrians", 0, "--no-pictures")
     assert done.returncode == 0, done.stderr
-    assert b"Time to the goal" in done.stdout
+    assert b"Time to the goal" in shown.getvalue()
