@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import socket
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -50,27 +52,34 @@ class Stranger(threading.Thread):
             each.close()
 
 
-@pytest.mark.parametrize(
-    ("scheme", "greeting", "reason"),
-    [
-        ("tcp", b"", "nothing that answers|timed out|Timed out"),
-        ("tcp", b"HTTP/1.1 400 Bad Request\r\n\r\n" * 9, "another protocol|nothing that answers"),
-        ("tls", b"", "distributed.comm.tls"),
-        ("udp", b"", "unknown address scheme"),
-    ],
+STRANGERS = (
+    ("tcp", b"", "nothing that answers|timed out|Timed out"),
+    ("tcp", b"HTTP/1.1 400 Bad Request\r\n\r\n" * 9, "another protocol|nothing that answers"),
+    ("tls", b"", "distributed.comm.tls"),
+    ("udp", b"", "unknown address scheme"),
 )
-def test_a_stranger_at_the_address_is_one_line(monkeypatch, capfd, scheme, greeting, reason):
+
+
+def refusal_of(address: str) -> str:
+    """The message with which an address is refused."""
+    with pytest.raises(WorkerError) as refused, cluster_executor(address):
+        pass
+    return str(refused.value)
+
+
+def test_strangers_at_an_address_are_one_line_each(monkeypatch, capfd):
     monkeypatch.setattr("giveway.studies.execution.cluster._CONNECT", 1.0)
-    stranger = Stranger(greeting)
-    address = f"{scheme}://127.0.0.1:{stranger.port}"
+    servers = [Stranger(greeting) for _, greeting, _ in STRANGERS]
+    addresses = [
+        f"{scheme}://127.0.0.1:{server.port}"
+        for (scheme, *_), server in zip(STRANGERS, servers, strict=True)
+    ]
     began = time.monotonic()
-    try:
-        with (
-            pytest.raises(WorkerError, match=rf"^cluster '{address}'.*({reason})[^\n]*\Z"),
-            cluster_executor(address),
-        ):
-            pass
-    finally:
-        stranger.close()
+    with ThreadPoolExecutor(len(servers)) as threads:  # each waits for its probe, a process
+        refusals = list(threads.map(refusal_of, addresses))
+    for server in servers:
+        server.close()
     assert capfd.readouterr() == ("", "")
     assert time.monotonic() - began < 60.0  # it ends at all, however busy the machine is
+    for address, (*_, reason), said in zip(addresses, STRANGERS, refusals, strict=True):
+        assert re.match(rf"cluster '{address}'.*({reason})[^\n]*\Z", said), said
