@@ -153,8 +153,8 @@ def test_workers_that_cannot_start_are_an_error_that_says_why(script):
         import resource
         from giveway.studies.execution import WorkerError
         with local_executor(jobs=1) as executor:
-            # too little for what a worker imports
-            resource.setrlimit(resource.RLIMIT_AS, (300_000_000, resource.RLIM_INFINITY))
+            # enough for the threads of this process, too little for what a worker imports
+            resource.setrlimit(resource.RLIMIT_AS, (450_000_000, resource.RLIM_INFINITY))
             try:
                 list(executor.run(tasks))
             except WorkerError as error:
