@@ -131,7 +131,9 @@ def coasts(response: Trace, expected: Expected) -> Finding:
     seconds = 0.5 * (end - begin) * response.step_size
     text = f"{seconds:g} s without force: {before:.3g} to {after:.3g} m/s"
     if after < -CREEPS:
-        return Finding(name, "fail", f"{text}: it turns round like a spring", "this is no vehicle")
+        return Finding(
+            name, "fail", f"{text}: it turns round like a spring", "this is not a vehicle"
+        )
     if after > before + CREEPS:
         return Finding(
             name, "warn", f"{text}: it gets faster",

@@ -68,7 +68,7 @@ def known_masses(
 
     Args:
         profile: Profile with the identified model. A vehicle that is driven by an acceleration or a
-            speed has the mass of its [inverse_map] in the fit, whatever it weighs.
+            speed has the mass of its [inverse_map] in the fit, independently of its mass.
         mass: Mass given by the user [kg].
         vehicle_class: SUMO's vehicle class, given by the user.
     """

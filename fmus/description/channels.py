@@ -50,7 +50,7 @@ def _element(here: str, name: str, variable: Variable, number: int) -> Channel:
     what = (
         f"'{variable.name}' has {variable.size} element(s), counted from 1"
         if variable.shape
-        else f"'{variable.name}' is no array; leave out the brackets"
+        else f"'{variable.name}' is not an array; leave out the brackets"
     )
     raise FmuVariableError(f"{here} variable '{name}': {what}")
 

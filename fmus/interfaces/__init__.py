@@ -1,1 +1,1 @@
-"""The interface of a vehicle for the other packages, in whatever process its FMU runs."""
+"""The interface of a vehicle for the other packages. It does not depend on its FMU's process."""

@@ -1,4 +1,4 @@
-"""The interface of every vehicle, in whatever process its FMU runs."""
+"""The interface of every vehicle. It does not depend on the process of its FMU."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence

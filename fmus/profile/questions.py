@@ -32,7 +32,7 @@ def unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tupl
         told = guess = "%"
     if variable.unit:
         unit = printable(variable.unit, 40)
-        line = Line("unit", "?", f"{common}: nobody knows the FMU's '{unit}'", sure=False)
+        line = Line("unit", "?", f"{common}: the FMU's unit '{unit}' is unknown", sure=False)
         return line, f"'{name}' is in '{unit}', an unknown unit; add unit = \"{guess}\" or its like"
     line = Line("unit", told or "?", f"{common}: the FMU does not say", sure=False)
     return line, f"'{name}' has no unit; add unit = \"{guess}\", or what it is ({common})"

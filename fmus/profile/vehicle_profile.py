@@ -145,7 +145,7 @@ class VehicleProfile(Table):
     def _each_once(cls, names: tuple[str, ...]) -> tuple[str, ...]:
         for name in names:
             if names.count(name) > 1:
-                raise ValueError(f"record: '{name}' stands twice; keep one")
+                raise ValueError(f"record: '{name}' is given twice; keep one")
         return names
 
 

@@ -155,7 +155,7 @@ def set_plug_ins(words: Sequence[str], socket: Socket) -> dict[str, Any]:
             raise ConfigError(msg)
         known = found.setdefault(plug_in, {})
         if key in known:
-            raise ConfigError(f"{socket.flag} {word}: '{key}' stands twice; keep one")
+            raise ConfigError(f"{socket.flag} {word}: '{key}' is given twice; keep one")
         if key:
             known |= set_options([f"{key}={own}"], socket)
     return {name: own or True for name, own in found.items()}
@@ -176,7 +176,7 @@ def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, 
                 f"{socket.set_flag} {word}: expected an option and its value, like headway=1.5"
             )
         if key in values:
-            raise ConfigError(f"{socket.set_flag} {word}: '{key}' stands twice; keep one")
+            raise ConfigError(f"{socket.set_flag} {word}: '{key}' is given twice; keep one")
         value = toml_value(text.strip())
         # TOML writes nan and inf as words
         is_word = isinstance(value, float) and not math.isfinite(value)

@@ -105,7 +105,7 @@ def _rounded(value: float) -> float:
 
 
 class LawRecords:
-    """Records what the judgement needs, from the first ego on whose path the law rules anything.
+    """Records the data for the judgement, once an ego has a path on which the law applies.
 
     Args:
         session: The running simulation.

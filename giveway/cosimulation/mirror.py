@@ -165,7 +165,7 @@ class Mirror:
         """Move everybody in SUMO to where they are at the control step ``step``, and step SUMO.
 
         Raises:
-            CrowdError, VehicleError: a position is not finite; SUMO would hang on it.
+            CrowdError, VehicleError: a position is not finite, which would make SUMO hang.
             SumoError: SUMO failed, or its positions differ from giveway's.
         """
         places = [(ego.id, ego.check_pose(step)) for ego in egos]

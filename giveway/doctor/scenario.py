@@ -133,7 +133,7 @@ def _time(files: ScenarioFiles) -> list[Finding]:
     text = f"{step:g} s"
     if abs(step * 1000.0 - round(step * 1000.0)) > 1e-6:
         remedy = "SUMO cuts it off; use whole milliseconds"
-        findings = [warning("step length", f"{text} is no whole number of ms", remedy)]
+        findings = [warning("step length", f"{text} is not a whole number of ms", remedy)]
     else:
         text = f"{text}, {substeps} control step(s) of {step / substeps:.4g} s"
         findings = [ok("step length", text)]

@@ -35,7 +35,7 @@ class Projection:
         if parameters in {"", "!", "-", ".", "?"}:
             raise ResultsError(
                 f"{net.file}: its <location> has no projection (projParameter = "
-                f"'{parameters or '!'}'), so that nobody knows where on earth it lies; expected a "
+                f"'{parameters or '!'}'), so that its place on earth is unknown; expected a "
                 "network that netconvert made from OpenStreetMap or with --proj"
             )
         try:

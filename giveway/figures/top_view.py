@@ -42,7 +42,7 @@ LARGEST_PART = 70.0
 VIEW = (50.0, 32.0)  # Width and height [m] of a view that follows the ego
 TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity tick
 SEGMENTS = 150  # Largest number of segments per trajectory
-# Time [s] without a record after which a trajectory begins anew, since SUMO moved the person
+# Time [s] without a record after which a trajectory begins again, since SUMO moved the person
 PAUSE = 2.5
 
 

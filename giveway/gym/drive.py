@@ -102,10 +102,10 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
       last, what is left of the path [m]; ``ahead`` (5,) speed limit by lanes, lights, priority and
       vehicles [m/s], stop line [m], person on the way [m], vehicle in front [m], its speed [m/s];
       ``people`` (n, 5) of the nearest ones x ahead and y left of the front bumper [m], velocity
-      along both [m/s], and 1 where there is somebody.
+      along both [m/s], and 1 if there is a person.
     * Reward in each step, in seconds: h (v / v_r - 1), what the step loses against a free drive;
-      less h 0.02 a^2 for comfort; less 100 for hitting somebody with the front.
-    * ``terminated``: the goal is reached, or somebody is hit. ``truncated``: the time limit or
+      less h 0.02 a^2 for comfort; less 100 for hitting a person with the front.
+    * ``terminated``: the goal is reached, or a person is hit. ``truncated``: the time limit or
       the scenario's end. That step tells the last observation again, with reward 0.
       ``info["summary"]`` has then the run's numbers as of every run.
     * ``[safety] enabled`` is false unless the configuration says otherwise.

@@ -6,8 +6,8 @@ per control step all new rows are appended to one file by one write:
 
     magic | record | record | ... ;  record = kind, table, bytes | payload
 
-A ``COMMIT`` record closes each write: a reader takes whole steps or nothing, whatever the end of
-the file looks like. The file is written and not memory-mapped, for four reasons. A wild pointer of
+A ``COMMIT`` record closes each write: a reader gets complete steps only, also if the end of
+the file is damaged. The file is written and not memory-mapped, for four reasons. A wild pointer of
 native code cannot reach rows that have been written. A full disk is an error number instead of a
 SIGBUS. It works on every disk and system. And rows are filled at the speed of plain memory.
 

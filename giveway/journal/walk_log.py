@@ -118,7 +118,7 @@ class WalkLog:
         self._arrivals += [(step, int(pedestrian)) for pedestrian in pedestrians]
 
     def awaits(self, person_ids: NDArray[np.int64]) -> bool:
-        """Return whether anybody who counts is among ``person_ids``."""
+        """Return whether a person who counts is among ``person_ids``."""
         return bool(self._near[person_ids].any())
 
     @property

@@ -59,7 +59,7 @@ def encroachment(
     shapes in place of a conflict area that must be drawn by hand. A pedestrian's body is at a place
     at time t, and the ego's rectangle touches that body's circle there during [t_in, t_out]. The
     two are max(t_in - t, t - t_out, 0) apart, and the smallest value over all t counts. The ego's
-    own poses are searched, so that the result holds on any curved path, whoever comes first. The
+    own poses are searched, so that the result holds on any curved path and in either order. The
     largest of the three terms says who came first.
     within a control period is found to less than a thousandth of it.
 

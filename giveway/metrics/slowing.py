@@ -21,7 +21,7 @@ def slowed(ego: EgoTrack, reference: float | None) -> bool:
 
     The free speed rises with 0.5 m/s^2 from the start up to the reference speed of the place. A
     stop (a red light) or a vehicle less than 30 m in front may slow an ego without people, too.
-    Such instants do not count, and the free speed rises anew from the ego's speed after them.
+    Such instants do not count, and after them the free speed rises again from the ego's speed.
 
     Args:
         ego: Track of the ego.

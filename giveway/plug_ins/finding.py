@@ -128,7 +128,7 @@ def load_class(name: str, socket: Socket, settings: Mapping[str, Any]) -> tuple[
     kind = load(find(name, socket))
     if not callable(kind):
         raise ControlError(
-            f"{socket.setting} = '{name}': {kind!r} is no class; expected one with a method "
+            f"{socket.setting} = '{name}': {kind!r} is not a class; expected one with a method "
             f"{socket.method} (docs/plugins.md)"
         )
     return kind, read_options(name, getattr(kind, "Options", None), settings, socket)

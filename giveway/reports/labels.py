@@ -34,7 +34,7 @@ def treatment_labels(study: StudyFolder) -> list[str]:
 
 
 def level_label(value: object) -> str:
-    """Return the label of a level from its value in a frame, of whatever type."""
+    """Return the label of a level from its value in a frame, of any type."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):

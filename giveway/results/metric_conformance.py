@@ -137,7 +137,7 @@ def check_metric(
         make: Function that returns the metric with its options, as a run declares it.
         config: Configuration of the ego, or None for the defaults.
         time_step: Control step [s] of the drives.
-        begins: Function that is told each rule before it is checked, or None.
+        begins: Function that is called with each rule before it is checked, or None.
     """
     return _Battery(make, partial(made_up_drive, config, time_step)).findings(begins)
 

@@ -63,7 +63,7 @@ def rerun(
         run_id: Id of the run, such as ``c2-s17``.
         destination: Folder and files of the results.
         checked: The run, or None to find it by :func:`checked_run`.
-        watcher: Watcher that is told about every control step.
+        watcher: Watcher that is called at every control step.
         journal: Empty folder for the rows, which can be read if this process dies.
 
     Raises:

@@ -76,7 +76,7 @@ def run_study(
         origin: File of the study, for messages.
         out: Folder of the study.
         options: Options of the computation.
-        watcher: Function that is told about every finished run.
+        watcher: Function that is called with every finished run.
         tell: Function that takes one line for each kept file that is broken, and when runs of
             another giveway version are made again. None for standard error.
 

@@ -26,7 +26,7 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
     for variation in variations:
         name, values = _parsed(variation)
         if name in factors:
-            raise ConfigError(f"--vary {name}: stands twice; name all its values at once")
+            raise ConfigError(f"--vary {name}: is given twice; list all its values in one option")
         factors[name] = values
     definition: dict[str, Any] = {
         "name": "_".join(["vary", *factors])[:80],

@@ -41,7 +41,7 @@ from giveway.sumo.vehicles import SumoVehicles
 # Largest difference [m] between giveway's positions and SUMO's after each step
 POSITION_TOLERANCE = 1e-6
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
-_KEEP_ROUTE = 2  # libsumo's constant for a move exactly to x, y, whatever lane is there
+_KEEP_ROUTE = 2  # libsumo's constant for a move exactly to x, y, independently of lanes
 _NO_EDGE = itertools.repeat("")
 _EXACTLY = itertools.repeat(_KEEP_ROUTE)
 # libsumo's "ghost" mode, in which no lane is searched for (issue 17257)

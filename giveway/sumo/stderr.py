@@ -13,7 +13,7 @@ _MET = re.compile(r"^Warning: Collision of person '([^']*)' and person '([^']*)'
 def of_others(text: str, ours: Container[str]) -> str:
     """Return the output of SUMO without collisions among the people that giveway moves.
 
-    In SUMO's records they are all on one lane, at whose beginning new persons appear.
+    In SUMO's records they are all on one lane; new persons appear at its beginning.
 
     Args:
         text: Output of SUMO.

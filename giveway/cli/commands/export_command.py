@@ -73,14 +73,14 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
 def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
     """Return the parameters of one ego's controller."""
     if config.reference_speed == LANE:
-        msg = f"[regulation] reference_speed = {LANE}: an exported controller knows no lanes"
+        msg = f"[regulation] reference_speed = {LANE}: an exported controller has no lanes"
         raise ConfigError(f"{msg}; give a speed, like --regulation-reference-speed 8 [m/s]")
     own = make_controller(config, time_step)
     if not isinstance(own, SpeedController) or not isinstance(own.pid, Pid):
         msg = f"controller = {config.controller}: only the paper's controllers can be exported"
         raise ConfigError(f"{msg}; choose --controller mpc-paper or pid-paper")
     if config.safety_layer:
-        msg = "[safety] enabled = true: the safety layer is no part of an exported controller"
+        msg = "[safety] enabled = true: an exported controller does not include the safety layer"
         raise ConfigError(f"{msg}; leave it out with --no-safety")
     pid = own.pid.parameters
     model = config.vehicle if own.mpc is None else own.mpc.model

@@ -13,7 +13,7 @@ from giveway.studies.folder.study_folder import StudyFolder
 def report_command(
     study: Path, *, replays: bool, quiet: bool, trusted: Collection[str] = ()
 ) -> int:
-    """Write figures, replays and report anew.
+    """Write figures, replays and report again.
 
     Only the runs that are shown are made again.
 

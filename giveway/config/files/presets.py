@@ -59,7 +59,7 @@ def require_steady_preset(preset: str, time_step: float, where: str) -> None:
         require_steady(parameters_of(preset), time_step)
     except ParameterError as error:
         raise ConfigError(
-            f"{where} {preset}: {error}; correct the preset, or fit it anew with giveway calibrate"
+            f"{where} {preset}: {error}; correct the preset, or fit it again with giveway calibrate"
         ) from error
 
 

@@ -61,7 +61,7 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
 
 
 def _is_deep(values: dict[str, Any]) -> bool:
-    """Return whether there are levels that would be too many for whatever walks through them."""
+    """Return whether the nesting is too deep for recursive functions."""
     level: list[Any] = [values]
     for _ in range(_DEEPEST):
         level = [child for node in level for child in _children(node)]

@@ -72,7 +72,7 @@ class EgoConfig(Section):
         "Distance of the front bumper from the beginning of the first edge at departure",
         ge=0,
         le=1e6,
-        because="it is a place on the edge",
+        because="it is a position on the edge",
     )
     initial_speed: float | None = option(
         None,
@@ -90,7 +90,7 @@ class EgoConfig(Section):
         gt=0,
         le=1e6,
         least=0.1,
-        because="a shorter way is no drive",
+        because="a drive is at least that long",
     )
 
 
@@ -133,7 +133,7 @@ class VehicleConfig(Section):
         "Friction alpha in the same model. A profile may know it",
         ge=0,
         le=1e6,
-        because="it slows a vehicle down, and a faster decay than a step is none",
+        because="friction slows a vehicle down, but not within one step",
     )
     force_limit: float = option(
         8000.0,
@@ -160,7 +160,7 @@ class VehicleConfig(Section):
         gt=0,
         le=100,
         least=0.1,
-        because="slower than that nobody says whether it drives; no car is faster",
+        because="a slower vehicle hardly moves, and no car is faster",
     )
     length: float | None = option(
         None,
@@ -262,5 +262,5 @@ class RecordConfig(Section):
         gt=0,
         le=5,
         least=0.001,
-        because="who is faster does not stand",
+        because="a faster vehicle does not stand",
     )

@@ -18,7 +18,7 @@ class PaperPidOptions(Section):
         "Gain K_p. The printed 300 contradicts the printed error",
         ge=0,
         le=1e6,
-        because="with more, the least error is all the force there is",
+        because="with a larger gain, the smallest error demands the whole force",
     )
     integral_gain: float = option(
         10.0,
@@ -26,7 +26,7 @@ class PaperPidOptions(Section):
         "Gain K_i",
         ge=0,
         le=1e6,
-        because="with more, the least error is all the force there is",
+        because="with a larger gain, the smallest error demands the whole force",
     )
     derivative_gain: float = option(
         100.0,
@@ -34,7 +34,7 @@ class PaperPidOptions(Section):
         "Gain K_d",
         ge=0,
         le=1e6,
-        because="with more, the least error is all the force there is",
+        because="with a larger gain, the smallest error demands the whole force",
     )
     buffer_distance: float = option(
         10.0,
@@ -59,7 +59,7 @@ class PaperPidOptions(Section):
         gt=0,
         le=20,
         least=0.1,
-        because="it holds a vehicle and its lane",
+        because="a corridor is about as wide as a vehicle or its lane",
     )
 
     def corridor(self, width: float) -> float:
@@ -77,7 +77,7 @@ class PaperMpcOptions(PaperPidOptions):
         "Prediction horizon N",
         ge=2,
         le=200,
-        because="one step is no plan, and of 200 nothing is known",
+        because="a plan has several steps, and nothing is known about people after 200",
     )
 
 
@@ -114,7 +114,7 @@ class TunedPidOptions(Section):
         gt=0,
         le=10,
         least=0.01,
-        because="a loop answers within a step or some seconds",
+        because="a loop's time constant is between a step and some seconds",
     )
     acceleration: float = option(
         3.0, "m/s^2", "Acceleration of driving off", gt=0, le=10, least=0.1, because=TYRES
@@ -126,7 +126,7 @@ class TunedPidOptions(Section):
         gt=0,
         le=200,
         least=0.1,
-        because="a brake takes between a minute and a blink to bite",
+        because="a brake needs between an instant and a minute to build up its force",
     )
     firm_deceleration: float = option(
         3.0,
@@ -153,7 +153,7 @@ class TunedPidOptions(Section):
         gt=0,
         le=100,
         least=0.05,
-        because="a loop answers within a step or some seconds",
+        because="a loop's time constant is between a step and some seconds",
     )
     damping: float = option(
         0.85,
@@ -162,7 +162,7 @@ class TunedPidOptions(Section):
         gt=0,
         le=10,
         least=0.1,
-        because="below it the loop swings, far above it creeps",
+        because="a loop with less damping oscillates, and one with much more creeps",
     )
     acceleration_feed_forward: bool = option(
         True, None, "The force M dv_ref/dt is fed forward beside alpha v_ref"
@@ -178,7 +178,7 @@ class PlannerOptions(Section):
         "Prediction horizon. Beyond it people walk on and the ego adapts its speed",
         ge=0.3,
         le=10,
-        because="a stop takes longer than 0.3 s, and of people nothing is known after 10 s",
+        because="a stop takes longer than 0.3 s, and nothing is known about people after 10 s",
     )
     style: Literal["careful", "normal", "assertive"] = option(
         "normal",
@@ -193,7 +193,7 @@ class PlannerOptions(Section):
         "Weight of squared accelerations in the plan",
         ge=0,
         le=100,
-        because="beyond, a plan is made of that weight alone",
+        because="with a larger weight, a plan depends on this term alone",
     )
     jerk_weight: float = option(
         0.02,
@@ -201,7 +201,7 @@ class PlannerOptions(Section):
         "Weight of squared jerks in the plan",
         ge=0,
         le=100,
-        because="beyond, a plan is made of that weight alone",
+        because="with a larger weight, a plan depends on this term alone",
     )
     conflict_weight: float | None = option(
         None,
@@ -210,7 +210,7 @@ class PlannerOptions(Section):
         "to a collision. By default the style sets it: 1.6, 0.8 or 0.4",
         ge=0,
         le=1e3,
-        because="beyond, a plan is made of that weight alone",
+        because="with a larger weight, a plan depends on this term alone",
     )
     nearness_weight: float | None = option(
         None,
@@ -219,7 +219,7 @@ class PlannerOptions(Section):
         "d_safe. By default the style sets it: 10, 7 or 3.5",
         ge=0,
         le=1e3,
-        because="beyond, a plan is made of that weight alone",
+        because="with a larger weight, a plan depends on this term alone",
     )
     threat_weight: float = option(
         1.5,
@@ -228,7 +228,7 @@ class PlannerOptions(Section):
         "emergency stop",
         ge=0,
         le=1e3,
-        because="beyond, a plan is made of that weight alone",
+        because="with a larger weight, a plan depends on this term alone",
     )
     later_weight: float = option(
         0.8,
@@ -236,7 +236,7 @@ class PlannerOptions(Section):
         "Weight of each second that is lost beyond the horizon until people have crossed",
         ge=0,
         le=1e3,
-        because="beyond, a plan is made of that weight alone",
+        because="with a larger weight, a plan depends on this term alone",
     )
     minimum_distance: float | None = option(
         None,

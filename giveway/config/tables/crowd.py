@@ -50,7 +50,7 @@ class CrowdConfig(Section):
         flag="--pedestrians",
         ge=0,
         le=20_000,
-        because="nobody fits more of them round one vehicle",
+        because="more people do not fit around one vehicle",
     )
     sampler: Literal["area", "encounters"] = option(
         "area",
@@ -81,7 +81,7 @@ class CrowdConfig(Section):
         "Mean desired speed",
         ge=DESIRED_SPEEDS[0],
         le=DESIRED_SPEEDS[1],
-        because="nobody's desired speed is outside of these bounds",
+        because="no person's desired speed is outside of these bounds",
     )
     desired_speed_sd: float = option(
         0.26,
@@ -89,7 +89,7 @@ class CrowdConfig(Section):
         "Standard deviation of the desired speed",
         ge=0,
         le=2,
-        because="the speeds of people who walk are closer to each other",
+        because="people's walking speeds differ by less",
     )
     groups: float = option(
         0.0,
@@ -108,7 +108,7 @@ class CrowdConfig(Section):
         "twice that",
         ge=0,
         le=5,
-        because="the model's people accelerate with 5 m/s^2 at most",
+        because="people of the model accelerate with at most 5 m/s^2",
     )
     minimum_spacing: float = option(
         0.5,
@@ -160,7 +160,7 @@ class CrowdConfig(Section):
         flag="--threads",
         ge=1,
         le=256,
-        because="more than a machine has processors slow it down",
+        because="more threads than processors make a run slower",
     )
 
     flow_scale: float = option(
@@ -171,7 +171,7 @@ class CrowdConfig(Section):
         ge=0,
         le=10,
         least=1e-3,
-        because="rates themselves go up to 50,000 persons an hour",
+        because="rates are at most 50,000 persons per hour",
     )
     people: PeopleConfig = PeopleConfig()
     flow: Annotated[tuple[FlowConfig, ...], BeforeValidator(read_flows)] = Field(
@@ -214,6 +214,6 @@ class CrowdConfig(Section):
         if 0.0 < math.hypot(*self.walk) < _NEAREST:
             raise ValueError(
                 f"walk = {self.walk}: expected at least {_NEAREST:g} m, or 0,0 for people who "
-                "stand: a shorter way is no walk"
+                "stand: a shorter way is not a walk"
             )
         return self

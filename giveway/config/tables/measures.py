@@ -87,7 +87,7 @@ def _require_area(places: Sequence[Place], called: str) -> None:
     polygon = shapely.Polygon(places)
     if not polygon.is_valid or polygon.area < 0.01:
         reason = shapely.is_valid_reason(polygon) if not polygon.is_valid else "no extent"
-        raise ValueError(f"{called}: area encloses nothing ({reason}); name the corners in order")
+        raise ValueError(f"{called}: the area has no inside ({reason}); list the corners in order")
     if polygon.convex_hull.area - polygon.area > 1e-6 * polygon.area:
         raise ValueError(
             f"{called}: area has a corner that turns inwards; expected a convex one, "

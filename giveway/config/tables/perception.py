@@ -27,7 +27,7 @@ class PerceptionConfig(Section):
         "that",
         ge=0,
         le=5,
-        because="whom one looks for a lane off is not seen",
+        because="with a larger error, a person is seen in another lane",
     )
     tracker: bool | None = option(
         None,

@@ -17,7 +17,7 @@ class RegulationConfig(Section):
         "Desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends. "
         f"By default it is lane, but {DEFAULT_SPEED:g} m/s for the paper's controllers",
         least=0.1,
-        because="slower than that nobody says whether it drives; no car is faster",
+        because="a slower vehicle hardly moves, and no car is faster",
     )
     safe_distance: float = option(
         8.0,
@@ -26,7 +26,7 @@ class RegulationConfig(Section):
         ge=0,
         le=500,
         least=MILLIMETRE,
-        because="a gap is a millimetre at least, and nobody is seen half a kilometre ahead",
+        because="a gap is at least a millimetre, and people are not seen half a kilometre ahead",
     )
     critical_gap: float | None = option(
         None,
@@ -36,5 +36,5 @@ class RegulationConfig(Section):
         flag="--critical-gap",
         ge=0.5,
         le=60,
-        because="nobody crosses in half a second, and nobody waits for a minute's gap",
+        because="crossing takes over 0.5 s, and drivers do not wait for a gap of a minute",
     )

@@ -270,7 +270,7 @@ class Departures:
             )
         names = list(self._departed)
         some = f"name one that does, like {', '.join(names[:3])}"
-        none = "nobody did; look at its begin and end"
+        none = "no vehicle departed; check the scenario's begin and end"
         hint = suggestion(ego.id, names, some if names else none, cutoff=0.6)
         return (
             f"--ego {ego.id}: no such vehicle departed in {self._config_file} until "

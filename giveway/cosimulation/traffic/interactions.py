@@ -1,6 +1,6 @@
 """The interactions of egos and background vehicles: at junctions, at merge points and on the road.
 
-Egos are told about lights and traffic. Background vehicles let egos with priority go first, keep
+Egos get the states of lights and traffic. Background vehicles let egos with priority go first, keep
 behind egos that merge, and brake for pedestrians.
 """
 

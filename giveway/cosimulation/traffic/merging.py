@@ -34,7 +34,7 @@ class Merging:
 
         Args:
             background: Background vehicles now.
-            ego: The ego whose merge points are meant.
+            ego: Ego with these merge points.
             egos: Egos on the road now.
         """
         places = ego.rules.near_merges(ego.front)

@@ -147,7 +147,7 @@ class Yielding:
         """Let the vehicles that touch an ego, ahead of its front, pull away from it.
 
         SUMO takes the ego for their leader, and they would stand there for ever. Vehicles that are
-        ``held`` have somebody in front of them and stay.
+        ``held`` have a person in front of them and stay.
         """
         stuck = set()
         slow = np.flatnonzero(background.speed <= 1.1 * _PULLING_AWAY)

@@ -136,24 +136,24 @@ class Battery(ABC, Generic[Hosted, Answers]):
 
     def deterministic(self) -> str:
         """Compare two plug-ins that are made alike."""
-        return self.unlike(self.answers(self.fresh()), "made again, it answers otherwise")
+        return self.unlike(self.answers(self.fresh()), "made again, its answer differs")
 
     def independent(self) -> str:
         """Compare with a plug-in beside another one."""
         found = self.answers(self.fresh(), other=self.fresh())
-        return self.unlike(found, "beside another one, it answers otherwise")
+        return self.unlike(found, "beside another one, its answer differs")
 
     def restarts(self) -> str:
         """Compare with a plug-in that has been reset."""
         hosted: Any = self.fresh()
         self.answers(hosted, order=-1)
         hosted.reset()
-        return self.unlike(self.answers(hosted), "after reset, it answers otherwise")
+        return self.unlike(self.answers(hosted), "after reset, its answer differs")
 
     def unordered(self) -> str:
         """Compare with people in the opposite order."""
         found = self.answers(self.fresh(), order=-1)
-        return self.unlike(found, "with the people in another order, it answers otherwise")
+        return self.unlike(found, "with the people in another order, its answer differs")
 
     def unturned(self) -> str:
         """Compare with everything turned and shifted."""

@@ -31,7 +31,7 @@ class Table:
         caption: Caption that says what the table shows.
         headings: Headings of the columns.
         rows: Rows, with as many cells as headings.
-        filters: Columns by whose values rows can be chosen.
+        filters: Columns with values by which rows can be chosen.
         note: Note beneath the table.
     """
 
@@ -57,7 +57,7 @@ def number_cell(value: float, digits: int = 2) -> Cell:
 
 
 def whole_cell(value: object) -> Cell:
-    """Return a whole number as a cell, of whatever type it is."""
+    """Return a whole number of any type as a cell."""
     return Cell(f"{int(str(value).partition('.')[0]):,}", "number")
 
 

@@ -1,6 +1,6 @@
 """The execution of a study's runs: in processes of this machine, or on a Dask cluster.
 
-Whatever happens to a run (a native crash, a hang, lack of memory), it becomes a
+After any failure of a run (a native crash, a hang, lack of memory), it becomes a
 :class:`giveway.studies.record.RunRecord` like any other, and the study goes on.
 """
 

@@ -16,7 +16,7 @@ class WorkerError(GivewayError):
 
 
 class Executor(Protocol):
-    """A maker of runs. It is a context manager, at whose end no process is left."""
+    """A maker of runs. It is a context manager, and leaves no process at its end."""
 
     @property
     def workers(self) -> int:

@@ -100,7 +100,7 @@ class Pool:
             return answer
 
     def close(self) -> None:
-        """End every process at once, in whatever state, and remove its files."""
+        """End every process at once, in any state, and remove its files."""
         self._closed.set()
         with self._lock:
             for worker in self._alive:

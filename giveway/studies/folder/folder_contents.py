@@ -52,7 +52,7 @@ def read_manifest(study: Path) -> dict[str, Any]:
         return manifest
     manifest = read_sealed(file)
     if not manifest.keys() >= _SEALED:
-        raise BrokenFileError(file, "it is no manifest")
+        raise BrokenFileError(file, "it is not a manifest")
     return manifest
 
 
@@ -108,7 +108,7 @@ def _tables(study: Path) -> Iterator[tuple[str, bool]]:
             for table in read_sealed(file)["resources"]
         }
     except (KeyError, TypeError):
-        raise BrokenFileError(file, "it is no description of tables") from None
+        raise BrokenFileError(file, "it is not a description of tables") from None
     for name, known in described.items():
         with suppress(OSError):
             yield name, fingerprint((study / name).read_bytes()) == known

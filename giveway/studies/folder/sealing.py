@@ -85,9 +85,9 @@ def read_json(file: Path) -> dict[str, Any]:
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
     except _UNREADABLE:
-        raise BrokenFileError(file, "it is no JSON") from None
+        raise BrokenFileError(file, "it is not JSON") from None
     if not isinstance(content, dict):
-        raise BrokenFileError(file, "it is no JSON object")
+        raise BrokenFileError(file, "it is not a JSON object")
     return content
 
 

@@ -111,5 +111,5 @@ def test_what_cannot_be_recorded_is_one_line(zoo, record, said):
 
 def test_each_stands_once(zoo):
     values = {"record": ["clock", "clock"]} | zoo.profile(zoo.car())
-    with pytest.raises(FmuProfileError, match="'clock' stands twice"):
+    with pytest.raises(FmuProfileError, match="'clock' is given twice"):
         make_profile(values, "car.toml")

@@ -231,7 +231,7 @@ def test_elements_are_counted_from_one(array):
         ("y[-1]", "no variable 'y[-1]'"),
         ("y[1,2]", "no variable 'y[1,2]'"),
         ("y[" + "9" * 5000 + "]", "no variable 'y["),
-        ("initial_speed[1]", "'initial_speed' is no array; leave out the brackets"),
+        ("initial_speed[1]", "'initial_speed' is not an array; leave out the brackets"),
     ],
 )
 def test_elements_that_there_are_not(array, name, said):
@@ -261,7 +261,7 @@ def test_elements_that_there_are_not(array, name, said):
         ("load", 1, "expected text"),
         ("speed", 1.0, "'speed' is output; expected a parameter or an input"),
         ("bulk", 1.0, "no variable 'bulk' in the FMU"),
-        ("mass[1]", 1.0, "'mass' is no array"),
+        ("mass[1]", 1.0, "'mass' is not an array"),
     ],
 )
 def test_start_values_must_fit_their_variables(zoo, name, value, said):

@@ -210,7 +210,7 @@ def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
         export(MPC, tmp_path / "mpc.txt")
     with pytest.raises(ResultsError, match="does not exist; create it first"):
         export(MPC, tmp_path / "nowhere" / "mpc.fmu")
-    with pytest.raises(ConfigError, match="an exported controller knows no lanes; give a speed"):
+    with pytest.raises(ConfigError, match="an exported controller has no lanes; give a speed"):
         export({**MPC, "regulation": {"reference_speed": "lane"}}, tmp_path / "other.fmu")
     with pytest.raises(ConfigError, match=r"--fmi 1\.0: expected 2\.0 or 3\.0"):
         export(MPC, tmp_path / "other.fmu", fmi="1.0")

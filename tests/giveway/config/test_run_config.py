@@ -106,7 +106,7 @@ def test_no_length_or_duration_or_force_may_be_a_billionth() -> None:
     [
         ({"vehicle": {"friction": 1e6}}, "friction alone would turn the vehicle round within one"),
         ({"crowd": {"spawn_area": (0, 0, 1e-9, 5)}}, "1e-09 by 5 m: expected sides of at least"),
-        ({"crowd": {"walk": (1e-9, 0)}}, "a shorter way is no walk"),
+        ({"crowd": {"walk": (1e-9, 0)}}, "a shorter way is not a walk"),
     ],
 )
 def test_values_that_make_no_sense_together_are_refused_too(values: dict, said: str) -> None:

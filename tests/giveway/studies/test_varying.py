@@ -28,7 +28,7 @@ def test_what_is_no_variation_is_said(wrong):
 
 
 def test_an_option_that_is_named_twice_is_refused():
-    with pytest.raises(ConfigError, match="--vary seed: stands twice"):
+    with pytest.raises(ConfigError, match="--vary seed: is given twice"):
         varied(["seed=1,2", "seed=3,4"])
 
 
