@@ -148,43 +148,47 @@ def count(events: Iterable[Event]) -> dict[str, int]:
 
 
 def _of_encounter(drive: Drive, found: Encounter) -> Event:
-    walk, place = found.walk, found.area.crossing.lane
-    who, k = drive.crowd.ids[walk.pedestrian], found.first
+    walk, k = found.walk, found.first
     row = int(np.argmax(walk.steps == k))
+    person = _person(drive, found, row)
     away = max(0.0, float(walk.reach - walk.progress[row]) / walk.desired_speed)
     room = found.area.entry - float(drive.front[k])
     waited = waiting_time(drive, found)
     words = (
-        f"{who} {away:.2f} s from the ego's way, the ego {room:.2f} m before the crossing at "
+        f"{person[0]} {away:.2f} s from the ego's way, the ego {room:.2f} m before the crossing at "
         f"{drive.ego.speed[k]:.2f} m/s; stood for {waited:.2f} s"
     )
-    there = float(walk.x[row]), float(walk.y[row])
     time = float(drive.ego.time[k])
-    return Event(time, ENCOUNTER, False, who, place, *there, waited, "s", words)
+    return Event(time, ENCOUNTER, False, *person, waited, "s", words)
 
 
 def _of_failure(drive: Drive, found: Encounter) -> Event:
-    walk, area = found.walk, found.area
-    who, enters = drive.crowd.ids[walk.pedestrian], drive.time_at(area.entry)
+    walk, enters = found.walk, drive.time_at(found.area.entry)
     k = int(drive.instants(np.array([enters]))[0])
     row = max(0, int(np.searchsorted(walk.steps, k, side="right")) - 1)
+    person = _person(drive, found, row)
     words = (
-        f"entered {found.too_early:.2f} s before {who} had left its way, at "
+        f"entered {found.too_early:.2f} s before {person[0]} had left its way, at "
         f"{drive.ego.speed[k]:.2f} m/s, {walk.clear - walk.progress[row]:.2f} m to go"
     )
-    there = float(walk.x[row]), float(walk.y[row])
-    place, late = area.crossing.lane, found.too_early
-    return Event(enters, "failure to yield", True, who, place, *there, late, "s", words)
+    return Event(enters, "failure to yield", True, *person, found.too_early, "s", words)
 
 
 def _of_push(drive: Drive, found: PushedBack) -> Event:
-    walk, row = found.walk, found.farthest
-    who, k = drive.crowd.ids[walk.pedestrian], int(walk.steps[row])
+    person, k = _person(drive, found, found.farthest), int(found.walk.steps[found.farthest])
     room = found.area.entry - float(drive.front[k])
-    words = f"{who} went back by {found.distance:.2f} m, the ego {room:.2f} m before the crossing"
-    there = float(walk.x[row]), float(walk.y[row])
-    time, place = float(drive.ego.time[k]), found.area.crossing.lane
-    return Event(time, "pushed back", True, who, place, *there, found.distance, "m", words)
+    words = (
+        f"{person[0]} went back by {found.distance:.2f} m, the ego {room:.2f} m before the crossing"
+    )
+    time = float(drive.ego.time[k])
+    return Event(time, "pushed back", True, *person, found.distance, "m", words)
+
+
+def _person(drive: Drive, found: Encounter | PushedBack, row: int) -> tuple[str, str, float, float]:
+    """Return who was met, at which crossing, and where [m] in a record of the walk."""
+    walk = found.walk
+    who = drive.crowd.ids[walk.pedestrian]
+    return who, found.area.crossing.lane, float(walk.x[row]), float(walk.y[row])
 
 
 def _of_red_light(drive: Drive, found: RedLight) -> Event:
