@@ -79,12 +79,24 @@ def means(*columns: Column) -> Maker:
 
 def printed(file: Path) -> list[str]:
     """What a command printed, as Markdown."""
-    return file.read_text(encoding="utf-8").rstrip("\n").split("\n")
+    return _paragraphs(file.read_text(encoding="utf-8").rstrip("\n").split("\n"))
 
 
 def part(number: int) -> Maker:
     """Maker of one of the parts that a command printed with a line of ``---`` between them."""
-    return lambda file: file.read_text("utf-8").split("\n---\n")[number].strip("\n").split("\n")
+    return lambda file: _paragraphs(
+        file.read_text("utf-8").split("\n---\n")[number].strip("\n").split("\n")
+    )
+
+
+def _paragraphs(lines: list[str]) -> list[str]:
+    """The lines with an empty one where a table ends."""
+    apart = []
+    for line, following in zip(lines, [*lines[1:], ""], strict=True):
+        apart.append(line)
+        if line.startswith("|") and following and not following.startswith("|"):
+            apart.append("")
+    return apart
 
 
 def code(command: str) -> Maker:
