@@ -85,27 +85,30 @@ class Workspace:
 
 
 @inlined
-def fill_some(
+def fill(
     rows: NDArray[np.float64],
     order: NDArray[np.int64],
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
-    start: int,
-    stop: int,
 ) -> None:
-    """Copy the state into the rows start ... stop - 1, pad behind them, and clear the forces."""
-    for k in range(start, stop):
+    """Copy the state into the rows in the given order, pad the rows, and clear the forces.
+
+    Row k is that of pedestrian ``order[k]``. All loops count from 0: an index that could be
+    negative keeps a loop from becoming vector instructions.
+    """
+    n = order.shape[0]
+    for k in range(n):
         i = order[k]
         rows[PX, k] = position[i, 0]
         rows[PY, k] = position[i, 1]
         rows[VX, k] = velocity[i, 0]
         rows[VY, k] = velocity[i, 1]
-    for k in range(stop, stop + 2 * BLOCK):
+    for k in range(n, n + 2 * BLOCK):
         rows[PX, k] = _FAR
         rows[PY, k] = _FAR
         rows[VX, k] = 0.0
         rows[VY, k] = 0.0
-    for k in range(start, stop + 2 * BLOCK):
+    for k in range(n + 2 * BLOCK):
         vx, vy = rows[VX, k], rows[VY, k]
         speed = math.sqrt(vx * vx + vy * vy)
         inverse = 1.0 / speed if speed > 0.0 else 0.0
@@ -116,14 +119,3 @@ def fill_some(
         rows[VFX, k] = 0.0
         rows[VFY, k] = 0.0
         rows[S, k] = np.inf
-
-
-@inlined
-def fill(
-    rows: NDArray[np.float64],
-    order: NDArray[np.int64],
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-) -> None:
-    """Copy the state into the rows in the given order, pad the rows, and clear the forces."""
-    fill_some(rows, order, position, velocity, 0, position.shape[0])

@@ -33,7 +33,7 @@ from pedestrian_model.vci.buffers import (
     STRIDE,
     Workspace,
     aligned,
-    fill_some,
+    fill,
 )
 from pedestrian_model.vci.destination import set_targets
 from pedestrian_model.vci.detour import detour
@@ -228,7 +228,7 @@ def step_domain(
     start, stop = first[begin_strip * grid.columns], first[end_strip * grid.columns]
     begin = first[max(0, begin_strip - halo) * grid.columns]
     filled = first[min(grid.strips, end_strip + halo) * grid.columns]
-    fill_some(rows, order, state.position, state.velocity, begin, filled)
+    fill(_shifted(rows, begin), order[begin:filled], state.position, state.velocity)
     strips = Strips(grid, begin_strip, end_strip)
     _add_pairs(rows, index, (buffer, segments), strips, filled, constants)
     mine, who, n = _shifted(rows, start), order[start:stop], stop - start

@@ -114,7 +114,7 @@ def add_all_pairs(
     order = index[0]
     for i in range(n):
         order[i] = i
-    fill(rows, order, position, velocity)
+    fill(rows, order[:n], position, velocity)
     _lay_out(rows, n, buffer)
     coincident = 0
     for m in range(1, n // 2 + 1):

@@ -313,7 +313,7 @@ def add_near_pairs(
     _sort(index, position, grid)
     order, first = index[0], index[2]
     segments = index[1, :64].reshape(4, 16)  # memory that only the sort needed
-    fill(rows, order, position, velocity)
+    fill(rows, order[: position.shape[0]], position, velocity)
     for strip in range(grid.strips):
         for left in range(0, grid.columns, _TILE):
             begin = first[strip * grid.columns + left]
