@@ -170,7 +170,7 @@ def _schema(
     """Write JSON schemas, with which editors complete and check run, study and other TOML files."""
     from giveway.cli.commands.schema_command import schema_command
 
-    raise typer.Exit(schema_command(out))
+    schema_command(out)
 
 
 def _doctor(
@@ -200,7 +200,7 @@ def _recover(
     """Write the rows of a run that was killed (SIGKILL, a crash of the machine) as its results."""
     from giveway.cli.commands.recover_command import recover_command
 
-    raise typer.Exit(recover_command(journal, out, force=force))
+    recover_command(journal, out, force=force)
 
 
 def _scenarios() -> None:

@@ -67,7 +67,7 @@ def _run(
     """Write a run for SUMO, PedPy, JuPedSim or a map, or as a film."""
     from giveway.cli.commands.export_run_command import export_run_command
 
-    raise typer.Exit(export_run_command(folder, to, out, step=step, force=force))
+    export_run_command(folder, to, out, step=step, force=force)
 
 
 def _inspect(
@@ -114,7 +114,7 @@ def _identify(
         raise ConfigError(f"--speeds {tests.speeds}: expected numbers like 0,4,8 [m/s]") from None
     name = f"{fmu.stem}_identify"
     picture = tests.picture or Path("results") / name / f"{name}.png"
-    raise typer.Exit(identify_command(fmu, profile, tests._replace(picture=picture), starts))
+    identify_command(fmu, profile, tests._replace(picture=picture), starts)
 
 
 def _compile(
@@ -128,7 +128,7 @@ def _compile(
     """Compile an FMU's C sources for this platform, into a copy of it."""
     from giveway.cli.commands.fmu_tools.fmu_compile import compile_command
 
-    raise typer.Exit(compile_command(fmu, out, force=force))
+    compile_command(fmu, out, force=force)
 
 
 def _controller(

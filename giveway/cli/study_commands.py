@@ -116,7 +116,7 @@ def _report(
     """Write figures, replays of the most telling runs, and report.html into a study's folder."""
     from giveway.cli.commands.report_command import report_command
 
-    raise typer.Exit(report_command(study, replays=replays, quiet=quiet, trusted=trust or ()))
+    report_command(study, replays=replays, quiet=quiet, trusted=trust or ())
 
 
 def _replay(

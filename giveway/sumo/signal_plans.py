@@ -4,6 +4,7 @@ SAE J2735 calls it *signal phase and timing* (SPaT). ISO/TS 19091 describes its 
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 _GOES = tuple("gGoO")  # States that let vehicles go: green, blinking yellow and off
@@ -50,7 +51,7 @@ class SignalPlans:
 
     def __init__(self, sumo: Any) -> None:
         self._sumo = sumo
-        self._plans: dict[tuple[str, str], tuple[_Phase, ...]] = {}
+        self._plan = cache(self._read)
 
     def change(self, system: str) -> SignalChange | None:
         """Return the next change of a light, or None if it is unknown.
@@ -90,9 +91,7 @@ class SignalPlans:
         """Return the running program and the number of its phase, or -1 if the phase is unknown."""
         lights = self._sumo.trafficlight
         program = str(lights.getProgram(system))
-        plan = self._plans.get((system, program))
-        if plan is None:
-            plan = self._plans[system, program] = self._read(system, program)
+        plan = self._plan(system, program)
         phase = int(lights.getPhase(system))
         return plan, phase if phase < len(plan) else -1
 

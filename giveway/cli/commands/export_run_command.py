@@ -39,8 +39,8 @@ FORMATS = {
 
 def export_run_command(
     folder: Path, to: str, out: Path | None, *, step: float | None = None, force: bool = False
-) -> int:
-    """Write a run in another format and return the exit code 0.
+) -> None:
+    """Write a run in another format.
 
     Args:
         folder: Results folder.
@@ -68,7 +68,6 @@ def export_run_command(
     console = Console()
     print_place(console, "Written", file)
     console.print(told, highlight=False, markup=False, soft_wrap=True)
-    return 0
 
 
 def _check(file: Path, suffix: str, *, force: bool) -> None:

@@ -9,8 +9,8 @@ from giveway.cli.screen.printing import escape
 from giveway.recovery import left_journals, recover_left
 
 
-def recover_command(journal: Path | None, out: Path | None, *, force: bool) -> int:
-    """Write the rows of a journal, or list the journals, and return the exit code 0.
+def recover_command(journal: Path | None, out: Path | None, *, force: bool) -> None:
+    """Write the rows of a journal, or list the journals.
 
     Args:
         journal: Folder of a journal, or None to list the journals.
@@ -23,10 +23,9 @@ def recover_command(journal: Path | None, out: Path | None, *, force: bool) -> i
     console = Console()
     if journal is None:
         _list(console)
-        return 0
+        return
     result, folder = recover_left(journal, out, force=force)
     show(console, result, folder)
-    return 0
 
 
 def _list(console: Console) -> None:

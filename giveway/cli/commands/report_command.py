@@ -12,7 +12,7 @@ from giveway.studies.folder.study_folder import StudyFolder
 
 def report_command(
     study: Path, *, replays: bool, quiet: bool, trusted: Collection[str] = ()
-) -> int:
+) -> None:
     """Write figures, replays and report again.
 
     Only the runs that are shown are made again.
@@ -27,7 +27,6 @@ def report_command(
         GivewayError: there is no study, or nothing to show, or the disk is full.
     """
     write_all(StudyFolder.open(study), Console(quiet=quiet), replays=replays, trusted=trusted)
-    return 0
 
 
 def write_all(

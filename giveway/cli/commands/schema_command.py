@@ -21,7 +21,7 @@ _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _OURS = frozenset({"unit", "flag", "least", "because"})  # keys beside those of JSON schema
 
 
-def schema_command(folder: Path) -> int:
+def schema_command(folder: Path) -> None:
     """Write the schemas of run, study, profile and preset files into ``folder``.
 
     Raises:
@@ -31,7 +31,6 @@ def schema_command(folder: Path) -> int:
         with writing(folder / name, "name another folder with --out"):
             (folder / name).write_text(json_text(schema), encoding="utf-8", newline="\n")
     print_place(Console(), "Schemas", folder)
-    return 0
 
 
 def schemas() -> dict[str, dict[str, Any]]:

@@ -1,7 +1,7 @@
 """The junctions of the loaded network: the movements through them, and their priorities."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -40,28 +40,21 @@ class Junctions:
         sumo: The libsumo module, while a simulation runs.
         net_file: File of the network.
         lanes: Lanes of the network.
+
+    Attributes:
+        of: Function that returns all movements of vehicles through a junction, by number. It raises
+            ``ScenarioError`` if the network's file cannot be read.
     """
 
     def __init__(self, sumo: Any, net_file: Path, lanes: Lanes) -> None:
         self._sumo = sumo
         self._net_file = net_file
         self._lanes = lanes
-        self._known: dict[str, dict[int, Movement]] = {}
+        self.of = cache(self._movements)
 
     def at(self, inside: str) -> dict[int, Movement]:
         """Return the movements of the junction in which a link ends with the lane ``inside``."""
         return self.of(self._junctions.get(inside, ""))
-
-    def of(self, junction: str) -> dict[int, Movement]:
-        """Return all movements of vehicles through a junction, by number.
-
-        Raises:
-            ScenarioError: the network's file cannot be read.
-        """
-        if junction not in self._known:
-            logic = self._logic.get(junction)
-            self._known[junction] = {} if logic is None else self._movements(junction, logic)
-        return self._known[junction]
 
     @cached_property
     def _logic(self) -> dict[str, JunctionLogic]:
@@ -72,7 +65,10 @@ class Junctions:
         """Return the junction of each lane that ends a link inside one."""
         return {lane: name for name, logic in self._logic.items() for lane in logic.inside}
 
-    def _movements(self, junction: str, logic: JunctionLogic) -> dict[int, Movement]:
+    def _movements(self, junction: str) -> dict[int, Movement]:
+        logic = self._logic.get(junction)
+        if logic is None:
+            return {}
         numbers = {lane: i for i, lane in enumerate(logic.inside[: len(logic.requests)])}
         found: dict[int, Movement] = {}
         for source in logic.incoming:

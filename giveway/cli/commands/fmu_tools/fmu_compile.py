@@ -12,16 +12,13 @@ from giveway.cli.screen.printing import print_place, writing
 from giveway.errors import ConfigError, VehicleError, retold
 
 
-def compile_command(path: Path, out: Path | None = None, *, force: bool = False) -> int:
+def compile_command(path: Path, out: Path | None = None, *, force: bool = False) -> None:
     """Write a copy of an FMU with a binary for this platform.
 
     Args:
         path: File of the FMU.
         out: Copy to write, or None for one in the working folder, named after FMU and platform.
         force: True to replace an existing file.
-
-    Returns:
-        0.
 
     Raises:
         ConfigError: there is no such FMU, or the copy exists.
@@ -39,4 +36,3 @@ def compile_command(path: Path, out: Path | None = None, *, force: bool = False)
     for name in made:
         console.print(f"Compiled {name}", highlight=False, markup=False)
     print_place(console, "FMU", out)
-    return 0

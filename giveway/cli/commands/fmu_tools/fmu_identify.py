@@ -24,7 +24,7 @@ from giveway.errors import ConfigError, VehicleError, retold
 
 def identify_command(
     path: Path, profile: Path | None, tests: StepTests, speeds: Sequence[float]
-) -> int:
+) -> None:
     """Find M and alpha by step tests, print them, and write the profile with them.
 
     Args:
@@ -70,7 +70,6 @@ def identify_command(
 
         save_picture(identification_figure(found, title=_title(path, found)), picture)
         print_place(console, "Picture", picture)
-    return 0
 
 
 def _same(out: Path, profile: Path | None) -> bool:
