@@ -105,7 +105,7 @@ def test_a_plugged_in_model_walks_on_roads_with_walls_and_lights(shy):
 def test_the_configuration_as_it_is_written_is_the_configuration(shy):
     config = RunConfig(crowd={"model": "shy"}, model_options={"look": 3.0})
     assert RunConfig.model_validate(tomllib.loads(dump_toml(config))) == config
-    with pytest.raises(ConfigError, match="look: 'vci' has no options there"):
+    with pytest.raises(ConfigError, match="look: 'vci' has no such option; expected one of"):
         giveway.run({"model_options.look": 1.0})
 
 
