@@ -13,7 +13,7 @@ from controller.qp.exact_solver import solve_verified
 
 UNSOLVED = -1  # result if the exact methods found no solution, so that OSQP has to
 _WORSE = 1e-6  # distance [m] by which a smoothed plan may come closer than its manoeuvre
-_APPROACH = 0.8  # share of the gentle braking with which threat-free speeds are approached
+_APPROACH = 0.8  # share of the gentle deceleration with which the plan slows to a threat-free speed
 
 Chosen = tuple[Motion, tuple[Array, Array, Array], float]
 """A manoeuvre, arrays of its predicted outcome, and the stopping distance [m] that it lacks."""

@@ -35,7 +35,7 @@ class Search:
         gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Evaluation`.
         conflicts: Persons in conflict (N,), as in :class:`Evaluation`.
         threat_free: Threat-free speeds (N,) [m/s], as in :class:`Evaluation`.
-        missing: Largest stopping distance [m] that it lacks.
+        missing: Largest part [m] of the stopping distance for which it has no room.
         tried: Number of manoeuvres that were compared.
     """
 

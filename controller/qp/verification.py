@@ -18,7 +18,7 @@ _PIVOT = 1e-11  # relative pivot below which an active row depends on the others
 
 
 class Projection(NamedTuple):
-    """The problem of the V closest to a target, |V - target|^2, with lower <= rows V <= upper."""
+    """The problem to minimise |V - target|^2 subject to lower <= rows V <= upper."""
 
     rows: Array  # (m, N)
     lower: Array  # (m,); -inf where there is none

@@ -31,7 +31,7 @@ SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] speeds at the start of the tests
 HARDEST = 8.0  # [m/s2] largest deceleration or acceleration of a test
 LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s] durations of the phases
 NO_FIT = 0.3  # R squared below which there is no model
-VALIDATION = (  # shares of the largest force, each held for HELD; no level of the tests
+VALIDATION = (  # shares of the largest force, each held for HELD; none of them is in LEVELS
     0.3, 0.6, -0.2, 0.15, -0.4, 0.45, 0.8, -0.6, 0.0, 0.2, -0.15, 0.7, -0.3, 0.35, -0.8, 0.55,
     0.05, -0.1, 0.65, -0.5, 0.4, -0.05, 0.0, -0.25,
 )  # fmt: skip

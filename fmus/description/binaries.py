@@ -145,7 +145,7 @@ def _header(start: bytes) -> tuple[str, tuple[str, ...], bool]:
     if start[:4] in {b"\xcf\xfa\xed\xfe", b"\xce\xfa\xed\xfe"}:
         machine, _subtype, kind = struct.unpack_from("<III", start, 4)
         return "darwin", _known(MACH_MACHINES, machine), kind in MACH_LIBRARIES
-    if start[:4] == b"\xca\xfe\xba\xbe":  # several in one, big endian
+    if start[:4] == b"\xca\xfe\xba\xbe":  # universal binary: several Mach-O files in one
         (count,) = struct.unpack_from(">I", start, 4)
         machines = [struct.unpack_from(">I", start, 8 + 20 * n)[0] for n in range(min(count, 8))]
         return "darwin", tuple(name for m in machines for name in _known(MACH_MACHINES, m)), True

@@ -20,7 +20,7 @@ HALVINGS = 6  # largest number of halvings of a step that an FMU discards
 CONTINUATIONS = 100  # largest number of continuations of one step from where the FMU stopped
 NEGLIGIBLE = 1e-9  # share of a step that counts as nothing
 ROUNDS = 100  # largest number of rounds of one event iteration
-REMEMBERED = 100_000  # largest number of steps that are repeated with event mode
+REMEMBERED = 100_000  # largest number of past steps that a restart with event mode repeats
 
 
 class CoSimulation(Instance):

@@ -1,4 +1,4 @@
-"""The life of an instance, which is the same for every FMI version and kind."""
+"""The states of an instance from start to end, the same for every FMI version and kind."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -15,9 +15,9 @@ Tick = Callable[[float, float], int]
 
 
 class Instance(ABC):
-    """An FMU's library, loaded, and one instance of its model that is started, stepped, stopped.
+    """One instance of an FMU's model, which is started, stepped and stopped.
 
-    Whole numbers, booleans and elements of arrays are doubles in the buffers, too.
+    Integers, booleans and elements of arrays are stored as doubles in the buffers, too.
 
     Args:
         calls: The FMU's functions.

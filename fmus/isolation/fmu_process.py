@@ -171,7 +171,7 @@ class FmuProcess:
 
 
 def while_starting(what: bytes) -> str:
-    """Return the time of a request that is no step, in words for messages."""
+    """Return when a request other than a step was made, in words for error messages."""
     return "while it was loaded" if what == LOAD else "while it was started"
 
 

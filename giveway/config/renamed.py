@@ -108,7 +108,11 @@ _OWN_FLAGS: Final[Mapping[Location, str]] = {("controller_options", "style"): "-
 
 
 def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location | str]]:
-    """Yield the keys that no longer exist in one origin's settings or in its table of one ego."""
+    """Yield each removed key in the settings or in a table of ``[[egos]]``, and its replacement.
+
+    Args:
+        values: Settings of one file or of the command line.
+    """
     egos = values.get("egos")
     for old, new in RENAMED.items():
         for table in (values, *(egos if isinstance(egos, list | tuple) else ())):

@@ -280,7 +280,7 @@ class Ego:
         self.pose = self.path.pose(self.front, self.shape.length)
 
     def outputs(self) -> tuple[Sequence[tuple[str, str, str]], Sequence[float]]:
-        """Return the recorded variables of the FMU and their values, with the grade of a slope."""
+        """Return the recorded variables of the FMU and their values; on a slope also the grade."""
         record, values = self.vehicle.record, self.vehicle.recorded
         if self._slope is None:
             return record, values

@@ -81,7 +81,7 @@ class Recorder:
             block[row] = self._steps - 1, key, value
 
     def way(self, way: EgoWay) -> None:
-        """Note the path of an ego that departs, with what the law of the road rules on it."""
+        """Record the path of a departing ego, with its crossings, lights, junctions and stops."""
         self._names["ways"].index(way.to_json())
 
     def signal(self, time: float, system: str, state: str) -> None:

@@ -13,9 +13,9 @@ from typing import IO, Self
 from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.processes.interrupts import ENDING, RaisedSignals, exit_code_of
 
-JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # Name of the variable with the journal's folder
+JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # Environment variable that holds the journal's folder
 TRACEBACK_FILE = "traceback.txt"  # traceback of Python at the death of native code
-STDERR_FILE = "stderr.txt"  # output of native code, kept for its last words
+STDERR_FILE = "stderr.txt"  # output of native code, kept for its last messages
 _ORPHAN_POLL = 1.0  # Time [s] between two checks for the supervisor
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
@@ -61,7 +61,7 @@ class Supervised:
         with contextlib.suppress(OSError):  # without a traceback, the report is only shorter
             self._traceback = (self._folder / TRACEBACK_FILE).open("w", encoding="utf-8")
             faulthandler.enable(self._traceback)
-        self._signals.__enter__()  # kept until this process ends, since it may be told to end again
+        self._signals.__enter__()  # never left: a second signal may come during the end
         return self
 
     def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
@@ -90,11 +90,12 @@ def _exit_code(error: BaseException | None) -> int:
 
 
 def die_with(supervisor: int) -> None:
-    """End this process when its supervisor has been killed; its rows are in the journal.
+    """End this process when its supervisor has been killed.
 
-    Linux does it by itself when the *thread* that started this process ends, even while native code
-    hangs. On other Unixes a thread of this process does it, which has to wait while native code
-    keeps Python's lock. Windows has no such relation between processes.
+    The rows of the run are in the journal. On Linux the system ends this process as soon as the
+    *thread* that started it ends, even while native code hangs. On other Unixes a thread of this
+    process does so, and has to wait while native code keeps Python's lock. On Windows this process
+    goes on.
 
     Args:
         supervisor: Process id of the supervisor, or 0 without one.

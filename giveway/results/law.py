@@ -1,4 +1,4 @@
-"""The rows of a run by which the law of the road judges each ego's drive, and remarks on them."""
+"""The rows of a run that show how each ego kept the law of the road, and remarks on them."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class LawRows(NamedTuple):
-    """The rows by which a drive is judged, besides its own tracks and the crowd's."""
+    """The rows from which a drive is judged, besides the tracks of the ego and of the crowd."""
 
     way: EgoWay
     signals: SignalTrack

@@ -68,7 +68,7 @@ class RunFacts(NamedTuple):
 
     pedestrians: Mapping[str, int]  # ledger of the pedestrians that giveway moved
     vehicles: Mapping[str, Mapping[str, Any]] = MappingProxyType({})  # FMU of each ego
-    traffic: Mapping[str, float] = MappingProxyType({})  # counts of the yield layer
+    traffic: Mapping[str, float] = MappingProxyType({})  # vehicles that yielded, and their time [s]
     sumo: Mapping[str, float] = MappingProxyType({})  # seed and step length in effect
     time_step: float | None = None  # [s], or None if the process died before it was known
     code: Mapping[str, Mapping[str, Any]] = MappingProxyType({})  # plug-ins, by their sockets

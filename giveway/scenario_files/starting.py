@@ -108,7 +108,7 @@ def prepare_start(
 
 
 class _Preparation:
-    """Collects SUMO's options, and the remarks on them for the user."""
+    """Collects the options of SUMO's command, and the remarks on them for the user."""
 
     def __init__(self, scenario: ScenarioFiles, options: StartOptions, scratch: Path) -> None:
         self._scenario = scenario
@@ -120,7 +120,11 @@ class _Preparation:
         self._remarks: list[str] = []
 
     def start(self, types: str) -> Start:
-        """Return the complete start."""
+        """Return the command that starts SUMO, with the files, remarks and seed that belong to it.
+
+        Args:
+            types: Text of the additional file that is read first.
+        """
         extra = parse_options(self._wanted.extra)
         self._inputs(types, extra.pop("additional-files", ""))
         extra |= {name: self._placed_extra(extra[name]) for name in OUTPUTS if name in extra}

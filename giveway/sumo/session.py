@@ -49,15 +49,15 @@ _WITHOUT_MATCHING = itertools.repeat(-1.0)
 
 
 class SumoSession:
-    """A running simulation. A process can have one at a time; it is closed in every case.
+    """A running simulation. A process can have one at a time, and it is closed even after errors.
 
     Args:
         scenario: Files of the scenario; nothing is written beside them.
         options: Options for SUMO's start.
         types: Text of an additional file with the types of all that giveway is going to add.
         native_log: File for the output of SUMO, or None for a temporary one.
-        careful: True to let a child process read the scenario first, in a process that must not
-            crash.
+        careful: True to let a child process read the scenario first, so that a crash of SUMO
+            does not end this process.
 
     Raises:
         ScenarioError: an input file is missing or cannot be read.
@@ -107,7 +107,7 @@ class SumoSession:
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._added: set[str] = set()
-        # time [s] of the addition, and lane
+        # for each object just added: time [s] of the addition, and its lane
         self._just_added: dict[str, tuple[float, str | None]] = {}
         self._host_lanes: dict[str, str | None] = {}  # host lanes by edge
 

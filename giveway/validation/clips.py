@@ -23,7 +23,7 @@ _PEDESTRIAN_COLUMNS: Final = ("x_est", "y_est", "vx_est", "vy_est")
 _VEHICLE_COLUMNS: Final = ("x_est", "y_est", "psi_est", "vel_est")
 _FARTHEST = 1e5  # Largest coordinate [m] in a camera's view
 _LONGEST = 200_000  # Largest number of frames: nearly two hours
-_WALKING = 0.5  # Speed [m/s] below which a pedestrian says little about the frame rate
+_WALKING = 0.5  # Speed [m/s] above which pedestrians are used to check the frame rate
 # Largest relative difference between the given frame rate and the one from speeds
 _RATES_APART = 0.1
 

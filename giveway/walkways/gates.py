@@ -20,7 +20,8 @@ BODY_RADIUS = 0.27  # Body radius [m] of a pedestrian: half of a shoulder breadt
 TRACKS = 2  # Tracks to either side of the middle: people on one track go round the same corners
 NO_GATES: Array = np.empty((0, 7))
 _NO_SIGNAL = -1
-# Cosine of the angle between route and gate, below which people come from beside the gate
+# Cosine of the angle between a route and the direction of a gate's passage; with a smaller one,
+# people come from the side of the gate
 _ASKEW = 0.2
 _THERE = 0.01  # Distance [m] to a gate within which a person is at it, and comes from no direction
 

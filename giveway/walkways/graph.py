@@ -114,7 +114,7 @@ class WalkGraph:
         return self.signals.index(signal)
 
     def _inherit_signals(self) -> None:
-        """Let a crossing's link count for both directions, unless the other has its own."""
+        """Use the signal of one end of a crossing also at the other end, if that one has none."""
         for i, signal in enumerate(self.signals):
             for last in (False, True):
                 for area in self._links.get(End(signal.crossing, last), ()):

@@ -66,10 +66,12 @@ _ARRIVES = 0.3  # distance [m] over which people slow down to stop at a way-poin
 
 
 def unmoved(parameters: VciParameters) -> VciParameters:
-    """Return VCI parameters without forces, as ``constant-velocity`` for VCI's predictor.
+    """Return VCI parameters with which VCI's predictor predicts as ``constant-velocity`` does.
+
+    All repulsion is zero, so that people only walk to their next way-point.
 
     Args:
-        parameters: Parameters with the bodies, limits and way-points of the result.
+        parameters: Parameters from which body, limits and way-points are kept.
     """
     return replace(
         parameters,

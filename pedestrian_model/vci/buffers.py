@@ -32,7 +32,7 @@ BLOCK = 8
 
 #: Distance of the buffer's rows, in float64; not a multiple of 4096 bytes.
 STRIDE = 680
-#: Largest crowd that fits into the buffer twice, with padding, as the all-pairs loops need.
+#: Largest crowd of the all-pairs loops, which need every person twice in a row, with padding.
 LARGEST_RING = (STRIDE - 2 * BLOCK) // 2
 #: Offsets of the buffer's rows: PX ... UY as above, then forces on one person and on the others.
 BX, BY, BVX, BVY, BUX, BUY, ON_X, ON_Y, BACK_X, BACK_Y = (k * STRIDE for k in range(10))

@@ -69,7 +69,7 @@ class Predictor:
         self._reserve(0)
 
     def _reserve(self, n: int) -> None:
-        """Make contiguous views for n people of buffers that only grow."""
+        """Provide arrays for n people. The buffers behind them grow if needed and never shrink."""
         if n > self._workspace.capacity:
             self._workspace.reserve(n)
         if n > self._capacity:

@@ -1,8 +1,8 @@
-"""The decision which code may be imported if only a results folder names it.
+"""The rules for importing code that only a results folder names.
 
 The results of other people are data. A name that an installed package declares may be imported if
-the package is the one with which the results were made. ``module:Class`` could be anything that is
-installed, and is imported only if the user has named it, too.
+this package made the results. ``module:Class`` could name any installed code. It is imported only
+if the user has named it, too.
 """
 
 import json

@@ -35,7 +35,7 @@ class TrafficWatch:
         self._visits: dict[tuple[str, str, str], tuple[_Visit, ...]] = {}
         self._inside: dict[str, _Visit] = {}  # position of each known lane inside a junction
         self._known: set[str] = set()
-        self._stands: dict[str, float] = {}  # time [s] since which each vehicle stands
+        self._stands: dict[str, float] = {}  # time [s] at which each vehicle came to a stop
 
     def of(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> Traffic:
         """The approaching vehicles of each junction ahead of an ego, egos included, nearest first.

@@ -8,9 +8,9 @@ BOUND = 2.0
 
 
 def planar_noise(random: np.random.Generator, count: int) -> NDArray[np.float64]:
-    """Draw standard normal numbers (count, 2), each again until it is within ``BOUND`` of zero.
+    """Draw numbers (count, 2) from a normal distribution that is cut off at ``BOUND``.
 
-    The standard deviation of the result is 0.88.
+    A number outside the bound is drawn again. The standard deviation of the result is 0.88.
     """
     noise = random.standard_normal((count, 2))
     outside = np.abs(noise) > BOUND

@@ -21,7 +21,7 @@ from giveway.sumo.signal_plans import ChangeOf, SignalChange, untold
 from pedestrian_model import Crowd
 
 NO_KERBS: Array = np.zeros((0, 3))
-"""The kerbs (0, 3) of people none of whom is on a sidewalk."""
+"""The kerbs (0, 3) if nobody is on a sidewalk."""
 
 _NEAR = 10.0  # distance [m] from the path, within which kerbs matter
 _PIECE = 2.0  # largest length [m] of a piece of kerb
@@ -30,7 +30,7 @@ _FACING = 0.5  # least cosine of the angle between the direction to the path and
 _BESIDE = 0.25  # distance [m] from the ego's side, within which nobody counts as on a sidewalk
 _MOUTH = 1.5  # distance [m] to a crossing, within which people are about to enter it
 _ON_LINE = 0.05  # tolerance [m] of a point on a kerb's line
-_SETS_OUT = 0.6  # acceleration [m/s^2] by which kerbs are compared: a_k of docs/safety.md
+_SETS_OUT = 0.6  # acceleration [m/s^2] of a person towards a kerb: a_k of docs/safety.md
 _DEEPEST = _NEAR  # largest width [m] of a sidewalk
 _LOOK, _LOOKS = 0.5, 3  # spacing [s] and number of the instants ahead that are examined
 _SOON = 3.0  # time [s] before green, within which people are about to use a crossing
@@ -296,7 +296,7 @@ def drop_kerbs(
     mouths: Array,
     kerbs: Array,
 ) -> None:
-    """Set rows of ``kerbs`` to 0 as :meth:`Kerbs.kept` does.
+    """Set the row of ``kerbs`` to 0 for people who are on or about to enter a crossing.
 
     Args:
         people: Positions (n, 2) [m], velocities (n, 2) [m/s] and desired speeds (n,) [m/s].

@@ -33,8 +33,8 @@ class PathCrossing(NamedTuple):
     entry: float  # station [m] of the front bumper from which on the body is on the crossing
     exit: float  # station [m] of the rear at which the body has left the crossing
     area: MarkedArea
-    low: float  # distance [m] from the kerb at which the ego's strip begins, for a person's centre
-    high: float  # distance [m] from the kerb at which this strip ends
+    low: float  # distance [m] from the kerb at which a person enters the strip the ego covers
+    high: float  # distance [m] from the kerb at which a person leaves this strip
     zebra: bool  # whether the crossing is a zebra
     system: str  # SUMO's id of its signal system; empty without one
     link: int  # index of its light in the system's state

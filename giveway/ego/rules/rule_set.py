@@ -154,13 +154,13 @@ class RuleSet:
         return left
 
     def update(self, time: float, station: float, speed: float, told: Told) -> None:
-        """Show the rules the state of SUMO after its step.
+        """Pass the state of SUMO after its step to the rules.
 
         Args:
             time: SUMO's clock [s].
             station: Station of the front bumper [m].
             speed: Speed of the ego [m/s].
-            told: Signals and vehicles that the rules need to know about.
+            told: State of the signals, and the vehicles near the path, as far as a rule needs them.
         """
         situation = self.situation
         situation.time, situation.station, situation.speed = time, station, speed

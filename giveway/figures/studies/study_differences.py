@@ -24,7 +24,7 @@ from giveway.run_data.writing import digits_for, number, pretty_unit
 
 BINS = 48
 TAIL = 2.5  # Share [%] of the differences at either end that may be outside of the picture
-SPIKE = 30.0  # Ratio to the median bin from which on a bin hides the others
+SPIKE = 30.0  # Height of a bin over the median height at which it would hide the others
 EQUAL = 5e-7  # Differences below this are 0: tables have six decimals
 DASHES = (0, (4, 2))
 

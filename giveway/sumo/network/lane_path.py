@@ -12,7 +12,7 @@ class Light(NamedTuple):
 
     station: float  # [m] station of the stop line along the lane path
     system: str  # SUMO's id of the traffic light
-    link: int  # index of the movement in the system's state
+    link: int  # index of the movement in the state of the traffic light
 
 
 class Passage(NamedTuple):

@@ -57,7 +57,7 @@ def mergings(
 def _zipper(
     sumo: Any, lane: str, target: str, origin: float, shape: Callable[[str], Array]
 ) -> list[Merging]:
-    """Return the zipper from ``lane`` to ``target``, which begins at ``origin`` [m]."""
+    """Return the zipper at which ``lane`` joins ``target``, which begins at ``origin`` [m]."""
     states = [link[5] for link in sumo.lane.getLinks(lane) if link[0] == target]
     if _ZIPPER not in states:
         return []

@@ -59,7 +59,7 @@ class PluggedInRule:
 
     @property
     def beside(self) -> Set[str]:
-        """The ids of vehicles whose lanes, by the rule, lead them past the ego's path."""
+        """The ids of vehicles that, according to the rule, will pass beside the ego's path."""
         return frozenset(getattr(self._rule, "beside", ()))
 
     @property
