@@ -15,7 +15,7 @@ from controller import (
     TunedPid,
     TunedPidParameters,
 )
-from controller.pid.speed_reference import stoppable
+from controller.pid.speed_reference import SpeedReference, stoppable
 
 DT = 0.05  # [s]
 
@@ -41,6 +41,15 @@ def test_the_profile_never_falls_with_the_gap_or_passes_limits(profile, gaps, li
 def test_gipps_speed_stops_within_the_room(room, rate, lag):
     v = stoppable(room, rate, lag)
     assert v * lag + v * v / (2.0 * rate) == pytest.approx(room, rel=1e-6, abs=1e-9)
+
+
+def test_a_reference_almost_at_rest_stops_in_one_step():
+    reference = SpeedReference(ReferenceParameters(), strongest=4.0, sharpest=8.0, time_step=DT)
+    reference.start(0.004)
+    now, acceleration = reference.advance(0.004, gap=1.0, limit=math.inf)
+    assert now == 0.004
+    assert acceleration == pytest.approx(-0.004 / DT)
+    assert reference.speed == 0.0
 
 
 @pytest.mark.parametrize(
