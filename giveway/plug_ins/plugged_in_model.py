@@ -21,7 +21,7 @@ from pedestrian_model import (
     Walkers,
     WallsAround,
 )
-from pedestrian_model.preferred import first_insane_of, preferred_velocities
+from pedestrian_model.other_models.preferred import first_insane_of, preferred_velocities
 from pedestrian_model.stepping import FINE, divergence, unknown_signal
 
 Array = NDArray[np.float64]
