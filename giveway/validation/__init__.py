@@ -1,8 +1,8 @@
 """The validation of the pedestrian model with recorded tracks: ADE, FDE, contacts, calibration."""
 
+from giveway.recordings.dataset import CITR, DUT, Dataset, dataset_of
 from giveway.validation.calibrating import Calibration, calibrate
 from giveway.validation.clips import Clip, read_clip, read_clips
-from giveway.validation.dataset import CITR, DUT, Dataset, dataset_of
 from giveway.validation.protocol import Protocol
 from giveway.validation.validating import Validation, validate
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from giveway.config.files.presets import NAMES, require_parameter
 from giveway.errors import ConfigError, DatasetError
+from giveway.recordings.intervals import TAILS, ClipBootstrap
 from giveway.validation.clips import Clip
 from giveway.validation.contacts import DATA, contact_table, people_apart
 from giveway.validation.fitting import Objective, Search, average
-from giveway.validation.intervals import TAILS, ClipBootstrap
 from giveway.validation.predictors import VCI
 from giveway.validation.protocol import Protocol
 from giveway.validation.validating import SEED, cut_windows, protocol_of

@@ -1,4 +1,4 @@
-"""Clips of real pedestrians and vehicles: CSV files like those of CITR, as arrays in one frame.
+"""Clips of real pedestrians and vehicles: recordings as arrays over all frames.
 
 CITR and DUT: Yang, Li, Redmill & Özgüner, "Top-view Trajectories: A Pedestrian Dataset of
 Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). Users
@@ -7,21 +7,15 @@ of the data sets are asked to cite this paper.
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.errors import DatasetError
 from giveway.geometry.kernel import Array
-from giveway.validation.dataset import Dataset
+from giveway.recordings import Dataset, Recording, Tracks, read_recording, read_recordings
+from giveway.recordings.recording import DUPLICATE
 
-PEDESTRIANS: Final = "_traj_ped_filtered.csv"
-VEHICLES: Final = "_traj_veh_filtered.csv"
-_PEDESTRIAN_COLUMNS: Final = ("x_est", "y_est", "vx_est", "vy_est")
-_VEHICLE_COLUMNS: Final = ("x_est", "y_est", "psi_est", "vel_est")
-_FARTHEST = 1e5  # Largest coordinate [m] in a camera's view
 _LONGEST = 200_000  # Largest number of frames: nearly two hours
 _WALKING = 0.5  # Speed [m/s] above which pedestrians are used to check the frame rate
 # Largest relative difference between the given frame rate and the one from speeds
@@ -84,26 +78,11 @@ def read_clips(folder: Path, dataset: Dataset) -> tuple[Clip, ...]:
         DatasetError: there is no such folder, it has no clip, a file cannot be used, or people's
             speeds and steps belong to another frame rate.
     """
-    if not folder.is_dir():
-        raise DatasetError(f"{folder}: no such folder; expected a data set's, or a part of it")
-    files = sorted(folder.rglob(f"*{PEDESTRIANS}"))
-    for file in sorted(folder.rglob(f"*{VEHICLES}")):
-        partner = file.with_name(file.name.removesuffix(VEHICLES) + PEDESTRIANS)
-        if not partner.is_file():
-            raise DatasetError(
-                f"{file}: no pedestrians beside it; expected {partner.name}, or remove the file"
-            )
-    if not files:
-        raise DatasetError(
-            f"{folder}: no clip found; expected files *{PEDESTRIANS} in it or its folders"
-        )
-    clips = [read_clip(file, dataset) for file in files]
-    names: dict[str, Path] = {}
-    for clip, file in zip(clips, files, strict=True):
-        if names.setdefault(clip.name, file) != file:
-            raise DatasetError(
-                f"{file}: a clip of this name is in {names[clip.name].parent} too; keep one"
-            )
+    clips = [_clip(recording) for recording in read_recordings(folder, dataset)]
+    names = [clip.name for clip in clips]
+    for name in names:
+        if names.count(name) > 1:
+            raise DatasetError(f"{folder}: a clip of this name is in it twice: {name}; keep one")
     _require_rate(folder, clips, dataset)
     return tuple(clips)
 
@@ -142,76 +121,44 @@ def read_clip(file: Path, dataset: Dataset) -> Clip:
     Raises:
         DatasetError: a file cannot be read, or a column, row or number is not as it should be.
     """
-    name = file.name.removesuffix(PEDESTRIANS)
-    of_vehicles = file.with_name(name + VEHICLES)
-    pedestrians = _read(file, _PEDESTRIAN_COLUMNS)
-    vehicles = _read(of_vehicles, _VEHICLE_COLUMNS) if of_vehicles.is_file() else None
-    first = int(pedestrians["frame"].min())
-    last = int(pedestrians["frame"].max())
-    if last - first >= _LONGEST:
-        raise DatasetError(f"{file}: frames {first} to {last}: expected at most {_LONGEST}")
-    ids, rows = _spread(pedestrians, _PEDESTRIAN_COLUMNS, first, last)
-    poses = np.empty((last - first + 1, 0, 4))
-    if vehicles is not None:
-        poses = _spread(vehicles, _VEHICLE_COLUMNS, first, last)[1]
-    # in a frame with y up, y, headings and lateral velocities change their sign
-    if dataset.y_axis == "down":
-        rows[:, :, [1, 3]] *= -1.0
-        poses[:, :, [1, 2]] *= -1.0
-    position = np.ascontiguousarray(rows[:, :, :2])
-    velocity = np.ascontiguousarray(rows[:, :, 2:])
-    return Clip(name, dataset, first, ids, position, velocity, poses)
+    return _clip(read_recording(file, dataset))
 
 
-def _spread(
-    table: pd.DataFrame, columns: tuple[str, ...], first: int, last: int
-) -> tuple[NDArray[np.int64], Array]:
-    """Return the ids (k,), and their values (T, k, c) in each frame, nan without a row."""
-    table = table[table["frame"].between(first, last)]
-    ids, who = np.unique(table["id"].to_numpy(), return_inverse=True)
-    values = np.full((last - first + 1, len(ids), len(columns)), np.nan)
-    values[table["frame"].to_numpy() - first, who] = table[list(columns)].to_numpy()
-    return ids.astype(np.int64), values
+def _clip(recording: Recording) -> Clip:
+    """Return a recording as a clip: the frames in which people are seen.
 
-
-def _read(file: Path, columns: tuple[str, ...]) -> pd.DataFrame:
-    try:
-        table = pd.read_csv(file, dtype=str, keep_default_na=False)
-    except (OSError, ValueError) as error:  # pandas' and Unicode's errors are ValueErrors
-        reason = error.strerror if isinstance(error, OSError) else str(error).splitlines()[0]
+    Raises:
+        DatasetError: there are no people, too many frames, or a person is twice in a frame.
+    """
+    people, vehicles = recording.people, recording.vehicles
+    if not people.ids:
         raise DatasetError(
-            f"{file}: cannot be read as CSV ({reason}); take the file from the dataset again"
-        ) from error
-    missing = [name for name in ("id", "frame", *columns) if name not in table.columns]
-    if missing:
-        expected = ",".join(("id", "frame", "label", *columns))
-        raise DatasetError(f"{file}: column '{missing[0]}' is missing; expected {expected}")
-    if table.empty:
-        raise DatasetError(f"{file}: no rows; take the file from the dataset again")
-    numbers = pd.DataFrame({name: _numbers(file, table, name) for name in ("id", "frame")})
-    numbers = numbers.astype(np.int64)
-    for name in columns:
-        numbers[name] = _numbers(file, table, name)
-    twice = numbers.duplicated(["id", "frame"])
-    if twice.any():
-        row = int(twice.to_numpy().argmax())
-        who, frame = (int(numbers[name].iloc[row]) for name in ("id", "frame"))
-        raise DatasetError(
-            f"{file}: line {row + 2}: id {who} is in frame {frame} twice; expected once"
+            f"{recording.file}: no pedestrians beside it; expected the file of {recording.name}'s "
+            "pedestrians, or remove the vehicles'"
         )
-    return numbers
+    for defect in recording.defects:
+        if defect.kind == DUPLICATE:
+            raise DatasetError(f"{defect.example}; expected once")
+    first, last = int(people.frame.min()), int(people.frame.max())
+    if last - first >= _LONGEST:
+        frames = f"frames {recording.first_frame + first} to {recording.first_frame + last}"
+        raise DatasetError(f"{recording.file}: {frames}: expected at most {_LONGEST}")
+    moving = np.column_stack([vehicles.position, vehicles.heading, vehicles.speed])
+    numbers = [int(name) if name.isdecimal() else i for i, name in enumerate(people.ids)]
+    return Clip(
+        recording.name,
+        recording.dataset,
+        recording.first_frame + first,
+        np.array(numbers, dtype=np.int64),
+        _spread(people, people.position, first, last),
+        _spread(people, people.velocity, first, last),
+        _spread(vehicles, moving, first, last),
+    )
 
 
-def _numbers(file: Path, table: pd.DataFrame, name: str) -> NDArray[np.float64]:
-    """Return a column as finite numbers."""
-    values = pd.to_numeric(table[name], errors="coerce").to_numpy(dtype=np.float64)
-    whole = name in {"id", "frame"}
-    with np.errstate(invalid="ignore"):
-        bad = ~(np.abs(values) <= (1e9 if whole else _FARTHEST))
-        bad |= whole & (values != np.floor(values))
-    if bad.any():
-        row = int(bad.argmax())
-        expected = "a whole number" if whole else "a finite number"
-        found = str(table[name].iloc[row])
-        raise DatasetError(f"{file}: line {row + 2}: {name} = {found!r}: expected {expected}")
-    return values
+def _spread(tracks: Tracks, values: Array, first: int, last: int) -> Array:
+    """Return the values (T, n, c) of tracks in each frame, nan without a row."""
+    spread = np.full((last - first + 1, len(tracks.ids), values.shape[1]), np.nan)
+    seen = (tracks.frame >= first) & (tracks.frame <= last)
+    spread[tracks.frame[seen] - first, tracks.track[seen]] = values[seen]
+    return spread

@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
-from giveway.validation.intervals import ClipBootstrap
+from giveway.recordings.intervals import ClipBootstrap
 from giveway.validation.predictors import CV, TrackPredictor
 from giveway.validation.protocol import Protocol, Window, to_vehicle_frame
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
+from giveway.recordings.dataset import CITR, Dataset
 from giveway.validation.clips import Clip
-from giveway.validation.dataset import CITR, Dataset
 
 _PAUSE = 0.5  # Time [s] skipped at the start, and between the starts of windows
 _HORIZONS = (0.75, 2.0, 4.0)  # Prediction horizons [s]

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import pandas as pd
 
 from giveway.errors import DatasetError
+from giveway.recordings.intervals import ClipBootstrap
 from giveway.validation.clips import Clip
 from giveway.validation.contacts import contact_table, people_apart
 from giveway.validation.evaluation import Evaluation, error_table, evaluate
-from giveway.validation.intervals import ClipBootstrap
 from giveway.validation.predictors import predictors
 from giveway.validation.protocol import Protocol, Window, windows
 from pedestrian_model import VciParameters

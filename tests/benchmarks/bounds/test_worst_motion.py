@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from giveway.recordings.dataset import CITR
 from giveway.validation.clips import read_clips
-from giveway.validation.dataset import CITR
 from tests.support.clips import RATE
 
 FILE = Path(__file__).parents[3] / "benchmarks" / "bounds" / "worst_motion.py"

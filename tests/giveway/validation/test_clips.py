@@ -81,7 +81,7 @@ def test_a_broken_file_is_named_with_its_line(tmp_path: Path, text: str, said: s
 def test_a_wrong_folder_says_what_was_expected(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="no such folder"):
         read_clips(tmp_path / "nowhere", CITR)
-    with pytest.raises(DatasetError, match=r"no clip found; expected files \*_traj_ped_filtered"):
+    with pytest.raises(DatasetError, match=r"no recording found; expected files \*_traj_ped"):
         read_clips(tmp_path, CITR)
 
 

@@ -12,8 +12,8 @@ from giveway.config.files.layers import read_toml
 from giveway.config.files.presets import parameters_of
 from giveway.config.files.toml import parse_toml, read_toml_file
 from giveway.errors import ConfigError
+from giveway.recordings.dataset import dataset_of
 from giveway.studies.definition import read_definition
-from giveway.validation.dataset import dataset_of
 from sumo_scenarios import ScenarioError, find
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.validation.intervals import ClipBootstrap
+from giveway.recordings.intervals import ClipBootstrap
 
 
 def test_the_interval_is_that_of_drawing_clips(straight_walks) -> None:
