@@ -10,6 +10,7 @@ import typer
 from giveway import errors
 from giveway.cli.check_commands import build_check
 from giveway.cli.completion import complete_scenario
+from giveway.cli.data_commands import build_data
 from giveway.cli.fmu_commands import build_export, build_fmu
 from giveway.cli.help import Commands, JsonFlag
 from giveway.cli.option_groups import RunOutputs, ungrouped
@@ -43,6 +44,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     app.add("recover", _recover)
     app.add("config", _with_flags(_config, command))
     app.add("schema", _schema)
+    app.add_typer(build_data(), name="data")
     app.add_typer(build_fmu(), name="fmu")
     app.add_typer(build_export(lambda f: _with_flags(f, command, "export")), name="export")
     app.add_typer(build_check(), name="check")

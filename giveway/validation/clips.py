@@ -83,11 +83,11 @@ def read_clips(folder: Path, dataset: Dataset) -> tuple[Clip, ...]:
     for name in names:
         if names.count(name) > 1:
             raise DatasetError(f"{folder}: a clip of this name is in it twice: {name}; keep one")
-    _require_rate(folder, clips, dataset)
+    _require_rate(folder, clips)
     return tuple(clips)
 
 
-def _require_rate(folder: Path, clips: list[Clip], dataset: Dataset) -> None:
+def _require_rate(folder: Path, clips: list[Clip]) -> None:
     """Make sure that people's steps from frame to frame agree with their speeds.
 
     Raises:
@@ -96,7 +96,7 @@ def _require_rate(folder: Path, clips: list[Clip], dataset: Dataset) -> None:
     rates = np.array([rate for clip in clips if (rate := _rate_of(clip)) is not None])
     if not len(rates):
         return
-    found = float(np.median(rates))
+    dataset, found = clips[0].dataset, float(np.median(rates))
     if abs(found / dataset.frame_rate - 1.0) > _RATES_APART:
         raise DatasetError(
             f"{folder}: people's speeds and their steps from frame to frame belong to {found:.1f} "
@@ -147,7 +147,7 @@ def _clip(recording: Recording) -> Clip:
     numbers = [int(name) if name.isdecimal() else i for i, name in enumerate(people.ids)]
     return Clip(
         recording.name,
-        recording.dataset,
+        recording.dataset.model_copy(update={"frame_rate": recording.frame_rate}),
         recording.first_frame + first,
         np.array(numbers, dtype=np.int64),
         _spread(people, people.position, first, last),

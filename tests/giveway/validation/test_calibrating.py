@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from giveway.cli.validation_commands import _PARAMETERS
+from giveway.cli.option_groups import FitSettings
 from giveway.errors import ConfigError, DatasetError
 from giveway.validation import calibrate
 from giveway.validation.calibrating import DEFAULT, HeldOut, split
@@ -82,7 +82,7 @@ def test_too_few_clips_to_hold_one_out(clips) -> None:
 
 
 def test_the_command_line_offers_the_packages_own_default() -> None:
-    assert tuple(_PARAMETERS.split(",")) == DEFAULT
+    assert tuple(FitSettings().parameters.split(",")) == DEFAULT
 
 
 def test_the_closest_two_people_stand_beside_the_error(clips) -> None:

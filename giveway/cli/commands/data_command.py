@@ -1,0 +1,217 @@
+"""The commands ``giveway data describe`` and ``giveway data measure``."""
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from rich.console import Console
+from rich.table import Column, Table
+
+from giveway.cli.screen.printing import escape, numbers_of, print_place, writing
+from giveway.cli.screen.progress_bars import counting
+from giveway.recordings import Dataset, Recording, dataset_of, read_recordings
+from giveway.recordings.describing import TOTAL, Described, describe
+from giveway.recordings.measuring import Measured, Share, measure
+from giveway.results.folder import check_folder
+
+_DESCRIBED = ("recordings.csv", "defects.csv")
+_MEASURED = ("vehicles.csv", "people.csv", "summary.csv")
+_DECIMALS = 6
+
+
+def describe_command(
+    folder: Path, dataset: str | None, out: Path | None, *, force: bool, quiet: bool
+) -> None:
+    """Read the recordings, print a row for each, the total and the defects, and write them.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=quiet)
+    described = dataset_of(dataset)
+    _check(out, _DESCRIBED, force=force)
+    recordings = _read(console, folder, described)
+    with _counted(console, "Describing", len(recordings)) as advance:
+        found = describe(recordings, advance)
+    console.print(_description(found, described))
+    if len(found.defects):
+        console.print(_defects(found))
+    _cite(console, described)
+    _write(console, out, dict(zip(_DESCRIBED, (found.table, found.defects), strict=True)))
+
+
+def measure_command(
+    folder: Path,
+    dataset: str | None,
+    vehicle: str | None,
+    out: Path | None,
+    *,
+    force: bool,
+    quiet: bool,
+) -> None:
+    """Read the recordings, print a row for each drive and the summary, and write all tables.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=quiet)
+    described = dataset_of(dataset)
+    _check(out, _MEASURED, force=force)
+    recordings = _read(console, folder, described)
+    with _counted(console, "Measuring", len(recordings)) as advance:
+        found = measure(recordings, vehicle, advance)
+    console.print(_drives(found, described))
+    if vehicle is not None and len(found.people):
+        console.print(_people(found))
+    console.print(_summary(found))
+    _cite(console, described)
+    _write(
+        console, out, dict(zip(_MEASURED, (found.drives, found.people, found.summary), strict=True))
+    )
+
+
+def _check(out: Path | None, names: Sequence[str], *, force: bool) -> None:
+    if out is not None:
+        check_folder(out, force=force, ours=frozenset(names), writer="giveway data")
+
+
+def _read(console: Console, folder: Path, dataset: Dataset) -> tuple[Recording, ...]:
+    with counting(console, "Reading") as count:
+        return read_recordings(
+            folder, dataset, lambda done, of, name: count(done, of, escape(name))
+        )
+
+
+@contextmanager
+def _counted(console: Console, what: str, of: int) -> Iterator[Callable[[str], None]]:
+    """Show a bar of how many recordings are done; the context takes each one's name."""
+    with counting(console, what) as count:
+        numbers = itertools.count(1)
+        yield lambda name: count(next(numbers), of, escape(name))
+
+
+def _write(console: Console, out: Path | None, tables: Mapping[str, pd.DataFrame]) -> None:
+    if out is None:
+        return
+    for name, table in tables.items():
+        with writing(out / name, "name another folder with --out"):
+            table.round(_DECIMALS).to_csv(out / name, index=False, lineterminator="\n")
+    print_place(console, "Tables", out)
+
+
+def _cite(console: Console, dataset: Dataset) -> None:
+    if dataset.citation:
+        console.print(f"Please cite: {escape(dataset.citation)}", highlight=False)
+
+
+def _description(found: Described, dataset: Dataset) -> Table:
+    where = f": {dataset.site}" if dataset.site else ""
+    headings = ("people", "moving", "parked", "near", "s", "m/s", "95 %", "gap [m]", "defects")
+    caption = (
+        "moving, parked: vehicles; near: pairs of a person and a moving vehicle within 4 m; m/s, "
+        "95 %: speeds of walking; gap: smallest clearance of a person and a vehicle"
+    )
+    table = Table(
+        *_named("recording", *headings), title=escape(dataset.name + where), caption=caption
+    )
+    for row in _rows(found.table):
+        if row.recording == TOTAL:
+            table.add_section()
+        table.add_row(
+            escape(str(row.recording)),
+            *(str(n) for n in (row.people, row.moving, row.parked, row.encounters)),
+            _number(row.duration, 1),
+            *(_number(n, 2) for n in (row.walking_speed, row.walking_speed_95, row.smallest_gap)),
+            str(row.defects),
+        )
+    return table
+
+
+def _defects(found: Described) -> Table:
+    table = Table("recording", "defect", *numbers_of("count")[1:], "the first", title="Defects")
+    for row in _rows(found.defects):
+        texts = (str(row.recording), str(row.defect), str(row.count), str(row.example))
+        table.add_row(*(escape(text) for text in texts))
+    return table
+
+
+def _drives(found: Measured, dataset: Dataset) -> Table:
+    headings = ("s", "mean", "top", "stands", "jerk", "brakes", "near", "close", "tight")
+    caption = (
+        "mean, top [m/s]; jerk [m/s3], brakes [m/s2]: RMS and hardest; near: people within 4 m; "
+        "close: of these, passed at less than 0.5 m and more than 2 m/s; tight: at less than 0.3 m "
+        "and more than 3 m/s"
+    )
+    columns = _named("recording", "vehicle", *headings)
+    table = Table(*columns, title=escape(f"Recorded drives, {dataset.name}"), caption=caption)
+    for row in _rows(found.drives):
+        table.add_row(
+            escape(str(row.recording)),
+            escape(str(row.vehicle)),
+            _number(row.duration, 1),
+            _number(row.mean_speed, 2),
+            _number(row.maximum_speed, 2),
+            f"{row.standing:.0%}",
+            _number(row.rms_jerk, 2),
+            _number(row.peak_deceleration, 2),
+            *(str(n) for n in (row.near, row.close, row.tight)),
+        )
+    return table
+
+
+def _people(found: Measured) -> Table:
+    headings = ("clearance", "at > 2 m/s", "at > 3 m/s", "TTC [s]", "PET [s]")
+    columns = _named("recording", "person", *headings)
+    caption = "PET: positive if the person was first, negative if the vehicle was"
+    table = Table(*columns, title="People within 4 m", caption=caption)
+    for row in _rows(found.people):
+        table.add_row(
+            escape(str(row.recording)),
+            escape(str(row.person)),
+            *(
+                _number(value, 2)
+                for value in (
+                    row.clearance,
+                    row.clearance_above_2,
+                    row.clearance_above_3,
+                    row.time_to_collision,
+                    row.post_encroachment_time,
+                )
+            ),
+        )
+    return table
+
+
+def _summary(found: Measured) -> Table:
+    drives = int((found.drives["near"] > 0).sum())
+    title = f"Of {len(found.people)} people near {drives} of {len(found.drives)} vehicles"
+    caption = "95 % interval: vehicles resampled"
+    table = Table(*numbers_of("people", "share"), title=title, caption=caption)
+    for share in found.shares:
+        table.add_row(share.name, str(share.count), _share(share))
+    return table
+
+
+def _share(share: Share) -> str:
+    if share.share != share.share:  # nan: nobody was near
+        return "-"
+    known = share.low == share.low
+    interval = f" [{share.low:.1%}, {share.high:.1%}]" if known else ""
+    return escape(f"{share.share:.1%}{interval}")
+
+
+def _rows(table: pd.DataFrame) -> list[Any]:
+    """Return the rows of a table as named tuples."""
+    return list(table.itertuples(index=False))
+
+
+def _named(first: str, *others: str) -> list[Column]:
+    """Return the columns of a table: the recording, whose name is never cut, and numbers."""
+    return [Column(first, overflow="fold"), *numbers_of(*others)[1:]]
+
+
+def _number(value: float, decimals: int) -> str:
+    return f"{value:.{decimals}f}" if value == value else "-"  # nan is not there

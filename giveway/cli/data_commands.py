@@ -1,0 +1,57 @@
+"""The commands ``giveway data ...`` about recorded people and vehicles, and their help."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from giveway.cli.help import Commands
+
+_Folder = Annotated[Path, typer.Argument(help="Folder with recordings, in it or below it.")]
+_Dataset = Annotated[
+    str | None,
+    typer.Option(
+        help="Data set: citr, deepscenario, dut, eth_ucy, hermes, imptc, ind, sind, sumo_fcd, or "
+        "its description (TOML); docs/recordings.md."
+    ),
+]
+_Out = Annotated[Path | None, typer.Option(help="Folder for the tables (CSV); without it, none.")]
+_Force = Annotated[bool, typer.Option("--force", help="Replace the tables there.")]
+_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")]
+
+
+def build_data() -> typer.Typer:
+    """Return the commands about recorded people and vehicles."""
+    app = Commands("Look at recorded people and vehicles, and measure recorded drives.")
+    app.add("describe", _describe)
+    app.add("measure", _measure)
+    return app
+
+
+def _describe(
+    folder: _Folder,
+    dataset: _Dataset = None,
+    out: _Out = None,
+    force: _Force = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Say who is in recordings, how near people and vehicles come, and what is wrong with them."""
+    from giveway.cli.commands.data_command import describe_command
+
+    describe_command(folder, dataset, out, force=force, quiet=quiet)
+
+
+def _measure(
+    folder: _Folder,
+    dataset: _Dataset = None,
+    vehicle: Annotated[
+        str | None, typer.Option(help="Id of the only vehicle to measure; its people are listed.")
+    ] = None,
+    out: _Out = None,
+    force: _Force = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Measure recorded drives as giveway measures its own: speeds, close passes, TTC, PET."""
+    from giveway.cli.commands.data_command import measure_command
+
+    measure_command(folder, dataset, vehicle, out, force=force, quiet=quiet)
