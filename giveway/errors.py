@@ -7,7 +7,7 @@ Every message is one line: the file, key or id, the value, what was expected, an
 import difflib
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 
 class GivewayError(Exception):
@@ -108,3 +108,31 @@ def suggestion(name: str, known: Collection[str], otherwise: str = "", cutoff: f
     close = difflib.get_close_matches(name, known, n=1, cutoff=cutoff)
     expected = otherwise or f"expected one of {', '.join(known)}"
     return f"did you mean '{close[0]}'?" if close else expected
+
+
+_WORDS: Final = {
+    "int_type": "should be a whole number",
+    "int_parsing": "should be a whole number",
+    "int_from_float": "should be a whole number",
+    "float_type": "should be a number",
+    "float_parsing": "should be a number",
+    "bool_type": "should be true or false",
+    "bool_parsing": "should be true or false",
+    "string_type": "should be a text",
+    "greater_than_equal": "should be at least {ge:.12g}",
+    "less_than_equal": "should be at most {le:.12g}",
+}
+"""Plain words for pydantic's types of errors."""
+
+
+def in_words(error: Any) -> str:
+    """Return what a refused value should be, in plain words.
+
+    Args:
+        error: One error of a pydantic ``ValidationError``.
+    """
+    words = _WORDS.get(error["type"])
+    if words is None:
+        return str(error["msg"]).removeprefix("Input ")
+    bounds = {k: v for k, v in error.get("ctx", {}).items() if isinstance(v, int | float)}
+    return words.format(**bounds)

@@ -122,7 +122,7 @@ def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:
         ) from None
     # other errors than TOML's: a number with thousands of digits
     except (ValueError, RecursionError) as error:
-        raise FmuProfileError(f"{path}: not valid TOML: {error}; mend the line named") from None
+        raise FmuProfileError(f"{path}: not valid TOML: {error}; correct this line") from None
 
 
 def validated(kind: type[_Profile], values: dict[str, Any], origin: str, guide: str) -> _Profile:

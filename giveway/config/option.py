@@ -18,6 +18,8 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
+from giveway.errors import in_words
+
 _TOO_SMALL = "least"
 _OUT_OF_RANGE = frozenset(
     {_TOO_SMALL, "greater_than", "greater_than_equal", "less_than", "less_than_equal"}
@@ -63,7 +65,7 @@ def expectation(error: Any, field: FieldInfo) -> str:
         field: Field of the option.
     """
     extra = declared(field)
-    expected = str(error["msg"]).removeprefix("Input ")
+    expected = in_words(error)
     if error["type"] in {"missing", "too_long"}:  # errors of a tuple's values
         expected = f"expected {len(get_args(field.annotation))} values"
     unit = f" [{extra['unit']}]" if extra.get("unit") else ""

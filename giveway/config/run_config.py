@@ -93,7 +93,7 @@ class RunConfig(Section):
         "Seed of the crowd that giveway adds",
         ge=0,
         le=2**31 - 1,
-        because="SUMO's are 31 bits",
+        because="SUMO's seeds have 31 bits",
     )
     controller: ControllerName = option(
         "mpc",
@@ -115,7 +115,7 @@ class RunConfig(Section):
         flag="--time-step",
         ge=0.001,
         le=0.5,
-        because="SUMO counts milliseconds, and people walk 1 m in half a second",
+        because="SUMO counts milliseconds, and in more than 0.5 s people walk too far",
     )
     time_limit: float | None = option(
         None,

@@ -107,7 +107,7 @@ def load(found: Found) -> Any:
         said = " ".join(str(error).split())
         raise ControlError(
             f"{found.socket.setting} = '{found.name}': {found.reference} of {found.distribution} "
-            f"{found.version} cannot be imported ({type(error).__name__}: {said}); mend or "
+            f"{found.version} cannot be imported ({type(error).__name__}: {said}); repair or "
             "reinstall that package"
         ) from error
     return value

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 
-from giveway.errors import ConfigError, ControlError, suggestion
+from giveway.errors import ConfigError, ControlError, in_words, suggestion
 from giveway.plug_ins.sockets import CONTROLLER, Socket
 
 
@@ -42,7 +42,7 @@ def read_options(
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key = ".".join(map(str, first["loc"])) or "options"
-        said = str(first["msg"]).removeprefix("Input ")
+        said = f"{in_words(first)}{_unit(kind, key)}"
         given = "is missing" if first["type"] == "missing" else f"= {first['input']!r}"
         raise ConfigError(f"{table} {key} {given}: {said} ('{name}')") from None
     except PydanticUserError as error:
@@ -73,3 +73,11 @@ def _names(name: str, kind: Any, socket: Socket) -> list[str]:
     raise ControlError(
         f"{socket.setting} = '{name}': Options = {kind!r}: expected a dataclass or a pydantic model"
     )
+
+
+def _unit(kind: Any, key: str) -> str:
+    """Return the declared unit of an option in brackets; empty if it has none."""
+    field = getattr(kind, "model_fields", {}).get(key)
+    extra = getattr(field, "json_schema_extra", None)
+    unit = extra.get("unit") if isinstance(extra, dict) else None
+    return f" [{unit}]" if unit else ""

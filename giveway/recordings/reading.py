@@ -61,7 +61,7 @@ def read_recordings(
         DatasetError: there is no such folder, no recording in it, or a file cannot be used.
     """
     if not folder.is_dir():
-        raise DatasetError(f"{folder}: no such folder; expected a data set's, or a part of it")
+        raise DatasetError(f"{folder}: no such folder; expected a data set or a part of it")
     groups = _groups(folder, dataset)
     recordings = []
     for number, files in enumerate(groups, 1):

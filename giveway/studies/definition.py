@@ -13,7 +13,7 @@ from giveway.config.files.layers import anchored
 from giveway.config.files.schema_names import STUDY, with_schema
 from giveway.config.files.toml import parse_toml, read_toml_file
 from giveway.config.option import Section
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, in_words
 
 Situation = Literal["general", "stop-and-wait", "non-stop", "slowed"]
 
@@ -239,7 +239,7 @@ def _explain(error: Any) -> str:
         return f"{key}: unknown key; expected one of {', '.join(known)}"
     if error["type"] == "value_error":
         return f"{key}: {error['ctx']['error']}"
-    expected = str(error["msg"]).removeprefix("Input ")
+    expected = in_words(error)
     if error["type"] == "string_pattern_mismatch":
         expected = "expected letters, digits, '_', '-' and '.'"
     return f"{key} = {error['input']!r}: {expected} ({_meaning(place)})"

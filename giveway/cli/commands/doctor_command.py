@@ -52,7 +52,7 @@ def _table(title: str, findings: Sequence[Finding]) -> Table:
 
 def _verdict(errors: int, warnings: int) -> str:
     if errors:
-        return f"{errors} error{'s' * (errors > 1)}: a run will not work before that is put right."
+        return f"{errors} error{'s' * (errors > 1)}: a run will not work until this is corrected."
     if warnings:
         return f"No errors, {warnings} warning{'s' * (warnings > 1)}."
     return "All is well."

@@ -45,7 +45,7 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
     try:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{origin}: not valid TOML: {error}; mend the line named") from None
+        raise ConfigError(f"{origin}: not valid TOML: {error}; correct this line") from None
     except ValueError:  # Python's: it reads no longer ones
         raise ConfigError(
             f"{origin}: a number of thousands of digits; expected one of a few; shorten it"

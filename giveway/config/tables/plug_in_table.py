@@ -35,9 +35,9 @@ class PlugInTable(Section):
 
     @property
     def plugged_in(self) -> Mapping[str, Mapping[str, Any]]:
-        """The named plug-ins, each with its options."""
+        """The named plug-ins, each with its options; a plug-in that is set to false is left out."""
         extra = self.__pydantic_extra__
-        return {name: {} if own is True else own for name, own in extra.items() if own}
+        return {name: {} if own is True else own for name, own in extra.items() if own is not False}
 
 
 def _unknown(name: str, known: list[str], what: str) -> ValueError:

@@ -51,7 +51,7 @@ class RecordStore:
             raise BrokenFileError(path, str(error)) from None
         except OSError as error:
             raise ResultsError(
-                f"{path}: cannot be read ({error.strerror}); mend the disk"
+                f"{path}: cannot be read ({error.strerror}); check the disk"
             ) from error
         if record.key != key:
             raise BrokenFileError(path, f"it is the record {record.key!r}")

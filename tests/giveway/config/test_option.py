@@ -51,7 +51,7 @@ def test_zero_or_a_sensible_size_is_taken(width: float) -> None:
 
 def test_a_size_too_small_is_refused_with_unit_and_reason() -> None:
     assert said(width=1e-9) == "should be 0, or at least 0.1 [m]: people fit (width of a door)"
-    assert "greater than or equal to 0 [m]: people fit" in said(width=-1.0)
+    assert "at least 0 [m]: people fit" in said(width=-1.0)
 
 
 @pytest.mark.parametrize(

@@ -39,9 +39,9 @@ def test_defaults_are_the_papers_table() -> None:
     [
         (
             {"crowd": {"pedestrians": -3}},
-            ["study.toml: [crowd] pedestrians", "-3", "equal to 0", "persons"],
+            ["study.toml: [crowd] pedestrians", "-3", "at least 0", "persons"],
         ),
-        ({"seed": "a"}, ["study.toml: seed", "'a'", "integer"]),
+        ({"seed": "a"}, ["study.toml: seed", "'a'", "whole number"]),
         ({"controller": "mcp"}, ["'mcp'", "'mpc'", "'pid-tuned'", "'pid-paper'"]),
         ({"vehicle": {"mass": float("nan")}}, ["[vehicle] mass", "nan", "finite"]),
         ({"vehicle": {"mass": 0.0}}, ["[vehicle] mass", "greater than 0", "kg"]),

@@ -25,4 +25,4 @@ def test_the_command_prints_tables_and_its_exit_code_tells(
     assert doctor_command(str(config)) == 1
     shown = capsys.readouterr().out
     assert "-> put it there, or correct it" in shown
-    assert "1 error: a run will not work before that is put right." in shown
+    assert "1 error: a run will not work until this is corrected." in shown

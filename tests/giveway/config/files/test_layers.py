@@ -90,7 +90,7 @@ def test_the_reference_speed_is_a_number_or_the_lane_s(given: object) -> None:
     ("given", "expected"),
     [
         ("lanes", "expected a number or 'lane' "),
-        (61, "should be less than or equal to 60 "),
+        (61, "should be at most 60 "),
         (0.05, "should be at least 0.1 "),
     ],
 )

@@ -59,7 +59,7 @@ def test_the_api_takes_names_and_files_and_refuses_the_rest(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("profile", [{"a": 1}, ["car.toml"], 3])
 def test_a_profile_that_is_no_text_is_the_keys_fault(profile: object) -> None:
-    with pytest.raises(ConfigError, match=r"run\.toml: \[vehicle\] profile.*string"):
+    with pytest.raises(ConfigError, match=r"run\.toml: \[vehicle\] profile.*text"):
         load([Layer("run.toml", {"vehicle": {"profile": profile}})])
 
 

@@ -12,6 +12,10 @@ def test_what_is_switched_on_has_its_options() -> None:
     assert table.plugged_in == {"a.b:Near": {"radius": 2.0}, "a.b:Far": {}}
 
 
+def test_an_empty_table_names_a_plug_in_with_its_default_options() -> None:
+    assert MetricsConfig(**{"a.b:Near": {}}).plugged_in == {"a.b:Near": {}}
+
+
 def test_giveways_own_keys_are_no_plug_ins() -> None:
     assert RulesConfig(crossings=False, **{"a.b:Rule": True}).plugged_in == {"a.b:Rule": {}}
 
