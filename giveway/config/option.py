@@ -69,9 +69,16 @@ def expectation(error: Any, field: FieldInfo) -> str:
     if error["type"] in {"missing", "too_long"}:  # errors of a tuple's values
         expected = f"expected {len(get_args(field.annotation))} values"
     unit = f" [{extra['unit']}]" if extra.get("unit") else ""
-    out_of_range = error["type"] in _OUT_OF_RANGE and extra.get("because")
-    because = f": {extra['because']}" if out_of_range else ""
+    out_of_range = error["type"] in _OUT_OF_RANGE and not _is_sign_wrong(error, field)
+    because = f": {extra['because']}" if out_of_range and extra.get("because") else ""
     return f"{expected}{unit}{because} ({field.description})"
+
+
+def _is_sign_wrong(error: Any, field: FieldInfo) -> bool:
+    """Return whether the sign alone is wrong: the reason of a field is then that of its maximum."""
+    crossed = error.get("ctx", {})
+    above_zero = crossed.get("ge", crossed.get("gt")) == 0
+    return above_zero and any(hasattr(bound, "le") for bound in field.metadata)
 
 
 def is_number(value: object) -> bool:

@@ -125,7 +125,7 @@ class RunConfig(Section):
         gt=0,
         le=1e7,
         least=0.001,
-        because="no step is shorter",
+        because="no step is shorter, and no run longer",
     )
     twin: bool = option(
         False,

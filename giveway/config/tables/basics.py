@@ -90,7 +90,7 @@ class EgoConfig(Section):
         gt=0,
         le=1e6,
         least=0.1,
-        because="a drive is at least that long",
+        because="a drive is at least 0.1 m long, and no network is larger",
     )
 
 
@@ -243,7 +243,7 @@ class RecordConfig(Section):
         gt=0,
         le=1e6,
         least=0.001,
-        because="no step is shorter",
+        because="no step is shorter, and no run longer",
     )
     predictions: float | None = option(
         None,
@@ -253,7 +253,7 @@ class RecordConfig(Section):
         gt=0,
         le=1e3,
         least=0.001,
-        because="no step is shorter",
+        because="no step is shorter, and no run longer",
     )
     stop_speed: float = option(
         0.2,

@@ -22,6 +22,7 @@ class Table(Section):
     """A table with an option of each kind."""
 
     width: float = option(1.0, "m", "width of a door", least=0.1, because="people fit", ge=0)
+    people: int = option(0, None, "number of people", ge=0, le=9, because="more do not fit")
     names: NameList = ()
     radius: TextOrNumber = ""
     speed: SpeedOrLane = 4.0
@@ -52,6 +53,11 @@ def test_zero_or_a_sensible_size_is_taken(width: float) -> None:
 def test_a_size_too_small_is_refused_with_unit_and_reason() -> None:
     assert said(width=1e-9) == "should be 0, or at least 0.1 [m]: people fit (width of a door)"
     assert "at least 0 [m]: people fit" in said(width=-1.0)
+
+
+def test_a_wrong_sign_is_not_told_the_reason_of_the_maximum() -> None:
+    assert said(people=-3) == "should be greater than or equal to 0 (number of people)"
+    assert "less than or equal to 9: more do not fit (" in said(people=30)
 
 
 @pytest.mark.parametrize(

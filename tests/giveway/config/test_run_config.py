@@ -66,7 +66,8 @@ def nonsense() -> list[tuple[Option, float]]:
     found = []
     for option in options():
         limits = option.field.metadata
-        if any(hasattr(limit, "gt") or hasattr(limit, "ge") for limit in limits):
+        lowest = [getattr(limit, "ge", getattr(limit, "gt", None)) for limit in limits]
+        if any(lowest) or (0 in lowest and not any(hasattr(limit, "le") for limit in limits)):
             found.append((option, -1.0))
         if any(hasattr(limit, "lt") or hasattr(limit, "le") for limit in limits):
             found.append((option, 1e12))
