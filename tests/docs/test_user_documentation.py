@@ -17,6 +17,9 @@ from giveway.metrics import (
     WALK_SUMMARY_FIELDS,
 )
 from giveway.metrics.law import LAW_FIELDS
+from giveway.recordings import KNOWN
+from giveway.recordings.describing import RECORDING_FIELDS
+from giveway.recordings.measuring import DRIVE_FIELDS, PERSON_FIELDS
 from giveway.run_data.columns import (
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
@@ -53,6 +56,20 @@ def test_every_column_is_documented_as_it_is_declared(columns: tuple) -> None:
     for column in columns:
         row = f"| `{column.name}` | {column.type} | {column.unit or ''} | {column.description} |"
         assert row in text
+
+
+@pytest.mark.parametrize("columns", [RECORDING_FIELDS, DRIVE_FIELDS, PERSON_FIELDS])
+def test_every_column_of_recordings_is_documented(columns: tuple) -> None:
+    text = (DOCS / "recordings.md").read_text(encoding="utf-8")
+    for column in columns:
+        row = f"| `{column.name}` | {column.type} | {column.unit or ''} | {column.description} |"
+        assert row in text
+
+
+def test_every_data_set_is_documented() -> None:
+    text = (DOCS / "recordings.md").read_text(encoding="utf-8")
+    for name in KNOWN:
+        assert f"\n| `{name}` |" in text
 
 
 def test_every_option_is_documented_with_flag_unit_and_meaning() -> None:
