@@ -185,7 +185,7 @@ def _converted(match: re.Match[bytes], arguments: Arguments) -> bytes:
     dot = "." if match["precision"] is not None else ""
     pattern = f"%{part['flags']}{width}{dot}{precision}"
     if kind in "eEfFgGaA":
-        if part["length"] == "L":  # a long double has another place on every platform
+        if part["length"] == "L":  # the layout of a long double depends on the platform
             return match.group()
         number = arguments.double()
         return (number.hex() if kind in "aA" else f"{pattern}{kind}" % number).encode()

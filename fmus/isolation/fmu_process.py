@@ -139,7 +139,7 @@ class FmuProcess:
         return kind(f"{self.path}: {reason}; {advice}")
 
     def end(self) -> None:
-        """End the process, if there is one; unless it has failed, it is asked to end first."""
+        """Ask the process to end, and kill it if it does not; without a process do nothing."""
         client, self._client = self._client, None
         if client is None:
             return

@@ -129,7 +129,11 @@ def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
 
 
 def _without_inputs(model: Model) -> tuple[list[Entry], set[str]]:
-    """Return the way to drive by tunable parameters, which some tools export instead of inputs."""
+    """Return the profile lines for an FMU without inputs, and the names of the used variables.
+
+    Some tools export tunable parameters instead of inputs. The lines then ask whether these
+    parameters drive the FMU.
+    """
     tunable = [
         v
         for v in model.variables.values()

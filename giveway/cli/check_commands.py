@@ -70,7 +70,7 @@ def _metric(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
 def _run(
     what: str, name: str, words: list[str] | None, time_step: float | None, profile: str = ""
 ) -> None:
-    """Check a plug-in for the socket of these words, and end with the command's exit code."""
+    """Check a plug-in of the kind ``what``, and end with the command's exit code."""
     from giveway.cli.commands.check_command import check_command
     from giveway.plug_ins.sockets import SOCKETS, TABLES
 

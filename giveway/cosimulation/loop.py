@@ -40,7 +40,6 @@ from giveway.processes.interrupts import DeferredInterrupt
 from giveway.run_data.progress import Ending, Progress, Watcher
 from pedestrian_model import PedestrianModelError, PlugInError
 
-# Bound once: looking a member up on the Enum class costs time in every step.
 _CONTROLLING, _VEHICLE = Phase.CONTROLLING, Phase.VEHICLE
 _CROWD, _SUMO = Phase.CROWD, Phase.SUMO
 

@@ -74,7 +74,7 @@ class Zone:
 
     @property
     def follows_egos(self) -> bool:
-        """Return whether the zone is around the egos, and so nowhere without one."""
+        """True if the zone is around the egos; without an ego there is no such zone."""
         return self._radius is not None
 
     def require_overlap(self, boundary: tuple[float, float, float, float]) -> None:

@@ -18,7 +18,7 @@ from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 
 PEDESTRIAN = "pedestrian"
-_AWAY = 1.5  # Factor on the longest time between two rows, from which on an object was away
+_AWAY = 1.5  # Factor on the longest usual time between two rows; then a new track begins
 
 
 @dataclass(frozen=True)

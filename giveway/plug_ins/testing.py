@@ -30,7 +30,7 @@ def require_sound_model() -> Callable[..., None]:
 
 
 def check_of(findings_of: Callable[..., Any], setup: Any, factory: str = "") -> Callable[..., None]:
-    """Return the check of one socket, which makes plug-ins in the way giveway does.
+    """Return a function that checks a plug-in of one socket, made with its options as in a run.
 
     Args:
         findings_of: Battery of the socket, called with a maker and ``setup``.

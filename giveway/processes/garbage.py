@@ -1,4 +1,4 @@
-"""The schedule of Python's garbage collection, of which a full run takes a tenth of a second."""
+"""The schedule of Python's garbage collection: a full collection takes a tenth of a second."""
 
 import contextlib
 import gc

@@ -68,7 +68,7 @@ def influence_contours(
 def _contours(
     shape: tuple[float, float], speed: float, parameters: VciParameters
 ) -> list[list[Array]]:
-    """Return the pieces of each level's contour, (k, 2) [m] each."""
+    """Return for each level the pieces of its contour, each with k points (k, 2) [m]."""
     length, width = shape
     ahead = length / 2 + FRONT_MARGIN + FRONT_MARGIN_PER_SPEED * speed
     half_height = width / 2 + SIDE_MARGIN

@@ -14,7 +14,7 @@ from giveway.walkways.reading import PedLane
 
 _TOLERANCE = 0.05  # Largest distance [m] of a route outside of the area
 _SLIGHT = math.sin(math.radians(0.5))  # Sine of the angle below which a corner does not jut in
-_INSET = 0.02  # Distance [m] of a route's corner from the area's corner
+_INSET = 0.02  # Distance [m] by which routes pass inside a corner of the area
 
 
 def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:

@@ -1,4 +1,4 @@
-"""The protocol of a rule of the road: it is shown a `Situation` and answers with a `Demand`.
+"""The protocol of a rule of the road: it gets a `Situation` and returns a `Demand`.
 
 A rule is a class of one file. It is made once for each ego, by a factory that looks at the
 `RouteContext`, and asked at each control step. The members of `RULES` and the rules of other
@@ -23,7 +23,7 @@ LIGHT, STOP, YIELD = "light", "stop", "yield"
 
 
 class Told(NamedTuple):
-    """The events in SUMO that an ego's rules want to be told of."""
+    """The state of SUMO that an ego's rules need, as declared by their ``Needs``."""
 
     signals: Mapping[str, str] = MappingProxyType({})  # state of each signal system, by its id
     traffic: Traffic = MappingProxyType({})  # vehicles that approach each junction, by its id
@@ -88,7 +88,7 @@ class Rule(Protocol):
     * ``needs``: `Needs`, the events that the rule needs to know about;
     * ``update(situation)``: called after each of SUMO's steps, when signals and traffic are new;
     * ``advance(situation, time_step)``: called after each control step of ``time_step`` [s];
-    * ``beside``: names of vehicles whose lanes lead them past the ego's path;
+    * ``beside``: ids of vehicles that will pass beside the ego's path, on lanes of their own;
     * ``remarks``: sentences for the user about how the drive went.
     """
 

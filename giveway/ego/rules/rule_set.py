@@ -98,7 +98,7 @@ class RuleSet:
 
     @property
     def beside(self) -> frozenset[str]:
-        """The names of vehicles whose lanes lead them past the path, at the next junctions."""
+        """The ids of vehicles that, by a rule, will pass beside the path at the next junctions."""
         return frozenset[str]().union(*(getattr(rule, "beside", ()) for rule in self._rules))
 
     @property

@@ -14,7 +14,7 @@ KERB = 1.0
 """Distance [m] to a crossing's kerb within which a person who heads for it is about to use it."""
 
 _OVER = 0.5  # Length [m] along a crossing below which a route does not cross there
-_ON = 1.0  # Distance [m] beyond the kerb: a person first seen beyond it has entered by right
+_ON = 1.0  # Distance [m] beyond the kerb: who is first seen farther on entered with priority
 _GREEN = np.array(["G", "g"])
 _OUT = np.array(["O", "o"])
 _SLOWEST = 0.1  # Smallest desired speed [m/s] used here, since it may be zero
@@ -107,7 +107,7 @@ def _priority(
     beside = np.maximum(np.abs(aside) - half, 0.0)
     kerb = (progress < 0.0) & (np.hypot(progress, beside) <= KERB)
     priority = np.empty(len(progress), dtype=np.bool_)
-    by_right = area.crossing.system or area.crossing.zebra  # others nobody enters by right
+    by_right = area.crossing.system or area.crossing.zebra  # elsewhere people have no priority
     before = bool(on[0] and progress[0] > _ON and by_right)
     for k, (now, there, enters) in enumerate(
         zip(open_at.tolist(), on.tolist(), kerb.tolist(), strict=True)

@@ -69,7 +69,7 @@ class _Scene:
         )
 
     def vehicles(self, clock: float) -> Vehicles:
-        """Two, at a time [s]: one passes, one stands."""
+        """The two vehicles at the time ``clock`` [s], of which one passes and one stands."""
         points = self.placed(np.array([[-14.0 + 4.0 * clock, 0.0], [6.0, 3.0]]))
         heading = TURN if self.turned else 0.0
         return Vehicles.create(points[:, 0], points[:, 1], heading, [4.0, 0.0])
