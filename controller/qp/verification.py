@@ -1,4 +1,4 @@
-"""Refines and verifies the result of an approximate solve, and proofs of infeasibility.
+"""Refines and verifies the result of an approximate solver, and verifies infeasibility.
 
 A first-order solver finds the active constraints. Linear algebra on these gives the optimum to
 rounding, and the primal and dual optimality conditions verify it (Boyd & Vandenberghe 2004,

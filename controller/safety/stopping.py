@@ -41,14 +41,14 @@ class Limits(NamedTuple):
 
 
 def packed(limits: Limits) -> Array:
-    """Return all numbers of ``limits`` in one array, which a kernel takes faster than a tuple."""
+    """Return all numbers of ``limits`` in one array, in which kernels receive them."""
     time_step, ego, people, *distances = limits
     return np.array([time_step, *ego, *people, *distances])
 
 
 @inner
 def unpacked(numbers: Array) -> Limits:
-    """Return the limits of which ``numbers`` was made by :func:`packed`."""
+    """Return the limits that :func:`packed` has put into ``numbers``."""
     n = numbers
     ego = EgoMotion(n[1], n[2], n[3], n[4], n[5], n[6])
     return Limits(n[0], ego, Walking(n[7], n[8], n[9]), n[10], n[11], n[12])

@@ -59,12 +59,12 @@ def is_near(
 def use_of(
     crowd: Crowd, rows: NDArray[np.intp], u: Array, along: Array, length: Array | float
 ) -> Use:
-    """Return how the people ``rows`` (k,) use a crossing each, at ``u`` (k,) [m] along it.
+    """Return whether people beside crossings are on one, wait, enter it or leave it.
 
     Args:
         crowd: All pedestrians.
-        rows: Rows of the people beside a crossing.
-        u: Distance of each from one kerb along the crossing.
+        rows: Rows (k,) of the people, each of whom is beside a crossing.
+        u: Distance (k,) [m] of each person from one kerb along the crossing.
         along: Unit vectors (2,) or (k, 2) along the crossings.
         length: Length of one crossing or of each [m].
     """

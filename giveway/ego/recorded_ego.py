@@ -45,7 +45,7 @@ class RecordedVehicle(Vehicle):
 
 
 class NoController:
-    """Stands in for the controller of a recorded ego; it is never asked for a force."""
+    """Takes the place of a recorded ego's controller, and is never asked for a force."""
 
     horizon = 0
     foresees = False

@@ -69,7 +69,7 @@ class Yielding:
 
     @property
     def report(self) -> dict[str, float]:
-        """The number of vehicles that ever yielded, and the sum of their times [s]."""
+        """The number of vehicles that ever yielded, and their total time [s] of yielding."""
         return {"vehicles_that_yielded": len(self._ever), "time_yielding": round(self._time, 6)}
 
     def update(

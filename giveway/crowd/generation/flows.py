@@ -76,7 +76,7 @@ class Flow:
         self.waiting: deque[Party] = deque()
 
     def come(self, until: float) -> None:
-        """Let people who are due by ``until`` [s] after the run's start wait for their entry."""
+        """Add to ``waiting`` all groups that are due by ``until`` [s] after the run's start."""
         end = math.inf if self._flow.end is None else self._flow.end
         while self._next <= min(until, end):
             self.waiting.append(self._party(self._next))

@@ -30,7 +30,9 @@ def parties_per_person(share: float) -> float:
 
 
 def party_size(share: float, random: np.random.Generator) -> int:
-    """Draw the size of the next group or single person; without groups it is 1, without a draw.
+    """Draw the size of the next group or single person.
+
+    Without groups it is 1, and no random number is drawn.
 
     Args:
         share: Share of the people who walk in groups.
@@ -42,7 +44,7 @@ def party_size(share: float, random: np.random.Generator) -> int:
 
 
 def party_sizes(people: int, share: float, random: np.random.Generator) -> list[int]:
-    """Draw sizes of groups and single people with the sum ``people``; the last has the rest."""
+    """Draw sizes of groups and single people up to the sum ``people``; the last one is cut."""
     sizes: list[int] = []
     left = people
     while left > 0:

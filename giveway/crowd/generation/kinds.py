@@ -29,7 +29,10 @@ _REDRAWS = 1_000  # largest number of draws
 
 
 def draw_kinds(people: PeopleConfig, count: int, random: np.random.Generator) -> tuple[str, ...]:
-    """Draw the kinds of ``count`` people; without a mixture all are empty, without a draw."""
+    """Draw the kinds of ``count`` people.
+
+    Without a mixture all kinds are empty, and no random number is drawn.
+    """
     if not people.mixed:
         return ("",) * count
     shares = people.shares

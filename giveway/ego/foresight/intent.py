@@ -160,7 +160,9 @@ def _update(
     memory: tuple[Array, NDArray[np.int64], Array],
     law: tuple[float, float, float],
 ) -> int:
-    """Update as :meth:`IntentEstimator.update`; return -1, or a number that needs longer arrays.
+    """Update the log odds as :meth:`IntentEstimator.update` does.
+
+    Return -1, or the first person's number for which the arrays are too short.
 
     Args:
         path: Vertices of the path, and their stations [m].

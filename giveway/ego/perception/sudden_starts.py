@@ -24,7 +24,7 @@ class SuddenStarts:
         self._velocity = self._kerbs = np.empty((0, 2))
 
     def beyond(self, numbers: Numbers, velocity: Array, kerbs: Array) -> Numbers:
-        """Return the ids of people who accelerated harder since the last step, from a sidewalk.
+        """Return the ids of people on a sidewalk who accelerated harder than assumed in this step.
 
         Args:
             numbers: Person ids (n,).

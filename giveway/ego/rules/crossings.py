@@ -90,7 +90,7 @@ class Crossings:
 
     @classmethod
     def on(cls, route: RouteContext) -> Crossings | None:
-        """The rule on one ego's route; None if it has no crossings or the ego heeds none."""
+        """The rule on one ego's route, or None if it has no crossings or the rule is off."""
         if not route.heeds("crossings"):
             return None
         found = crossings_on(route.path, route.shape, route.session.lanes.crossings)

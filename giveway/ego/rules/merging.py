@@ -55,7 +55,7 @@ class Merging:
 
     @classmethod
     def on(cls, route: RouteContext) -> Merging | None:
-        """The rule on one ego's route; None if it has no merge point or heeds no vehicles."""
+        """The rule on one ego's route, or None if it has no merge point or a rule is off."""
         if not (route.heeds("merging") and route.heeds("following")):
             return None
         found = route.session.lanes.mergings(route.lane_path)

@@ -111,7 +111,7 @@ class RightOfWay:
 
     @classmethod
     def on(cls, route: RouteContext) -> RightOfWay | None:
-        """The rule on one ego's route; None without junctions or if the ego heeds no priority."""
+        """The rule on one ego's route, or None if it has no junctions or the rule is off."""
         if not (route.heeds("right_of_way") and route.junctions):
             return None
         return cls(
@@ -326,7 +326,7 @@ class RightOfWay:
 
 
 def _has_to_wait(movement: Movement, traffic: Traffic) -> bool:
-    """Return whether a vehicle to which this movement yields is near; the ego counts, too."""
+    """Return whether a vehicle to which this movement yields is near. The ego counts, too."""
     return any(one.number in movement.yields_to for one in traffic.get(movement.junction, ()))
 
 

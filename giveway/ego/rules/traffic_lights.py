@@ -74,7 +74,7 @@ class TrafficLights:
 
     @classmethod
     def on(cls, route: RouteContext) -> TrafficLights | None:
-        """The rule on one ego's route; None without traffic lights or if the ego heeds none."""
+        """The rule on one ego's route, or None if it has no traffic lights or the rule is off."""
         lights = route.lane_path.lights
         if not (lights and route.heeds("traffic_lights")):
             return None
