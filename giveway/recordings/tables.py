@@ -17,6 +17,7 @@ from giveway.recordings.dataset import TrackTable
 
 _FARTHEST = 1e7  # Largest number in a column; a place in UTM [m] has less
 _TEXTS = frozenset({"id", "kind"})
+_SHOWN = 40  # Number of characters of a wrong value in a message
 # Number of lines of a file before its first row
 _HEAD = {"csv": 2, "text": 1}
 
@@ -159,6 +160,6 @@ def _numbers(
         expected = "a whole number" if whole else "a finite number"
         place = f"row {row + 1}" if head is None else f"line {row + head}"
         raise DatasetError(
-            f"{file}: {place}: {name} = {str(column.iloc[row])!r}: expected {expected}"
+            f"{file}: {place}: {name} = {str(column.iloc[row])[:_SHOWN]!r}: expected {expected}"
         )
     return values

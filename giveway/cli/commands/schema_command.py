@@ -9,10 +9,11 @@ from rich.console import Console
 from fmus import VehicleProfile
 from giveway.cli.screen.printing import print_place, writing
 from giveway.config.files.presets import NAMES
-from giveway.config.files.schema_names import PRESET, PROFILE, RUN, STUDY
+from giveway.config.files.schema_names import DATASET, PRESET, PROFILE, RUN, STUDY
 from giveway.config.run_config import EGO_TABLES, RunConfig
 from giveway.plug_ins.finding import declared_names
 from giveway.plug_ins.sockets import CONTROLLER, MODEL, SENSOR
+from giveway.recordings import Dataset
 from giveway.results.json_text import json_text
 from giveway.studies.definition import StudyDefinition
 from pedestrian_model import PRESETS
@@ -22,7 +23,7 @@ _OURS = frozenset({"unit", "flag", "least", "because"})  # keys beside those of 
 
 
 def schema_command(folder: Path) -> None:
-    """Write the schemas of run, study, profile and preset files into ``folder``.
+    """Write the schemas of run, study, profile, preset and data set files into ``folder``.
 
     Raises:
         ResultsError: a schema cannot be written.
@@ -40,6 +41,7 @@ def schemas() -> dict[str, dict[str, Any]]:
         STUDY: _study_schema,
         PROFILE: VehicleProfile.model_json_schema,
         PRESET: _preset_schema,
+        DATASET: Dataset.model_json_schema,
     }
     return {name: {"$schema": _DIALECT, **_tidy(make())} for name, make in makers.items()}
 

@@ -9,6 +9,7 @@ RUN: Final = "giveway-run.schema.json"
 STUDY: Final = "giveway-study.schema.json"
 PROFILE: Final = "giveway-profile.schema.json"
 PRESET: Final = "giveway-preset.schema.json"
+DATASET: Final = "giveway-dataset.schema.json"
 
 
 def with_schema(text: str, name: str) -> str:

@@ -35,7 +35,7 @@ def validators(type_here: Type, tmp_path: Path) -> Validators:
         schema = json.loads(file.read_text())
         Draft202012Validator.check_schema(schema)
         found[file.name] = Draft202012Validator(schema)
-    assert len(found) == 4
+    assert len(found) == 5
     return found
 
 
@@ -62,6 +62,9 @@ def test_what_giveway_ships_fits(validators: Validators) -> None:
         if study.name.endswith(".toml"):
             text = "#:schema giveway-study.schema.json\n" + study.read_text(encoding="utf-8")
             assert problems(validators, text) == [], study.name
+    for dataset in (files("giveway.recordings") / "datasets").iterdir():
+        text = "#:schema giveway-dataset.schema.json\n" + dataset.read_text(encoding="utf-8")
+        assert problems(validators, text) == [], dataset.name
     for name in available():
         for file in find(name).config_file.parent.glob("*.toml"):
             values = tomllib.loads(file.read_text(encoding="utf-8"))
@@ -75,6 +78,7 @@ def test_what_giveway_ships_fits(validators: Validators) -> None:
     [
         ("#:schema giveway-run.schema.json\n[crowd]\npedestrans = 3", "pedestrans"),
         ("#:schema giveway-run.schema.json\ncontroller = 'mcp'", "mcp"),
+        ("#:schema giveway-dataset.schema.json\nframe_rat = 25", "frame_rat"),
         ("#:schema giveway-run.schema.json\n[crowd]\npedestrians = -3", "-3"),
         ("#:schema giveway-run.schema.json\n[[egos]]\nvehicel = {}", "vehicel"),
         (
