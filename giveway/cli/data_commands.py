@@ -25,6 +25,7 @@ def build_data() -> typer.Typer:
     app = Commands("Look at recorded people and vehicles, and measure recorded drives.")
     app.add("describe", _describe)
     app.add("measure", _measure)
+    app.add("behave", _behave)
     return app
 
 
@@ -55,3 +56,22 @@ def _measure(
     from giveway.cli.commands.data_command import measure_command
 
     measure_command(folder, dataset, vehicle, out, force=force, quiet=quiet)
+
+
+def _behave(
+    folder: _Folder,
+    dataset: _Dataset = None,
+    model: Annotated[
+        str, typer.Option(help="Pedestrian model: a bundled one, as in [crowd] model.")
+    ] = "vci",
+    preset: Annotated[str, typer.Option(help="SIM, TABLE2 or a preset file (TOML).")] = "SIM",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for tables and picture; without it, none.")
+    ] = None,
+    force: _Force = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Compare how simulated and recorded people behave near the recorded vehicles."""
+    from giveway.cli.commands.behave_command import behave_command
+
+    behave_command(folder, dataset, model, preset, out, force=force, quiet=quiet)

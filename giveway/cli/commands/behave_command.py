@@ -1,0 +1,114 @@
+"""The command ``giveway data behave``: simulated people compared with recorded ones."""
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Column, Table
+
+from giveway.cli.screen.printing import escape, numbers_of, print_place
+from giveway.cli.screen.progress_bars import counting
+from giveway.config import RunConfig
+from giveway.config.files.presets import parameters_of, require_steady_preset
+from giveway.config.plug_in_names import BUNDLED_MODELS
+from giveway.errors import ConfigError, retold, suggestion
+from giveway.precompile import compile_kernels_once
+from giveway.recordings import dataset_of, read_recordings
+from giveway.results.folder import check_folder
+from giveway.validation.behaviour import Comparison, compare
+from giveway.validation.behaviour.comparison import HALVES, RECORDED, SEED, SIMULATED
+from giveway.validation.behaviour.output import FILES, write_behaviour
+from pedestrian_model import LONGEST_STEP, PedestrianModelError
+
+
+def behave_command(
+    folder: Path,
+    dataset: str | None,
+    model: str,
+    preset: str,
+    out: Path | None,
+    *,
+    force: bool,
+    quiet: bool,
+) -> None:
+    """Read recordings, simulate their people, print the comparison, and write it.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=quiet)
+    described = dataset_of(dataset)
+    if model not in BUNDLED_MODELS:
+        raise ConfigError(f"--model {model}: unknown model; {suggestion(model, BUNDLED_MODELS)}")
+    parameters_of(preset)
+    require_steady_preset(preset, LONGEST_STEP, "--preset")
+    if out is not None:
+        check_folder(out, force=force, ours=FILES, writer="giveway data behave")
+    config = RunConfig.model_validate({"crowd": {"model": model, "preset": preset}})
+    recordings = read_recordings(folder, described)
+    compile_kernels_once(console)
+    with counting(console, "Simulating") as count:
+        names: list[str] = []
+
+        def advance(name: str) -> None:
+            names.append(name)
+            count(len(names), len(recordings), escape(name))
+
+        with retold(PedestrianModelError, ConfigError):
+            found = compare(recordings, config, advance)
+    title = f"{described.name}, {model}" + (f", {preset}" if model == "vci" else "")
+    console.print(_distributions(found, title))
+    console.print(_counts(found))
+    if described.citation:
+        console.print(f"Please cite: {escape(described.citation)}", highlight=False)
+    if out is not None:
+        with console.status("Drawing ..."):
+            write_behaviour(found, title, out)
+        print_place(console, "Tables and picture", out)
+
+
+def _distributions(found: Comparison, title: str) -> Table:
+    columns = numbers_of(RECORDED, SIMULATED, "distance", "floor", "ratio")
+    table = Table(
+        Column(no_wrap=True),
+        *columns[1:],
+        title=escape(f"{title}: {found.near} people near a vehicle, {_clips(found)}"),
+        caption=(
+            "medians; speed, acceleration: within 3 m of a moving vehicle; distance: "
+            "Wasserstein-1; floor: its mean between two halves of the "
+            f"{found.near} recorded people, {HALVES} draws, seed {SEED}"
+        ),
+    )
+    for each in found.distributions:
+        table.add_row(
+            escape(f"{each.measure.title} [{each.measure.unit}]"),
+            *(_number(median, 2) for median in each.medians),
+            *(_number(value, 3) for value in (each.distance, each.floor)),
+            _number(each.ratio, 2),
+        )
+    table.add_section()
+    table.add_row("mean of the ratios", "", "", "", "", _number(found.mean_ratio, 2))
+    return table
+
+
+def _clips(found: Comparison) -> str:
+    return "1 clip" if found.recordings == 1 else f"{found.recordings} clips"
+
+
+def _counts(found: Comparison) -> Table:
+    table = Table(*numbers_of(RECORDED, SIMULATED), title="Near recorded vehicles")
+    recorded, simulated = found.counts[RECORDED], found.counts[SIMULATED]
+    both = (recorded, simulated)
+    table.add_row(f"contacts, of {found.people} people", *(str(each.contacts) for each in both))
+    table.add_row(
+        f"close passes, of {recorded.pairs} people within 4 m",
+        *(f"{each.close} ({each.close_share:.1%})" for each in both),
+    )
+    table.add_row(
+        escape("95 % of accelerations are below [m/s^2]"),
+        *(_number(each.acceleration, 2) for each in both),
+    )
+    return table
+
+
+def _number(value: float, decimals: int) -> str:
+    return f"{value:.{decimals}f}" if value == value else "-"  # nan is not there

@@ -1,0 +1,66 @@
+"""The comparison of distributions: distances, noise floors and their ratios."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from giveway.config import RunConfig
+from giveway.errors import DatasetError
+from giveway.validation.behaviour import compare
+from giveway.validation.behaviour.comparison import LEVELS, distributions
+from giveway.validation.behaviour.measures import MEASURES, Behaviour, Samples
+
+PEOPLE = 40
+
+
+def behaviour(values: np.ndarray) -> Behaviour:
+    """Return a behaviour in which each person has one sample of every measure."""
+    person = np.arange(PEOPLE)
+    return Behaviour(
+        {each.name: Samples(values, person) for each in MEASURES},
+        np.zeros(PEOPLE, dtype=bool),
+        np.ones(PEOPLE, dtype=np.int64),
+        np.zeros(PEOPLE, dtype=np.int64),
+    )
+
+
+@pytest.fixture
+def recorded() -> Behaviour:
+    return behaviour(np.random.default_rng(1).normal(size=PEOPLE))
+
+
+def test_a_shift_is_the_distance(recorded) -> None:
+    values = recorded.samples["speed"].value
+    for found in distributions(recorded, behaviour(values + 1.5)):
+        assert found.distance == pytest.approx(1.5)
+        assert found.ratio == pytest.approx(1.5 / found.floor)
+
+
+def test_the_recorded_people_are_at_no_distance_from_themselves(recorded) -> None:
+    assert [found.ratio for found in distributions(recorded, recorded)] == [0.0] * 6
+
+
+def test_the_floor_is_what_two_halves_differ_by(recorded) -> None:
+    floor = distributions(recorded, recorded)[0].floor
+    assert 0.1 < floor < 0.6  # of normal values, 20 a half
+    assert distributions(recorded, recorded)[0].floor == floor
+
+
+def test_the_band_of_the_halves_holds_the_recorded_quantiles(recorded) -> None:
+    found = distributions(recorded, recorded)[0]
+    middle = np.quantile(found.recorded, LEVELS)[10:91]
+    assert (found.low[10:91] <= middle).all()
+    assert (middle <= found.high[10:91]).all()
+
+
+def test_a_measure_without_simulated_values_has_no_distance(recorded) -> None:
+    nobody = behaviour(np.zeros(PEOPLE))
+    nobody.samples["speed"] = Samples(np.empty(0), np.empty(0, dtype=np.int64))
+    assert np.isnan(distributions(recorded, nobody)[0].ratio)
+
+
+def test_too_few_people_near_a_vehicle(recording) -> None:
+    far = np.column_stack([np.arange(100) / 10.0, np.full(100, 50.0)])
+    with pytest.raises(DatasetError, match=r"0 people are within 4 m .* expected at least 4"):
+        compare([recording(far)], RunConfig())
