@@ -165,8 +165,8 @@ def summarise(
         met: Anticipation of the drive.
         setting: Settings of the drive. The time at which the goal is reached is interpolated
             between control instants.
-        hasty: Rows of ``per_pedestrian`` of the people who set out from a sidewalk harder than
-            that.
+        hasty: Rows of ``per_pedestrian`` of the people who left a sidewalk with a larger
+            acceleration than the safety layer assumes.
         vehicles: Background vehicles with which the ego had contact.
 
     Raises:
