@@ -11,7 +11,10 @@ from giveway.cli.option_groups import FitSettings, ungrouped
 _Clips = Annotated[Path, typer.Argument(help="A data set's folder, or any part of it with clips.")]
 _Dataset = Annotated[
     str | None,
-    typer.Option(help="Which one it is: citr, dut, or its description (TOML); docs/validation.md."),
+    typer.Option(
+        help="Which one it is: citr, dut, another known one, or its description (TOML); "
+        "docs/recordings.md."
+    ),
 ]
 
 

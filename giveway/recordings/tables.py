@@ -1,6 +1,7 @@
 """The rows of a file of tracks as a table of text or numbers, for each format of files."""
 
 import json
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain
 from math import inf
@@ -11,6 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from pandas.errors import ParserWarning
 
 from giveway.errors import DatasetError
 from giveway.recordings.dataset import TrackTable
@@ -89,9 +91,11 @@ def _raw(file: Path, table: TrackTable) -> pd.DataFrame:
 
 def _reading(file: Path, what: str, read: Callable[[], pd.DataFrame]) -> pd.DataFrame:
     try:
-        return read()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", ParserWarning)  # rows longer than the header
+            return read()
     # errors of pandas, JSON, Unicode and Parquet are ValueErrors
-    except (OSError, ValueError, ElementTree.ParseError, RecursionError) as error:
+    except (OSError, ValueError, ElementTree.ParseError, RecursionError, ParserWarning) as error:
         told = isinstance(error, OSError) and error.strerror
         reason = told or (str(error).splitlines() or [type(error).__name__])[0]
         raise DatasetError(

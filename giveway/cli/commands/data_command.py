@@ -146,7 +146,9 @@ def _drives(found: Measured, dataset: Dataset) -> Table:
         "and more than 3 m/s"
     )
     columns = _named("recording", "vehicle", *headings)
-    table = Table(*columns, title=escape(f"Recorded drives, {dataset.name}"), caption=caption)
+    table = Table(
+        *columns, title=escape(f"Recorded drives, {dataset.name}"), caption=escape(caption)
+    )
     for row in _rows(found.drives):
         table.add_row(
             escape(str(row.recording)),
@@ -166,7 +168,7 @@ def _people(found: Measured) -> Table:
     headings = ("clearance", "at > 2 m/s", "at > 3 m/s", "TTC [s]", "PET [s]")
     columns = _named("recording", "person", *headings)
     caption = "PET: positive if the person was first, negative if the vehicle was"
-    table = Table(*columns, title="People within 4 m", caption=caption)
+    table = Table(*columns, title="People within 4 m", caption=escape(caption))
     for row in _rows(found.people):
         table.add_row(
             escape(str(row.recording)),
@@ -189,7 +191,7 @@ def _summary(found: Measured) -> Table:
     drives = int((found.drives["near"] > 0).sum())
     title = f"Of {len(found.people)} people near {drives} of {len(found.drives)} vehicles"
     caption = "95 % interval: vehicles resampled"
-    table = Table(*numbers_of("people", "share"), title=title, caption=caption)
+    table = Table(*numbers_of("people", "share"), title=title, caption=escape(caption))
     for share in found.shares:
         table.add_row(share.name, str(share.count), _share(share))
     return table

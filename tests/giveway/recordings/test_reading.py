@@ -134,7 +134,7 @@ def test_hermes_is_in_centimetres_without_velocities(tmp_path: Path) -> None:
 
 def test_sumos_fcd_turns_its_angles_and_knows_people_from_vehicles(tmp_path: Path) -> None:
     steps = "".join(
-        f'<timestep time="{0.1 * k:.2f}"><vehicle id="v" x="{k}" y="2" angle="90" speed="10"/>'
+        f'<timestep time="{0.1 * k:.2f}"><vehicle id="v" x="{k}" y="2" angle="90" speed="1e10"/>'
         f'<person id="p" x="5" y="{0.1 * k}" angle="0" speed="1"/></timestep>'
         for k in range(10)
     )
@@ -209,6 +209,7 @@ def test_a_wrong_description_names_its_key(tmp_path: Path, old: str, new: str, s
         ("imptc", "vrus/1/track.json", "{", "cannot be read as JSON"),
         ("imptc", "vrus/1/track.json", "{}", "key 'track_data' is missing"),
         ("sumo_fcd", "a.xml", "<a>", "cannot be read as XML"),
+        ("hermes", "a.txt", "1 2 3 4 5 6\n", "cannot be read as text in columns"),
         ("hermes", "a.txt", "1 2 x 4 5\n", "line 1: x = 'x': expected a finite number"),
         ("sumo_fcd", "a.xml", "<a><b/></a>", "column 'id' is missing"),
     ],

@@ -34,6 +34,7 @@ def test_measure_prints_the_summary_and_writes_all_tables(recorded_crossing, tmp
     assert "Of 4 people near 1 of 1 vehicles" in said
     assert "closer than 0.5 m at more than 2 m/s" in said
     assert "50.0%" in said
+    assert "mean, top [m/s]" in said
     tables = {name: pd.read_csv(out / f"{name}.csv") for name in ("vehicles", "people", "summary")}
     assert tables["vehicles"]["close"].tolist() == [2]
     assert tables["people"]["first"].fillna("").tolist() == ["", "", "", "person"]
