@@ -189,7 +189,7 @@ def fill(
     strongest = min(c.force, previous_force + c.force_rate)
     least = max(0.0, c.decay * speed + c.gain * weakest)
     most = min(c.speed, max(fastest, speed), c.decay * speed + c.gain * strongest)
-    most = max(most, least)  # after hard braking even the strongest force may give a speed below 0
+    most = max(most, least)  # after hard braking even the largest force may give a negative speed
     hardest = c.gain * c.force / dt
     lower[:n] = 0.0
     upper[:n] = min(c.speed, max(fastest, speed))

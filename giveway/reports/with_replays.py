@@ -89,10 +89,10 @@ def _make(
 
 
 def _whole(result: RunResult) -> RunResult:
-    """Return a run if it was not cut off; a report would show it as if it had ended there.
+    """Return the run, unless the user interrupted it: then it would look complete in a report.
 
     Raises:
-        KeyboardInterrupt: the user has cut it off, and wants to end the report.
+        KeyboardInterrupt: the user has interrupted the run, and so the report.
     """
     if result.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""The tables of the configuration about who drives: controllers, safety."""
+"""The tables of the configuration about controllers and the safety layer."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

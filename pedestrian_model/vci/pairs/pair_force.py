@@ -150,7 +150,10 @@ def add_coincident(
     stop: int,
     c: PairConstants,
 ) -> None:
-    """Add the forces of row i and later rows with the same centre, in a direction by indices."""
+    """Add the forces between row i and later rows with the same centre.
+
+    People with one centre have no direction to each other. It is derived from their indices.
+    """
     for j in range(i + 1, stop):
         dx, dy = rows[PX, j] - rows[PX, i], rows[PY, j] - rows[PY, i]
         r_2 = fma(dx, dx, dy * dy)
