@@ -30,7 +30,7 @@ class Clip:
         name: Name of its files, like ``front_interaction_01``.
         dataset: Description of the data set, which its files lack.
         first_frame: Number in the data set of this clip's frame 0.
-        ids: Ids (n,) of the pedestrians.
+        ids: Ids (n,) of the pedestrians; 0 to n - 1 if one of them is no number.
         position: Positions (T, n, 2) [m]; nan where a pedestrian is not seen.
         velocity: Velocities (T, n, 2) [m/s]; nan as for positions.
         poses: Poses (T, m, 4) of the vehicles: x, y [m], heading [rad], speed [m/s]; nan where a
@@ -144,7 +144,8 @@ def _clip(recording: Recording) -> Clip:
         frames = f"frames {recording.first_frame + first} to {recording.first_frame + last}"
         raise DatasetError(f"{recording.file}: {frames}: expected at most {_LONGEST}")
     moving = np.column_stack([vehicles.position, vehicles.heading, vehicles.speed])
-    numbers = [int(name) if name.isdecimal() else i for i, name in enumerate(people.ids)]
+    whole = all(name.isdecimal() for name in people.ids)
+    numbers = [int(name) for name in people.ids] if whole else range(len(people.ids))
     return Clip(
         recording.name,
         recording.dataset.model_copy(update={"frame_rate": recording.frame_rate}),
