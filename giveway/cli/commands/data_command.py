@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
@@ -109,14 +110,12 @@ def _cite(console: Console, dataset: Dataset) -> None:
 
 def _description(found: Described, dataset: Dataset) -> Table:
     where = f": {dataset.site}" if dataset.site else ""
-    headings = ("people", "moving", "parked", "near", "s", "m/s", "95 %", "gap [m]", "defects")
+    headings = ("people", "moving", "parked", "near", "s", "m/s", "95 %", "gap", "defects")
     caption = (
         "moving, parked: vehicles; near: pairs of a person and a moving vehicle within 4 m; m/s, "
-        "95 %: speeds of walking; gap: smallest clearance of a person and a vehicle"
+        "95 %: speeds of walking; gap: smallest clearance [m] of a person and a vehicle"
     )
-    table = Table(
-        *_named("recording", *headings), title=escape(dataset.name + where), caption=caption
-    )
+    table = _narrow(_named("recording", *headings), dataset.name + where, caption)
     for row in _rows(found.table):
         if row.recording == TOTAL:
             table.add_section()
@@ -139,16 +138,15 @@ def _defects(found: Described) -> Table:
 
 
 def _drives(found: Measured, dataset: Dataset) -> Table:
-    headings = ("s", "mean", "top", "stands", "jerk", "brakes", "near", "close", "tight")
+    headings = ("s", "mean", "top", "rest", "jerk", "brake", "near", "close", "tight")
     caption = (
-        "mean, top [m/s]; jerk [m/s3], brakes [m/s2]: RMS and hardest; near: people within 4 m; "
+        "mean, top [m/s]; rest: share of time; jerk [m/s3], brake [m/s2]: RMS and hardest; near: "
+        "people within 4 m; "
         "close: of these, passed at less than 0.5 m and more than 2 m/s; tight: at less than 0.3 m "
         "and more than 3 m/s"
     )
-    columns = _named("recording", "vehicle", *headings)
-    table = Table(
-        *columns, title=escape(f"Recorded drives, {dataset.name}"), caption=escape(caption)
-    )
+    columns = _named("recording", "car", *headings)
+    table = _narrow(columns, f"Recorded drives, {dataset.name}", caption)
     for row in _rows(found.drives):
         table.add_row(
             escape(str(row.recording)),
@@ -168,7 +166,7 @@ def _people(found: Measured) -> Table:
     headings = ("clearance", "at > 2 m/s", "at > 3 m/s", "TTC [s]", "PET [s]")
     columns = _named("recording", "person", *headings)
     caption = "PET: positive if the person was first, negative if the vehicle was"
-    table = Table(*columns, title="People within 4 m", caption=escape(caption))
+    table = _narrow(columns, "People within 4 m", caption)
     for row in _rows(found.people):
         table.add_row(
             escape(str(row.recording)),
@@ -211,8 +209,20 @@ def _rows(table: pd.DataFrame) -> list[Any]:
 
 
 def _named(first: str, *others: str) -> list[Column]:
-    """Return the columns of a table: the recording, whose name is never cut, and numbers."""
-    return [Column(first, overflow="fold"), *numbers_of(*others)[1:]]
+    """Return the columns of a table: the recording, whose name stays on one line, and numbers."""
+    return [Column(first, no_wrap=True), *numbers_of(*others)[1:]]
+
+
+def _narrow(columns: Sequence[Column], title: str, caption: str) -> Table:
+    """Return a table whose columns are one blank apart, so that ten fit into 80 letters."""
+    return Table(
+        *columns,
+        title=escape(title),
+        caption=escape(caption),
+        box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+        pad_edge=False,
+    )
 
 
 def _number(value: float, decimals: int) -> str:
