@@ -39,6 +39,7 @@ MARGIN = 2.0  # Margin [m] around all trajectories
 SURROUNDINGS = 8.0  # Distance [m] shown around the ego's positions in the snapshots
 # Longest side [m] of a shared view; on longer drives the view follows the ego
 LARGEST_PART = 70.0
+SIDE_BY_SIDE = 0.6  # Height over width above which the overview stands beside the snapshots
 VIEW = (50.0, 32.0)  # Width and height [m] of a view that follows the ego
 TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity tick
 SEGMENTS = 150  # Largest number of segments per trajectory
@@ -108,7 +109,8 @@ def top_view_figure(
     if max(part.size) > LARGEST_PART:
         parts = [Box.centred(corners[k].mean(axis=0), VIEW) for k in steps]
 
-    figure, overview, panels = _arrange(whole, parts)
+    side_by_side = whole.aspect > SIDE_BY_SIDE
+    figure, overview, panels = _arrange(whole, parts, side_by_side=side_by_side)
     colours = _colours(ego.time)
     road = [line for line in backdrop.road if whole.touches(line)]
     draw_road(overview, road)
@@ -136,6 +138,8 @@ def top_view_figure(
         told = ", closest approach" if k == closest else ""
         axes.set_title(f"t = {ego.time[k]:.2f} s{told}", fontsize=9)
     figure.suptitle(title)
+    if side_by_side:
+        figure.draw_without_rendering()  # the layout's first pass would cut the label of x
     return figure
 
 
@@ -218,11 +222,12 @@ def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
     return np.array([np.abs(ego.time - time).argmin() for time in times], dtype=np.int64)
 
 
-def _arrange(whole: Box, parts: Sequence[Box]) -> tuple[Figure, Axes, list[Axes]]:
+def _arrange(
+    whole: Box, parts: Sequence[Box], *, side_by_side: bool
+) -> tuple[Figure, Axes, list[Axes]]:
     """Arrange the views: a tall overview beside the snapshots, a flat one above them."""
     part, count = parts[0], len(parts)
     together = all(each == part for each in parts)
-    side_by_side = whole.aspect > 0.6
     columns = min(count, 2 if side_by_side or together else 3)
     rows = -(-count // columns)
     snapshots_width = 6.6 if side_by_side else 9.5  # width [in]

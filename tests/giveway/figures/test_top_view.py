@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.colors import to_rgba
+from matplotlib.image import imread
 from matplotlib.patches import Polygon
 
 from giveway.figures import crowd_view_figure, top_view_figure
 from giveway.figures.road import LIGHTS
+from giveway.figures.style import save_figure
 from giveway.figures.top_view import VIEW, Backdrop, rectangle
 from giveway.figures.view import SLENDEREST
 from giveway.geometry.bodies import VehicleShape
@@ -269,3 +271,15 @@ def test_without_an_ego_the_walks_are_drawn(run):
     assert lines.get_array().max() <= ego.time[-1]
     with pytest.raises(ValueError, match="nobody was recorded"):
         crowd_view_figure(ego.time, nobody())
+
+
+def test_no_label_is_cut_beside_the_snapshots(run, tmp_path):
+    ego, _ = run(0, 1, "mpc", 28.0)
+    step = np.repeat(np.arange(ego.time.size), 5)
+    x = np.tile(12.0 + 8.0 * np.arange(5), ego.time.size)
+    y = 37.0 * ego.time[step] / ego.time[-1] - 18.5
+    still = np.zeros(x.size)
+    who = np.tile(np.arange(5), ego.time.size)
+    crowd = CrowdTrack(step, who, x, y, still, still + 3.0, ids=tuple("abcde"))
+    save_figure(top_view_figure(ego, crowd, CAR, R, title="Run"), tmp_path / "run.png")
+    assert imread(tmp_path / "run.png")[-2:, :, :3].min() > 0.99
