@@ -44,7 +44,10 @@ def behave_command(
     if out is not None:
         check_folder(out, force=force, ours=FILES, writer="giveway data behave")
     config = RunConfig.model_validate({"crowd": {"model": model, "preset": preset}})
-    recordings = read_recordings(folder, described)
+    with counting(console, "Reading") as reading:
+        recordings = read_recordings(
+            folder, described, lambda done, of, name: reading(done, of, escape(name))
+        )
     compile_kernels_once(console)
     with counting(console, "Simulating") as count:
         names: list[str] = []
@@ -100,7 +103,7 @@ def _counts(found: Comparison) -> Table:
     both = (recorded, simulated)
     table.add_row(f"contacts, of {found.people} people", *(str(each.contacts) for each in both))
     table.add_row(
-        f"close passes, of {recorded.pairs} people within 4 m",
+        f"close passes, of {recorded.pairs} pairs within 4 m",
         *(f"{each.close} ({each.close_share:.1%})" for each in both),
     )
     table.add_row(
