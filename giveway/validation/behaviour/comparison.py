@@ -151,8 +151,8 @@ def compare(
     inside = np.flatnonzero(found[RECORDED].pairs)
     if len(inside) < _FEWEST:
         raise DatasetError(
-            f"{len(recordings)} recordings: {len(inside)} people are within 4 m of a vehicle "
-            f"faster than 0.5 m/s: expected at least {_FEWEST}; giveway data describe lists "
+            f"recordings: of {len(names)} people {len(inside)} are within 4 m of a vehicle "
+            f"faster than 0.5 m/s; expected at least {_FEWEST}; giveway data describe lists "
             "people and vehicles"
         )
     return Comparison(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -60,7 +62,19 @@ def test_a_measure_without_simulated_values_has_no_distance(recorded) -> None:
     assert np.isnan(distributions(recorded, nobody)[0].ratio)
 
 
+def test_a_recording_without_people_changes_nothing(recording) -> None:
+    time = np.arange(100) / 10.0
+    people = [np.column_stack([0.3 * i * time, np.full(100, 1.6 + i)]) for i in range(4)]
+    full = recording(*people)
+    empty = replace(full, people=full.people.only(np.zeros(4, dtype=bool)))
+    one, two = compare([full], RunConfig()), compare([full, empty], RunConfig())
+    assert two.recordings == 2
+    assert two.near == one.near == 4
+    assert two.summary.equals(one.summary)
+    assert two.counts == one.counts
+
+
 def test_too_few_people_near_a_vehicle(recording) -> None:
     far = np.column_stack([np.arange(100) / 10.0, np.full(100, 50.0)])
-    with pytest.raises(DatasetError, match=r"0 people are within 4 m .* expected at least 4"):
+    with pytest.raises(DatasetError, match=r"of 1 people 0 are within 4 m .*expected at least 4"):
         compare([recording(far)], RunConfig())
