@@ -61,7 +61,7 @@ def encroachment(
     two are max(t_in - t, t - t_out, 0) apart, and the smallest value over all t counts. The ego's
     own poses are searched, so that the result holds on any curved path and in either order. The
     largest of the three terms says who came first.
-    within a control period is found to less than a thousandth of it.
+    The instant within a control period is found to less than a thousandth of it.
 
     Args:
         ego: Track of the ego, T instants.
