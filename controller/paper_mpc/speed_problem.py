@@ -27,10 +27,6 @@ from controller.parameters import MpcParameters
 # time, leaves one feasible point to the next problem, which rounding would make infeasible.
 SLACK = 1e-9
 
-# Violation [m/s] of speed bounds with which a plan is accepted (`MpcParameters.speed_tolerance`).
-# Proofs from these bounds leave as much room: the state that an accepted plan leads to has a plan.
-_ACCEPTED = 1e-6
-
 NOT_A_NUMBER = -1  # result if an input is not finite; only obstacles may be infinitely far
 UNDECIDED = 0  # result if only a solve can decide
 TOO_CLOSE = 1  # result if x_1(k+1), which no force changes, violates c6
@@ -142,9 +138,8 @@ def fill_bounds(
         upper[3 * N - 4 + i] = (obstacle_positions[i] - safe_distance - after_one) / dt
     lower -= SLACK
     upper += SLACK
-    if lower[0] > upper[0] + _ACCEPTED:
+    if lower[0] > upper[0]:
         return SPEED_BOUNDS_CROSS
-    upper[0] = max(lower[0], upper[0])
     return prove_infeasible(speed, previous_force, limits, upper)
 
 
@@ -155,8 +150,8 @@ def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: 
     Speeds grow with forces, and positions with speeds (decay >= 0). The hardest allowed braking at
     every step, but not below v_min, is therefore a lower bound of every feasible plan. The converse
     does not hold: a plan at this bound may have to release the brake faster than allowed. All
-    bounds are widened as those of the solver are, and the speed bounds by what an accepted plan may
-    violate. Otherwise the proof would refuse plans that stop just in time.
+    bounds are widened as those of the solver are. Otherwise the proof would refuse plans that stop
+    just in time.
     """
     decay, per_force = limits[1], limits[2]
     v_min = limits[4] - SLACK
@@ -171,7 +166,7 @@ def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: 
         strongest = min(change_max, strongest + rate_max)
         slowest = max(v_min, decay * slowest + weakest)
         fastest = decay * fastest + strongest
-        if fastest < v_min - _ACCEPTED:
+        if fastest < v_min:
             return CANNOT_HOLD_SPEED
         driven += slowest
         if 1 <= i < N - 1 and driven > upper[3 * N - 3 + i]:
