@@ -56,8 +56,8 @@ def test_a_size_too_small_is_refused_with_unit_and_reason() -> None:
 
 
 def test_a_wrong_sign_is_not_told_the_reason_of_the_maximum() -> None:
-    assert said(people=-3) == "should be greater than or equal to 0 (number of people)"
-    assert "less than or equal to 9: more do not fit (" in said(people=30)
+    assert said(people=-3) == "should be at least 0 (number of people)"
+    assert "at most 9: more do not fit (" in said(people=30)
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,7 @@ WRONG = {
     'flow = ["north"]': "expected tables, each headed [[crowd.flow]]",
     "[[flow]]": "from is missing (Place where people appear",
     f"[[flow]]\n{PLACES}": "rate is missing",
-    f"[[flow]]\n{PLACES}rate = 0": "should be greater than 0 [persons/h]: a flow has people",
+    f"[[flow]]\n{PLACES}rate = 0": "should be greater than 0 [persons/h]",
     f"[[flow]]\n{PLACES}rate = 1e9": "should be at most 50000",
     f"[[flow]]\n{PLACES}rate = nan": "rate = nan: should be a finite number",
     f"[[flow]]\n{PLACES}rate = 'many'": "rate = 'many': should be a number",
