@@ -196,7 +196,7 @@ def test_an_example_that_cannot_be_made_again_is_left_out(study, tmp_path, parse
 def test_a_study_without_runs_has_a_report(study, tmp_path, parsed):
     class Empty:
         path, definition, design = tmp_path, study.definition, study.design
-        manifest, measured = study.manifest, study.measured
+        manifest, measured, metrics = study.manifest, study.measured, study.metrics
         runs, comparison = study.runs.iloc[:0], study.comparison.iloc[:0]
         situations, failures = study.situations.iloc[:0], study.failures.iloc[:0]
         execution = study.execution.iloc[:0]
