@@ -95,9 +95,9 @@ class Batches(NamedTuple):
         wanting: Candidates compared next if the best of the first lacks stopping distance.
     """
 
-    first: list[int]
-    content: list[int]
-    wanting: list[int]
+    first: tuple[int, ...]
+    content: tuple[int, ...]
+    wanting: tuple[int, ...]
 
 
 class SearchResult(NamedTuple):

@@ -58,7 +58,9 @@ class Search:
         # target speeds below the present speed.
         self._slower = sorted({least for a, least in self._kinds if a < 0.0})
         self._others = [
-            [k for k, (a, least) in enumerate(self._kinds) if k and (a >= 0.0 or least in lower)]
+            tuple(
+                k for k, (a, least) in enumerate(self._kinds) if k and (a >= 0.0 or least in lower)
+            )
             for lower in (self._slower[:count] for count in range(len(self._slower) + 1))
         ]
         self._last = Manoeuvre.empty(N)
@@ -120,15 +122,11 @@ class Search:
         self._turn += 1
         drive_on = not planned or self._drives_on or self._turn % 2 == 1
         ends = bool(end < fastest * self._time_step * len(allowed))
-        first = [
-            *([_DRIVE_ON] if drive_on else []),
-            *([self._as_planned] if planned else []),
-            *([self._up_to_end] if ends else []),
-        ]
+        first = (_DRIVE_ON,) * drive_on + (self._as_planned,) * planned + (self._up_to_end,) * ends
         content = others
         if planned:
-            content = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
-        batches = Batches(first, content, others if drive_on else [_DRIVE_ON, *others])
+            content = () if self._turn % 2 else (others[self._turn // 2 % len(others)],)
+        batches = Batches(first, content, others if drive_on else (_DRIVE_ON, *others))
         self._lay_out(speed, before, fastest, end if ends else inf)
         if to_clear > 0.0 or self._charged:
             self._charge(fastest, min(to_clear, float(allowed[-1])))

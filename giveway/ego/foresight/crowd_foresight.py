@@ -289,7 +289,7 @@ class CrowdForesight:
 
         def cost(trials: Trials, rows: list[int], alternative: bool) -> float:
             among, people, yielding = less if alternative else likelier
-            searched = among, trials, Batches(rows, [], [])
+            searched = among, trials, Batches(tuple(rows), (), ())
             best, _, _ = self._run(*searched, False, judged, people, yielding)
             own, others = among.arrays[3][:2, best]
             return float(own + time_step * others + trials.penalty[best]) if best >= 0 else inf

@@ -35,7 +35,7 @@ class Workspace:
         self._sums = np.zeros((4, count))
         self._steps = np.zeros((2, count), dtype=np.int64)  # steps predicted, steps assessed
         self._alike = np.zeros((count, count), dtype=np.int64)  # leading steps that are equal
-        self._rows: dict[tuple[tuple[int, ...], ...], NDArray[np.int64]] = {}  # by batches
+        self._rows: dict[Batches, NDArray[np.int64]] = {}  # by batches
         self._bad = np.zeros(1, dtype=np.int64)
         self.arrays: Arrays = (
             self._state,
@@ -57,10 +57,9 @@ class Workspace:
 
     def rows_of(self, batches: Batches) -> NDArray[np.int64]:
         """Return the candidate rows, one line per batch: (3, k + 1), padded with -1."""
-        key = tuple(map(tuple, batches))
-        rows = self._rows.get(key)
+        rows = self._rows.get(batches)
         if rows is None:
-            rows = self._rows[key] = np.full((3, self.count + 1), -1)
+            rows = self._rows[batches] = np.full((3, self.count + 1), -1)
             for batch, trials in enumerate(batches):
                 rows[batch, : len(trials)] = trials
         return rows
