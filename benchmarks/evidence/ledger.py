@@ -1,4 +1,4 @@
-"""What docs/evidence.json knows of each page: of which code it is, and how long it took.
+"""The ledger of all pages in docs/evidence.json: the code of each, and how long it took.
 
 A change that leaves the drives as they are does not make a table wrong. So each page keeps a digest
 of ten fixed runs as well: where these still have the same bytes, ``--confirm`` enters the present

@@ -110,7 +110,7 @@ def _foreign(bundled: Path, folder: Path) -> Path:
 
 
 def in_a_process(name: str) -> dict[str, str]:
-    """What :func:`fingerprint` returns, from a process of its own; "failed" if it ended badly."""
+    """Return :func:`fingerprint` of a run in a process of its own; "failed" if it ended badly."""
     done = subprocess.run(
         [sys.executable, __file__, "--one", name], capture_output=True, text=True, check=False
     )

@@ -10,7 +10,7 @@ from fmus.isolation.portable_host import PortableHost
 from fmus.isolation.worker import Order
 
 ProcessHost = LinuxHost | PortableHost
-"""What starts and ends the processes of one FMU."""
+"""Starts and ends the processes of one FMU."""
 
 
 def make_process_host(order: Order, folder: Path) -> ProcessHost:
