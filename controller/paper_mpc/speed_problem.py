@@ -42,7 +42,8 @@ class SpeedProblem:
         rows: Matrix (4N - 4, N) of the constraints, constant.
         target: Target V_r (N,) [m/s], which the caller may change between two solves.
         lower, upper: Bounds (4N - 4,), filled by :meth:`update`.
-        limits: Constants (8,): dt, decay, dt/M, d_safe, v_min, v_max, u_max, du_max.
+        limits: Constants (9,): dt, decay, dt/M, d_safe, v_min, v_max, u_max, du_max, and the
+            violation [m/s] of speed bounds with which a plan is accepted.
         increments: True: OSQP's unknowns are v(k+1), v(k+2) - v(k+1), ...
     """
 
@@ -72,6 +73,7 @@ class SpeedProblem:
                 parameters.speed_max,
                 parameters.force_limit,
                 parameters.force_rate_limit,
+                parameters.speed_tolerance,
             ]
         )
 
@@ -138,8 +140,9 @@ def fill_bounds(
         upper[3 * N - 4 + i] = (obstacle_positions[i] - safe_distance - after_one) / dt
     lower -= SLACK
     upper += SLACK
-    if lower[0] > upper[0]:
+    if lower[0] > upper[0] + limits[8]:
         return SPEED_BOUNDS_CROSS
+    upper[0] = max(lower[0], upper[0])
     return prove_infeasible(speed, previous_force, limits, upper)
 
 
@@ -151,10 +154,11 @@ def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: 
     every step, but not below v_min, is therefore a lower bound of every feasible plan. The converse
     does not hold: a plan at this bound may have to release the brake faster than allowed. All
     bounds are widened as those of the solver are. Otherwise the proof would refuse plans that stop
-    just in time.
+    just in time. v_min leaves room for the violation with which the last plan was accepted.
+    Otherwise the proof would refuse the state to which that plan has led.
     """
     decay, per_force = limits[1], limits[2]
-    v_min = limits[4] - SLACK
+    v_min, accepted = limits[4] - SLACK, limits[8]
     change_max = per_force * limits[6] + SLACK  # change of speed [m/s] by u_max in one step
     rate_max = per_force * limits[7] + SLACK
     N = (len(upper) + 4) // 4
@@ -166,7 +170,7 @@ def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: 
         strongest = min(change_max, strongest + rate_max)
         slowest = max(v_min, decay * slowest + weakest)
         fastest = decay * fastest + strongest
-        if fastest < v_min:
+        if fastest < v_min - accepted:
             return CANNOT_HOLD_SPEED
         driven += slowest
         if 1 <= i < N - 1 and driven > upper[3 * N - 3 + i]:

@@ -3,9 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* By how much an accepted plan may miss a constraint. */
+/* By how much an accepted plan may miss a constraint; SPEED_TOLERANCE for speeds. */
 #define POSITION_TOLERANCE 1e-6 /* [m] */
-#define SPEED_TOLERANCE 1e-6    /* [m/s] */
 #define FORCE_TOLERANCE 1e-2    /* [N] */
 
 /* ---- memory: one block ---- */

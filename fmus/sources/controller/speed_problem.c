@@ -60,7 +60,7 @@ static Infeasibility prove_infeasible(const SpeedProblem *s, const PlanStart *st
         strongest = smaller(change_max, strongest + rate_max);
         slowest = larger(v_min, s->decay * slowest + weakest);
         fastest = s->decay * fastest + strongest;
-        if (fastest < v_min) return CANNOT_HOLD_SPEED;
+        if (fastest < v_min - SPEED_TOLERANCE) return CANNOT_HOLD_SPEED;
         driven += slowest;
         if (1 <= i && i < N - 1 && driven > allowed[i]) return CANNOT_STOP;
     }
@@ -103,6 +103,7 @@ Infeasibility speed_problem_update(SpeedProblem *s, const PlanStart *start) {
         lower[i] -= SLACK;
         upper[i] += SLACK;
     }
-    if (lower[0] > upper[0]) return SPEED_BOUNDS_CROSS;
+    if (lower[0] > upper[0] + SPEED_TOLERANCE) return SPEED_BOUNDS_CROSS;
+    upper[0] = larger(lower[0], upper[0]);
     return prove_infeasible(s, start);
 }

@@ -29,6 +29,10 @@ typedef enum {
  * leaves the next problem a single point, which rounding would make empty. */
 #define SLACK 1e-9
 
+/* Violation [m/s] of the speed bounds with which a plan is accepted. The proofs from these bounds leave as much
+ * room: the state that an accepted plan leads to has a plan. */
+#define SPEED_TOLERANCE 1e-6
+
 /* What is planned from, at t_k. */
 typedef struct {
     double position;        /* [m]   x_1(k) of the point that keeps the distance */

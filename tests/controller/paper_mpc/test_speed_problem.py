@@ -8,7 +8,13 @@ from paper_qp import prediction_matrices, quadratic_program
 
 from controller import LongitudinalModel, MpcParameters
 from controller.paper_mpc.mpc import check_plan
-from controller.paper_mpc.speed_problem import SLACK, UNDECIDED, SpeedProblem
+from controller.paper_mpc.speed_problem import (
+    CANNOT_HOLD_SPEED,
+    SLACK,
+    SPEED_BOUNDS_CROSS,
+    UNDECIDED,
+    SpeedProblem,
+)
 
 
 @pytest.mark.parametrize("horizon", [2, 3, 5, 15])
@@ -108,3 +114,21 @@ def test_a_plan_that_is_no_number_is_never_accepted(value):
     limits = SpeedProblem(LongitudinalModel(), MpcParameters(horizon=2)).limits
     x_p, V = np.full(2, np.inf), np.array([4.0, value])
     assert check_plan((0.0, 4.0, 400.0), x_p, V, np.empty(2), limits, np.ones(3)) == np.inf
+
+
+@pytest.mark.parametrize(
+    ("previous", "proof"), [(-1200.0, SPEED_BOUNDS_CROSS), (-5500.0, CANNOT_HOLD_SPEED)]
+)
+def test_the_violation_of_an_accepted_plan_is_no_proof(previous, proof):
+    """The brake is released at full rate, and the lowest speed is close to v_min."""
+    model, parameters = LongitudinalModel(), MpcParameters()
+    problem = SpeedProblem(model, parameters)
+
+    def code(lowest_speed: float) -> int:
+        speed = lowest_speed
+        for force in np.arange(previous, 0.0, parameters.force_rate_limit)[:0:-1]:
+            speed = (speed - model.speed_per_force * force) / model.decay
+        return problem.update(0.0, speed, previous, np.full(15, np.inf))
+
+    assert code(-0.5 * parameters.speed_tolerance) == UNDECIDED
+    assert code(-2.0 * parameters.speed_tolerance) == proof
