@@ -13,7 +13,7 @@ from giveway.ego.vehicle import model_margin
 from giveway.journal.recorder import Recorder
 from giveway.measures import unreached
 from giveway.metrics import delays
-from giveway.metrics.plugged_in import measured
+from giveway.metrics.plugged_in import declared, measured
 from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.results import law, mismatch, vehicle_contacts
 from giveway.results.effect import Effect, who_gave_way
@@ -145,7 +145,7 @@ def judged(result: RunResult, heartbeat: Heartbeat) -> RunResult:
         result: Result of the run.
         heartbeat: Heartbeat that shows this phase, in case a metric ends the process.
     """
-    if result.config.metrics.plugged_in:
+    if declared(result.config):
         heartbeat.beat(Phase.MEASURING)
         egos = (replace(ego, measured=measured(ego.config, ego)) for ego in result.egos)
         result = replace(result, egos=tuple(egos))

@@ -18,10 +18,12 @@ BundledModel = Literal[
     "jupedsim:CollisionFreeSpeedModel",
     "jupedsim:SocialForceModel",
 ]
+BundledCrowdModel = Literal[BundledModel, "recorded"]
 BundledSensor = Literal["all"]
 _JUPEDSIM = "jupedsim:"
 BUNDLED: frozenset[str] = frozenset(get_args(BundledController))
 BUNDLED_MODELS: frozenset[str] = frozenset(get_args(BundledModel))
+BUNDLED_CROWD_MODELS: frozenset[str] = frozenset(get_args(BundledCrowdModel))
 BUNDLED_SENSORS: frozenset[str] = frozenset(get_args(BundledSensor))
 
 
@@ -34,6 +36,10 @@ def _controller(value: Any) -> Any:
 
 def _model(value: Any) -> Any:
     return _known(value, get_args(BundledModel), MODEL)
+
+
+def _crowd_model(value: Any) -> Any:
+    return _known(value, get_args(BundledCrowdModel), MODEL)
 
 
 def _sensor(value: Any) -> Any:
@@ -59,4 +65,5 @@ _Other = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"^[\w.]+:[
 _Fmu = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"\.[Ff][Mm][Uu]$"})]
 ControllerName = Annotated[BundledController | _Other | _Fmu, BeforeValidator(_controller)]
 ModelName = Annotated[BundledModel | _Other, BeforeValidator(_model)]
+CrowdModelName = Annotated[BundledCrowdModel | _Other, BeforeValidator(_crowd_model)]
 SensorName = Annotated[BundledSensor | _Other, BeforeValidator(_sensor)]

@@ -37,6 +37,7 @@ from giveway.config.tables.crowd import VCI, CrowdConfig, VciOptions
 from giveway.config.tables.measures import MeasureConfig, read_measures
 from giveway.config.tables.metrics import MetricsConfig
 from giveway.config.tables.perception import PerceptionConfig
+from giveway.config.tables.recorded import RECORDED, RecordedOptions
 from giveway.config.tables.regulation import RegulationConfig
 from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.plug_ins.finding import is_fmu, shown
@@ -166,8 +167,10 @@ class RunConfig(Section):
     def _check_egos(self) -> RunConfig:
         for ego in self.each_ego():
             ego.require_sound()
-        self.vci_options  # noqa: B018 - they are read, and refused if they cannot be used
-        if self.model_options and not self.crowd.plugged_in and self.crowd.model != VCI:
+        # they are read, and refused if they cannot be used
+        self.vci_options, self.recorded_options  # noqa: B018
+        has_options = self.crowd.plugged_in or self.crowd.model in {VCI, RECORDED}
+        if self.model_options and not has_options:
             key = next(iter(self.model_options))
             raise ValueError(
                 f"[model_options] {key}: '{self.crowd.model}' has no options there; the "
@@ -237,8 +240,21 @@ class RunConfig(Section):
         Raises:
             ConfigError: One is unknown, or its value cannot be used.
         """
-        own = self.model_options if self.crowd.model == VCI else {}
-        read: VciOptions = read_options(VCI, VciOptions, own, MODEL)
+        return self._options_of_model(VCI, VciOptions)
+
+    @property
+    def recorded_options(self) -> RecordedOptions:
+        """The options of the model ``recorded``; its defaults if another model moves the people.
+
+        Raises:
+            ConfigError: One is unknown, or its value cannot be used.
+        """
+        return self._options_of_model(RECORDED, RecordedOptions)
+
+    def _options_of_model(self, name: str, kind: type[Own]) -> Own:
+        read: Own = read_options(
+            name, kind, self.model_options if self.crowd.model == name else {}, MODEL
+        )
         return read
 
     @property

@@ -79,7 +79,7 @@ class Parts:
         identified = [model_remark(ego.config, self.time_step) for ego in self.egos]
         remarks += [text for text in identified if text]
         remarks += [f"ego '{ego.id}': {text}" for ego in self.egos for text in ego.warnings]
-        remarks += [] if self.arrivals is None else self.arrivals.flows.remarks
+        remarks += [] if self.arrivals is None else self.arrivals.sources.remarks
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
         if unconnected:
             remarks.append(

@@ -188,7 +188,7 @@ class Loop:
         sumo, waiting = self._parts.sumo, self._parts.departures.waiting
         if sumo.end < np.inf or sumo.expects_more or not all(ego.taken_over for ego in waiting):
             return False
-        return self._parts.arrivals is None or not self._parts.arrivals.flows.keeps_coming
+        return self._parts.arrivals is None or not self._parts.arrivals.sources.keeps_coming
 
     def _progress(self, acting: str) -> Progress:
         elapsed, pedestrians = self._k * self._time_step, len(self._roster)

@@ -40,7 +40,7 @@ class Instants:
         self._far_steps = max(1, round(record.far_period / time_step))
         self._far_background = -self._far_steps
         self.looks = looks_ahead(record.predictions, time_step)
-        self._named = 0
+        self._named = self._changes = 0
 
     def crowd(self, k: int, roster: Roster, places: Array, *, everybody: bool) -> None:
         """Record the pedestrians near an ego, and from time to time all of them.
@@ -54,6 +54,9 @@ class Instants:
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :], roster.traits)
             self._named = len(roster.ids)
+        for name, reacts in roster.written.changes[self._changes :]:
+            self._recorder.reacting(roster.index(name), reacts)
+        self._changes = len(roster.written.changes)
         crowd = roster.crowd
         within = np.inf if everybody or k % self._far_steps == 0 else self._near
         self._recorder.crowd(roster.person_ids, crowd.position, crowd.velocity, places, within)

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.presets import parameters_of
+from giveway.config.tables.recorded import RECORDED
+from giveway.crowd.motion.as_recorded import AsRecorded
 from giveway.crowd.motion.attention import Inattentive
 from giveway.crowd.motion.cohesion import BY_FORCES, Cohesive
 from giveway.crowd.roster import Roster
@@ -46,12 +48,30 @@ def model_of(
         CrowdError: another package's model cannot be made.
     """
     crowd = config.crowd
+    if crowd.model == RECORDED:
+        return _as_recorded(config, time_step, roster, threads)
     model = _plain_model_of(config, time_step, roster, threads)
     if crowd.has_distracted and not crowd.plugged_in:
         model = Inattentive(model, lambda: roster.distracted)
     if crowd.has_groups and crowd.model in BY_FORCES:
         model = Cohesive(model, lambda: roster.groups)
     return model
+
+
+def _as_recorded(
+    config: RunConfig, time_step: float, roster: Roster, threads: int
+) -> PedestrianModel:
+    """Return the model that moves people as recorded, and hands them over to another one."""
+    options = config.recorded_options
+    crowd = config.crowd.model_copy(update={"model": options.then})
+    then = config.model_copy(update={"crowd": crowd, "model_options": {}})
+    return AsRecorded(
+        model_of(then, time_step, roster, threads=threads),
+        roster.written,
+        lambda: roster.names,
+        time=options.time,
+        distance=options.distance,
+    )
 
 
 def _plain_model_of(

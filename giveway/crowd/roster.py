@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from giveway.config import RunConfig
 from giveway.config.tables.people import DISTRACTED
+from giveway.crowd.motion.as_recorded import WrittenWalks
 from giveway.crowd.motion.disturbance import disturbance_of
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
 
@@ -37,6 +38,7 @@ class Roster:
         newcomers: Indices of the people who joined since the list was last emptied.
         added: Ids of the people that giveway added; the others are the scenario's own.
         traits: Traits of the people who have any, by their ids.
+        written: Walks of the people who move as they were recorded.
     """
 
     def __init__(
@@ -51,6 +53,8 @@ class Roster:
         self.names = list(ids)
         self.added = set(ids)
         self.traits = dict(traits or {})
+        self.written = WrittenWalks()
+        self._stays: dict[str, int] = {}
         self.newcomers = list(range(len(self.ids)))
         self._index = {name: i for i, name in enumerate(self.ids)}
         self._keys: list[int] = []
@@ -60,6 +64,10 @@ class Roster:
 
     def __len__(self) -> int:
         return len(self.person_ids)
+
+    def index(self, name: str) -> int:
+        """Return the index into ``ids`` of a person."""
+        return self._index[name]
 
     @property
     def ledger(self) -> dict[str, int]:
@@ -126,6 +134,32 @@ class Roster:
         self.person_ids = self.person_ids[~gone]
         return names
 
+    def stay(self, name: str, until: int) -> None:
+        """Keep a person, though at the destination, until the control step ``until``."""
+        self._stays[name] = until
+
+    @property
+    def holds(self) -> bool:
+        """True if somebody leaves for another reason than to be at the destination."""
+        return bool(self._stays or len(self.written))
+
+    def leaving(self, there: NDArray[np.bool_], step: int) -> NDArray[np.bool_]:
+        """Return marks (n,) of the people who leave the crowd at a control step.
+
+        Args:
+            there: Marks (n,) of the people at their destination.
+            step: Index of the control step.
+        """
+        leaving = there.copy()
+        for row, name in enumerate(self.names):
+            if name in self.written:
+                leaving[row] = self.written.has_ended(name)
+            elif name in self._stays:
+                leaving[row] &= step >= self._stays[name]
+        for row in np.flatnonzero(leaving).tolist():
+            self.written.forget(self.names[row])
+        return leaving
+
     def count(self, event: str, number: int = 1) -> None:
         """Count an event of pedestrians who left the crowd."""
         self._counts[event] += number
@@ -185,9 +219,13 @@ class Walking:
             self._disturbance.advance(
                 crowd, vehicles, surroundings, roster.person_ids, len(roster.ids)
             )
-        if not any_arrived(roster.crowd, ARRIVAL_RADIUS):
+        if not (roster.holds or any_arrived(roster.crowd, ARRIVAL_RADIUS)):
             return []
         there = arrived(roster.crowd, ARRIVAL_RADIUS)
+        if roster.holds:
+            there = roster.leaving(there, step + 1)
+            if not there.any():
+                return []
         if self._log is not None:
             self._log.arrive(step + 1, roster.person_ids[there])
         return roster.release(there)

@@ -37,6 +37,7 @@ ROWS: dict[str, tuple[str, ...]] = {
     "signals": _names(SignalTrack),
     "people": _names(PeopleTrack),
     "hasty": ("ego", "pedestrian"),
+    "reacting": ("step", "pedestrian", "reacts"),
     "outputs": ("step", "output", "value"),
 }
 """Columns of each table of rows; a text is given by its index in a table of names."""

@@ -13,6 +13,7 @@ from giveway.journal.layout import EGO_COUNTS, EGO_NUMBERS, EGO_TEXTS, ROWS
 from giveway.run_data.outputs import Output
 from giveway.run_data.rows import LEDGER
 from giveway.run_data.tracks import (
+    NEVER,
     BackgroundTrack,
     CrowdTrack,
     EgoTrack,
@@ -134,7 +135,19 @@ class RecordedRows:
             ids=self._names["pedestrians"],
             kinds=tuple(kind for kind, _ in traits),
             groups=tuple(group for _, group in traits),
+            reacts_from=self._reacts_from(),
         )
+
+    def _reacts_from(self) -> NDArray[np.int64] | None:
+        """Return the instant (n,) from which each pedestrian reacts; None if all always do."""
+        rows = self._rows["reacting"]
+        if not len(rows):
+            return None
+        first = np.zeros(len(self._names["pedestrians"]), dtype=np.int64)
+        first[_indices(rows["pedestrian"])] = NEVER
+        reacts = rows[rows["reacts"] > 0.0]
+        first[_indices(reacts["pedestrian"])] = _indices(reacts["step"])
+        return first
 
     def background_track(self) -> BackgroundTrack:
         """Return the background vehicles' rows as arrays, the same for the run and each ego."""

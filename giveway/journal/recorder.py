@@ -122,6 +122,10 @@ class Recorder:
         block = self._rows["hasty"].block(len(pedestrians))
         block[:, 0], block[:, 1] = self._names["egos"].index(ego_id), pedestrians
 
+    def reacting(self, pedestrian: int, reacts: bool) -> None:
+        """Note that a pedestrian begins to react to vehicles, or walks in without doing so."""
+        self._rows["reacting"].add(self._steps - 1, pedestrian, reacts)
+
     def crowd(
         self, person_ids: Indices, position: Array, velocity: Array, egos: Array, within: float
     ) -> None:

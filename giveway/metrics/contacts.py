@@ -25,13 +25,15 @@ from giveway.metrics.groups import PedestrianGroups
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 NO_CONTACT = ""
+RECORDED = "recorded"
+"""Kind of the contact of a person who walked as recorded, and did not react to the ego."""
 SIDE = "side"
 FRONTAL = "frontal"
 MOVING = 0.01
 """Speed [m/s] above which the ego moves; no controller creeps at a centimetre per second."""
 
-_NAMES = np.array([NO_CONTACT, SIDE, FRONTAL])
-_SIDE, _FRONTAL = 1, 2
+_NAMES = np.array([NO_CONTACT, SIDE, FRONTAL, RECORDED])
+_SIDE, _FRONTAL, _RECORDED = 1, 2, 3
 
 
 def contacts(
@@ -49,6 +51,9 @@ def contacts(
     are ``side``. The first instant is found between control instants, with straight motion between
     them.
 
+    A person who touches the ego while walking as recorded has a contact of the kind ``recorded``,
+    whatever follows. It says nothing about the ego alone, since the person could not give way.
+
     Args:
         ego: Track of the ego, T instants.
         crowd: Track of the crowd, R records of n pedestrians in time order.
@@ -57,8 +62,8 @@ def contacts(
         clearance: Clearance (R,) [m] of :func:`giveway.metrics.proximity`; below zero is a contact.
 
     Returns:
-        Kind (n,): ``frontal`` after any frontal contact, otherwise ``side``, or empty without a
-            contact.
+        Kind (n,): ``recorded``, or ``frontal`` after any frontal contact, otherwise ``side``, or
+            empty without a contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -75,6 +80,9 @@ def contacts(
         contact_body(shape, body_radius),
         kinds,
     )
+    if crowd.reacts_from is not None:
+        unaware = crowd.step < crowd.reacts_from[crowd.pedestrian]
+        kinds[crowd.pedestrian[unaware & (clearance < 0.0)]] = _RECORDED
     return np.asarray(_NAMES[kinds], dtype=np.str_)
 
 

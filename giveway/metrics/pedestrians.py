@@ -44,7 +44,12 @@ class PedestrianRow:
         float, Quantity("s", "for how long its circle overlapped the ego's rectangle")
     ]
     contact: Annotated[
-        str, Quantity(None, "frontal: the ego moved into it; side: any other overlap; empty: none")
+        str,
+        Quantity(
+            None,
+            "frontal: the ego moved into it; side: any other overlap; recorded: any overlap while "
+            "it walked as recorded; empty: none",
+        ),
     ]
     minimum_ttc: Annotated[
         float, Quantity("s", "smallest time to collision; empty: never on a collision course")

@@ -9,10 +9,12 @@ from typing import Any, Protocol
 import numpy as np
 
 from giveway.config import RunConfig
+from giveway.config.tables.recorded import RECORDED
 from giveway.errors import MetricError
 from giveway.metrics.delays import DELAY_SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.metrics.pedestrians import WALK_SUMMARY_FIELDS
+from giveway.metrics.recorded_people import RecordedPeopleMetric
 from giveway.metrics.summary import SUMMARY_FIELDS
 from giveway.plug_ins.faults import blamed, described, shown
 from giveway.plug_ins.finding import load_class
@@ -144,6 +146,8 @@ def measured(config: RunConfig, drive: Any) -> Measured:
 def declared(config: RunConfig) -> list[DeclaredMetric]:
     """Return the metrics of a run, each with its columns, in the order of the configuration.
 
+    The first of them is giveway's own if people walk as recorded.
+
     Args:
         config: Configuration of the run.
 
@@ -154,6 +158,10 @@ def declared(config: RunConfig) -> list[DeclaredMetric]:
     """
     found: list[DeclaredMetric] = []
     owners = dict(_TAKEN)
+    if config.crowd.model == RECORDED:
+        ours = columns_of(RecordedPeopleMetric.Columns)
+        owners |= {column.name: "giveway" for column in ours}
+        found.append(DeclaredMetric(RECORDED, RecordedPeopleMetric, None, ours))
     for name, settings in config.metrics.plugged_in.items():
         kind, options = load_class(name, METRIC, settings)
         if not callable(getattr(kind, METRIC.method, None)):

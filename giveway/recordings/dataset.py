@@ -152,8 +152,12 @@ DUT = bundled("dut")
 """Crowded campus, with cars of about 4.5 m by 1.8 m (Yang et al. 2019, arXiv 1902.00487)."""
 
 
-def dataset_of(wanted: str | None) -> Dataset:
+def dataset_of(wanted: str | None, origin: str = "--dataset") -> Dataset:
     """Return the description that ``--dataset`` names: a known one, or that of a TOML file.
+
+    Args:
+        wanted: Name of a known data set, or path of a TOML file.
+        origin: Option that names it; messages begin with it.
 
     Raises:
         ConfigError: no data set is named, or it cannot be used.
@@ -161,20 +165,20 @@ def dataset_of(wanted: str | None) -> Dataset:
     known = ", ".join(KNOWN)
     if not wanted:
         raise ConfigError(
-            f"--dataset: missing; expected one of {known}, or a TOML file with the frame rate "
+            f"{origin}: missing; expected one of {known}, or a TOML file with the frame rate "
             f"and the vehicle's body, which trajectories do not say of themselves: {_FORM}"
         )
     if wanted.lower() in KNOWN:
         return bundled(wanted.lower())
     if not wanted.endswith(".toml"):
         raise ConfigError(
-            f"--dataset {wanted}: expected one of {known}, or a description (.toml): {_FORM}"
+            f"{origin} {wanted}: expected one of {known}, or a description (.toml): {_FORM}"
         )
-    return _read(Path(wanted))
+    return _read(Path(wanted), origin)
 
 
-def _read(file: Path) -> Dataset:
-    origin = f"--dataset {file}"
+def _read(file: Path, origin: str) -> Dataset:
+    origin = f"{origin} {file}"
     values = read_toml_file(file, "the description of a data set", origin)
     try:
         return Dataset.model_validate(values)

@@ -28,7 +28,7 @@ _EMPTY = ("id", "frame", "x", "y")
 
 
 @dataclass(frozen=True)
-class _Files:
+class RecordingFiles:
     """The files of one recording: each with its table, and the track that its name gives."""
 
     root: Path
@@ -51,10 +51,10 @@ def read_recordings(
     """
     if not folder.is_dir():
         raise DatasetError(f"{folder}: no such folder; expected a data set or a part of it")
-    groups = _groups(folder, dataset)
+    groups = files_in(folder, dataset)
     recordings = []
     for number, files in enumerate(groups, 1):
-        recordings.append(_recording(files, dataset))
+        recordings.append(read_files(files, dataset))
         progress(number, len(groups), files.name)
     return tuple(recordings)
 
@@ -65,9 +65,9 @@ def read_recording(file: Path, dataset: Dataset) -> Recording:
     Raises:
         DatasetError: a file cannot be used, or the description knows no file of this name.
     """
-    for files in _groups(file.parent, dataset):
+    for files in files_in(file.parent, dataset):
         if any(path == file for path, _, _ in files.tables):
-            return _recording(files, dataset)
+            return read_files(files, dataset)
     raise DatasetError(f"{file}: no such file of tracks; expected {_patterns(dataset)}")
 
 
@@ -75,13 +75,13 @@ def _patterns(dataset: Dataset) -> str:
     return ", ".join(table.files.replace("{name}", "*") for table in dataset.layout)
 
 
-def _groups(folder: Path, dataset: Dataset) -> list[_Files]:
+def files_in(folder: Path, dataset: Dataset) -> list[RecordingFiles]:
     """Return the files of each recording, in the order of paths.
 
     Raises:
         DatasetError: there is no recording.
     """
-    found: dict[tuple[Path, str], _Files] = {}
+    found: dict[tuple[Path, str], RecordingFiles] = {}
     paths = sorted(path for path in folder.rglob("*") if path.is_file())
     for table in dataset.layout:
         pattern = _pattern(table.files)
@@ -92,7 +92,7 @@ def _groups(folder: Path, dataset: Dataset) -> list[_Files]:
             named = match.groupdict()
             root = folder / match["root"].strip("/")
             name = named.get("name") or root.resolve().name
-            files = found.setdefault((root, name), _Files(root, name, []))
+            files = found.setdefault((root, name), RecordingFiles(root, name, []))
             files.tables.append((path, table, named.get("track") or ""))
     if not found:
         raise DatasetError(
@@ -111,7 +111,7 @@ def _pattern(files: str) -> re.Pattern[str]:
     return re.compile(f"(?P<root>(?:/[^/]+)*?)/{_PLACEHOLDER.sub(expression, re.escape(files))}")
 
 
-def _recording(files: _Files, dataset: Dataset) -> Recording:
+def read_files(files: RecordingFiles, dataset: Dataset) -> Recording:
     """Return one recording.
 
     Raises:
@@ -156,7 +156,7 @@ def _recording(files: _Files, dataset: Dataset) -> Recording:
     )
 
 
-def _rate(files: _Files, dataset: Dataset) -> float:
+def _rate(files: RecordingFiles, dataset: Dataset) -> float:
     """Return the frame rate [1/s] by the recording's own file, or by the description.
 
     Raises:
@@ -203,7 +203,7 @@ def _time_defects(path: Path, table: TrackTable) -> list[Defect]:
 
 
 def _by_role(
-    files: _Files,
+    files: RecordingFiles,
     table: TrackTable,
     dataset: Dataset,
     rows: pd.DataFrame,
@@ -233,7 +233,7 @@ def _by_role(
     return parts
 
 
-def _labels(files: _Files, table: TrackTable, rows: pd.DataFrame) -> "pd.Series[str]":
+def _labels(files: RecordingFiles, table: TrackTable, rows: pd.DataFrame) -> "pd.Series[str]":
     """Return the label of each row's track by the file that has one row per track.
 
     Raises:

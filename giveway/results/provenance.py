@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from giveway._version import __version__
 from giveway.config import RunConfig
+from giveway.errors import GivewayError
 from giveway.scenario_files import read_scenario, with_included
 from sumo_scenarios import Scenario
 
@@ -56,6 +57,24 @@ def scenario_hashes(scenario: Scenario) -> dict[str, str]:
     return {name: sha256(file.read_bytes()) for name, file in inputs.items()}
 
 
+def recording_hashes(config: RunConfig) -> dict[str, dict[str, str]]:
+    """Return the SHA-256 of each file of the recordings whose people came in, entry by entry.
+
+    A recording that is no longer there has none.
+    """
+    hashes = {}
+    for entry in config.crowd.recorded:
+        # imported here, since pandas comes with it
+        from giveway.recordings.clips import clip_files
+
+        try:
+            files = clip_files(entry)
+        except GivewayError:
+            files = ()
+        hashes[entry.name] = {file.name: sha256(file.read_bytes()) for file in files}
+    return hashes
+
+
 def _seen_from(folder: Path, file: Path) -> str:
     try:
         return Path(os.path.relpath(file, folder)).as_posix()
@@ -95,6 +114,7 @@ def manifest(
         ending: Reason why the run ended.
         error: Error that ended the run, or None.
     """
+    recordings = recording_hashes(config)
     return {
         "ending": ending,
         "error": error,
@@ -104,6 +124,7 @@ def manifest(
         "time_step": facts.time_step,
         "sumo": dict(facts.sumo),
         "scenario": {"name": scenario.name, "sha256": scenario_hashes(scenario)},
+        **({"recordings": recordings} if recordings else {}),
         "vehicles": dict(facts.vehicles),
         **facts.code,
         "pedestrians": facts.pedestrians,

@@ -119,6 +119,10 @@ EGO_COLUMNS = (_TIME, Column("id", "string", None, "SUMO id of the ego"), *_OWN)
 """Columns of ``ego.csv``, in order; the id is the same in all rows of a track."""
 
 
+NEVER = 2**53
+"""Index of a control instant that no run reaches."""
+
+
 @dataclass(frozen=True)
 class CrowdTrack:
     """The crowd as flat records in time order, one per pedestrian and recorded instant."""
@@ -133,6 +137,8 @@ class CrowdTrack:
     # kind of each pedestrian, for example "elderly"; empty if kinds are not used
     kinds: tuple[str, ...] = ()
     groups: tuple[str, ...] = ()  # first member of each one's group; empty if there are no groups
+    # instant (n,) from which each pedestrian reacts to vehicles; None if all of them always do
+    reacts_from: NDArray[np.int64] | None = None
 
     def during(self, first: int, instants: int) -> CrowdTrack:
         """Return the records of ``instants`` control instants from ``first`` on, as step 0."""
@@ -149,6 +155,7 @@ class CrowdTrack:
             ids=self.ids,
             kinds=self.kinds,
             groups=self.groups,
+            reacts_from=None if self.reacts_from is None else self.reacts_from - first,
         )
 
 

@@ -17,6 +17,7 @@ from giveway.config.files.presets import is_preset_file
 from giveway.ego.vehicle import fmu_path
 from giveway.errors import ConfigError, GivewayError
 from giveway.plug_ins.finding import is_fmu, shown
+from giveway.recordings.clips import clip_files
 from giveway.results.provenance import scenario_hashes, scenario_inputs, sha256, software_versions
 from giveway.scenario_files.options import parse_options
 from giveway.studies.record import Task
@@ -87,6 +88,8 @@ def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str
         if is_fmu(table.get("controller", "")):
             table["controller"] = shown(table["controller"])
             table["controller_profile"] = Path(table.get("controller_profile", "")).name
+    for entry in values["crowd"]["recorded"]:
+        entry |= {key: Path(entry[key]).name for key in ("path", "dataset")}
     values["scenario"] = Path(values["scenario"]).name
     content = {"settings": values, "inputs": inputs, "software": software}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -144,7 +147,17 @@ def _scenario_files_of(scenario: Scenario, _stamps: object) -> tuple[tuple[str, 
 
 def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
     """Return the files that a run reads apart from its scenario."""
-    return [*_vehicle_files(config), *_preset_files(config), *_option_files(config)]
+    files = [*_vehicle_files(config), *_preset_files(config), *_option_files(config)]
+    return [*files, *_recording_files(config)]
+
+
+def _recording_files(config: RunConfig) -> list[tuple[str, Path]]:
+    """Return the files of the recordings whose people come in."""
+    return [
+        (f"recording '{entry.name}': {file.name}", file)
+        for entry in config.crowd.recorded
+        for file in clip_files(entry)
+    ]
 
 
 def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:

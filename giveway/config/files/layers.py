@@ -27,7 +27,7 @@ Location = tuple[str, ...]
 PLUGGED = {socket.options: socket for socket in SOCKETS}
 """The tables whose keys are the options of plug-ins (--set)."""
 
-NO_FLAGS = frozenset({"egos", "measure", "flow", *PLUGGED})
+NO_FLAGS = frozenset({"egos", "measure", "flow", "recorded", *PLUGGED})
 """Keys without flags: lists of tables, and the tables of plug-ins' options."""
 
 
@@ -140,15 +140,24 @@ def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
     places += [(table, key) for table in tables for key in ("controller", "controller_profile")]
     places += [(table.get("perception"), "preset") for table in tables]
     places += [(table.get("vehicle"), key) for table in tables for key in ("fmu", "profile")]
+    recorded = _recorded_in(values)
+    places += [(table, key) for table in recorded for key in ("path", "dataset")]
     for table, key in places:
         if isinstance(table, dict) and isinstance(table.get(key), str):
             named = Path(table[key])
             # a word without a folder or suffix is a bundled name
-            is_path = len(named.parts) > 1 or named.suffix
+            is_path = len(named.parts) > 1 or named.suffix or key == "path"
             # the name may be too long for Path
             if is_path and os.path.exists(folder / named):  # noqa: PTH110
                 table[key] = str(folder / named)
     return values
+
+
+def _recorded_in(values: Mapping[str, Any]) -> list[Any]:
+    """Return the tables of recordings in ``values``, as they stand there."""
+    crowd = values.get("crowd")
+    recorded = crowd.get("recorded") if isinstance(crowd, Mapping) else None
+    return recorded if isinstance(recorded, list) else []
 
 
 def merge(layers: Sequence[Layer]) -> dict[str, Any]:
@@ -274,6 +283,7 @@ def dump_toml(config: RunConfig) -> str:
     crowd: Any = document["crowd"]
     for where, key, entries in (
         (crowd, "flow", [flow.settings() for flow in config.crowd.flow]),
+        (crowd, "recorded", [entry.settings() for entry in config.crowd.recorded]),
         (document, "egos", list(config.egos)),
         (document, "measure", [measure.settings() for measure in config.measure]),
     ):

@@ -11,6 +11,7 @@ from giveway.config.files.layers import Layer, build_config, merge, read_toml, u
 from giveway.config.files.presets import parameters_of
 from giveway.config.files.trust import require_trusted
 from giveway.config.run_config import RunConfig
+from giveway.config.tables.recorded import RecordedConfig
 from giveway.errors import ConfigError, ScenarioError, VehicleError, retold
 from sumo_scenarios import Scenario, available, find
 from sumo_scenarios import ScenarioError as UnknownScenario
@@ -141,6 +142,9 @@ def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
         for name, section in config
         if name in _WITH_FILES
     }
+    placed["crowd"] = placed["crowd"].model_copy(
+        update={"recorded": tuple(map(_recording_placed, config.crowd.recorded))}
+    )
     placed |= _absolute(dict(config), _OWN_FILES)
     placed["egos"] = tuple(
         {name: _table_placed(name, table) for name, table in ego.items()}
@@ -153,6 +157,12 @@ def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
 def _table_placed(name: str, table: Any) -> Any:
     is_table = name in _WITH_FILES and isinstance(table, Mapping)
     return {**table, **_absolute(table)} if is_table else table
+
+
+def _recording_placed(entry: RecordedConfig) -> RecordedConfig:
+    """Return the entry of a recording with an absolute path, so that it is found from anywhere."""
+    update = {"path": str(Path(entry.path).absolute())}
+    return entry.model_copy(update=update | _absolute(entry.model_dump(), ("dataset",)))
 
 
 def _absolute(table: Mapping[str, Any], keys: Sequence[str] = _FILES) -> dict[str, str]:

@@ -19,10 +19,11 @@ from giveway.config.option import (
     TextOrNumber,
     option,
 )
-from giveway.config.plug_in_names import BUNDLED_MODELS, ModelName
+from giveway.config.plug_in_names import BUNDLED_CROWD_MODELS, CrowdModelName
 from giveway.config.reasons import GAP, MILLIMETRE
 from giveway.config.tables.flows import FlowConfig, read_flows
 from giveway.config.tables.people import DISTRACTED, SHARE, PeopleConfig
+from giveway.config.tables.recorded import RECORDED, RecordedConfig, read_recorded
 
 DESIRED_SPEEDS: Final = (0.5, 2.2)
 """The bounds [m/s] of desired speeds; our reading of Yang & Özgüner 2019 (docs/reproduction.md)."""
@@ -125,13 +126,14 @@ class CrowdConfig(Section):
         "Edge that hosts the added people inside SUMO. By default it is the nearest edge for "
         "pedestrians",
     )
-    model: ModelName = option(
+    model: CrowdModelName = option(
         "vci",
         None,
         "Model that moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance "
         "(they stop for vehicles that come too soon); orca (van den Berg et al. 2011); "
-        "constant-velocity; two of JuPedSim's, jupedsim:...; or another package's, by its "
-        "declared name or as module:Class. Controllers predict by [perception] model",
+        "constant-velocity; recorded (people of [[crowd.recorded]] as they walked); two of "
+        "JuPedSim's, jupedsim:...; or another package's, by its declared name or as module:Class. "
+        "Controllers predict by [perception] model",
         flag="--crowd-model",
     )
     preset: Preset = option(
@@ -178,10 +180,19 @@ class CrowdConfig(Section):
         default=(), description="Streams of people, so many an hour from here to there"
     )
 
+    recorded: Annotated[tuple[RecordedConfig, ...], BeforeValidator(read_recorded)] = Field(
+        default=(), description="Recordings whose people enter as they were recorded"
+    )
+
     @property
     def adds_people(self) -> bool:
         """True if giveway adds people."""
-        return self.pedestrians > 0 or bool(self.flow and self.flow_scale)
+        return self.pedestrians > 0 or self.expects_people
+
+    @property
+    def expects_people(self) -> bool:
+        """True if people come in during the run."""
+        return bool(self.flow and self.flow_scale) or bool(self.recorded)
 
     @property
     def has_distracted(self) -> bool:
@@ -197,7 +208,7 @@ class CrowdConfig(Section):
     @property
     def plugged_in(self) -> bool:
         """True if the pedestrian model is a plug-in."""
-        return self.model not in BUNDLED_MODELS
+        return self.model not in BUNDLED_CROWD_MODELS
 
     @model_validator(mode="after")
     def _ordered(self) -> CrowdConfig:
@@ -216,4 +227,18 @@ class CrowdConfig(Section):
                 f"walk = {self.walk}: expected at least {_NEAREST:g} m, or 0,0 for people who "
                 "stand: a shorter way is not a walk"
             )
+        if self.model == RECORDED:
+            self._require_recorded()
         return self
+
+    def _require_recorded(self) -> None:
+        if not self.recorded:
+            raise ValueError(
+                f"model = '{RECORDED}': nobody is recorded; name a recording in "
+                "[[crowd.recorded]] (path, dataset), or another model"
+            )
+        if self.acceleration_noise:
+            raise ValueError(
+                f"acceleration_noise = {self.acceleration_noise:g}: people who walk as they were "
+                f"recorded have none; leave it out, or name another model than '{RECORDED}'"
+            )

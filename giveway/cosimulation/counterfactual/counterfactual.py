@@ -134,8 +134,8 @@ def _crowd_alone(config: RunConfig, beginning: Beginning, time_step: float) -> C
     roster = Roster(beginning.names, beginning.crowd.copy(), beginning.traits)
     walks = WalkLog(time_step, lambda _: True)
     walking = Walking(config, model_of(config, time_step, roster), roster, walks)
-    flows = None if beginning.flows is None else beginning.flows.afresh(roster)
-    alone = CrowdAlone(roster, walking, walks, 0, flows, beginning.substeps)
+    sources = None if beginning.sources is None else beginning.sources.afresh(roster)
+    alone = CrowdAlone(roster, walking, walks, 0, sources, beginning.substeps)
     _alone[key] = alone
     if len(_alone) > _KEPT:
         _alone.popitem(last=False)
@@ -147,7 +147,8 @@ def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
     digest = hashlib.sha256()
     settings, crowd = config.crowd, beginning.crowd
     noise = settings.acceleration_noise
-    drawn = (settings, config.seed, beginning.substeps) if settings.flow else None
+    come_in = settings.flow or settings.recorded
+    drawn = (settings, config.seed, beginning.substeps) if come_in else None
     for part in (
         parameters_of(settings.preset),
         (
@@ -164,6 +165,8 @@ def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
         drawn,
     ):
         digest.update(repr(part).encode())
+    if beginning.sources is not None:
+        digest.update(beginning.sources.identity)
     for array in (*crowd.state, *crowd.fixed_arrays):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.digest()

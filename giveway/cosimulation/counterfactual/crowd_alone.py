@@ -1,6 +1,6 @@
 """A crowd on open ground without vehicles, with or without SUMO."""
 
-from giveway.crowd.generation.flows import Flows
+from giveway.crowd.generation.sources import Sources
 from giveway.crowd.roster import Roster, Walking
 from giveway.journal.walk_log import WalkLog
 from giveway.processes.heartbeat import Heartbeat
@@ -17,7 +17,7 @@ class CrowdAlone:
         walking: Step of the crowd.
         walks: Log of the people's walks.
         step: Control step that has been reached.
-        flows: Flows of people who come in, or None if nobody does.
+        sources: Sources of people who come in, or None if nobody does.
         every: Control steps per SUMO step; people come in once per SUMO step.
     """
 
@@ -27,20 +27,20 @@ class CrowdAlone:
         walking: Walking,
         walks: WalkLog,
         step: int = 0,
-        flows: Flows | None = None,
+        sources: Sources | None = None,
         every: int = 1,
     ) -> None:
         self._roster = roster
         self._walking = walking
         self.walks = walks
         self._k = step
-        self._flows = flows
+        self._sources = sources
         self._every = every
         self._note()
 
     def _note(self) -> None:
-        if self._flows is not None and self._k % self._every == 0:
-            self._flows.enter(self._k)
+        if self._sources is not None and self._k % self._every == 0:
+            self._sources.enter(self._k)
         self._walking.note(self._k)
 
     def go_on(self, last: int, names: frozenset[str], heartbeat: Heartbeat) -> None:
@@ -62,4 +62,4 @@ class CrowdAlone:
         roster = self._roster
         if not names.isdisjoint(roster.names):
             return True
-        return self._flows is not None and not names.issubset(roster.ids)
+        return self._sources is not None and not names.issubset(roster.ids)

@@ -11,7 +11,7 @@ from giveway.cosimulation.counterfactual.crowd_alone import CrowdAlone
 from giveway.cosimulation.counterfactual.replayed_loop import ReplayedLoop, Standing
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.traffic.traffic_log import TrafficNotes
-from giveway.crowd.generation.flows import Flows
+from giveway.crowd.generation.sources import Sources
 from giveway.crowd.roster import Trait, Walking
 from giveway.ego.ego import Ego
 from giveway.geometry.kernel import Array
@@ -30,7 +30,7 @@ class Beginning(NamedTuple):
     crowd: Crowd
     names: tuple[str, ...]  # Ids of the people
     traits: Mapping[str, Trait]  # Traits that differ from person to person
-    flows: Flows | None = None  # Flows of people who come in later, or None
+    sources: Sources | None = None  # Sources of people who come in later, or None
     substeps: int = 1  # control steps per SUMO step
 
 
@@ -57,7 +57,7 @@ class Followed:
             roster.crowd.copy(),
             tuple(roster.ids),
             dict(roster.traits),
-            None if parts.arrivals is None else parts.arrivals.flows,
+            None if parts.arrivals is None else parts.arrivals.sources,
             parts.substeps,
         )
         self.secluded = parts.secluded
@@ -111,8 +111,8 @@ class Followed:
             return True
         self.last = step + math.ceil(LONGEST / parts.time_step)
         if self.secluded:
-            flows = self.beginning.flows
-            alone = CrowdAlone(parts.roster, walking, self.walks, step, flows, parts.substeps)
+            sources = self.beginning.sources
+            alone = CrowdAlone(parts.roster, walking, self.walks, step, sources, parts.substeps)
             alone.go_on(self.last, self.walks.near, heartbeat)
             return True
         for name in self._parked:

@@ -4,28 +4,28 @@ import math
 from collections.abc import Sequence
 
 from giveway.config import RunConfig
-from giveway.crowd.generation.flows import Flows
+from giveway.crowd.generation.sources import Sources
 from giveway.errors import ConfigError
 from giveway.sumo.session import SumoSession
 
 
 class Arrivals:
-    """Lets people of all flows come in, and adds them to SUMO.
+    """Lets people of all sources come in, and adds them to SUMO.
 
     Args:
-        flows: Flows of people into giveway's crowd.
+        sources: Sources of people in giveway's crowd.
         session: The running simulation.
-        hosts: Edge that hosts each flow's people inside SUMO.
+        hosts: Edge that hosts the people of each flow and recording inside SUMO.
     """
 
-    def __init__(self, flows: Flows, session: SumoSession, hosts: Sequence[str]) -> None:
-        self.flows = flows
+    def __init__(self, sources: Sources, session: SumoSession, hosts: Sequence[str]) -> None:
+        self.sources = sources
         self._session = session
         self._hosts = tuple(hosts)
 
     def update(self, step: int) -> None:
         """Let in the people who are due after a SUMO step, at the control step ``step``."""
-        for names, host in zip(self.flows.enter(step), self._hosts, strict=True):
+        for names, host in zip(self.sources.enter(step), self._hosts, strict=True):
             if names:
                 self._session.add_persons(names, host)
 

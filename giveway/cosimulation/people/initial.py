@@ -11,10 +11,12 @@ from giveway.cosimulation.people.arrivals import Arrivals, require_end
 from giveway.cosimulation.people.free_drive import free_drive
 from giveway.crowd.generation.encounters import FreeDrive
 from giveway.crowd.generation.flows import Flows
+from giveway.crowd.generation.sources import Source, Sources
 from giveway.crowd.generation.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.roster import Roster
 from giveway.crowd.ways import lit_crossings, middle_of
 from giveway.errors import ConfigError, CrowdError, ScenarioError
+from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.scenario_files import free_prefix
 from giveway.sumo.session import SumoSession
@@ -82,18 +84,33 @@ def people_to_come(
         GivewayError: the run would never end, or the people have no edge to live on.
     """
     crowd = config.crowd
-    if not (crowd.flow and crowd.flow_scale):
+    if not crowd.expects_people:
         return None
-    require_end(config, sumo.end)
+    flows = crowd.flow if crowd.flow_scale else ()
+    if flows:
+        require_end(config, sumo.end)
     files = [file for file in sumo.start.read if file != net_file]
-    prefixes = [free_prefix(f"{flow.name}.", files) for flow in crowd.flow]
-    hosts = [crowd.host_edge] * len(crowd.flow)
-    if not crowd.host_edge:
+    if crowd.recorded or not crowd.host_edge:
         network = network or WalkNetwork.read(net_file)
-        places = [middle_of(flow.start).tolist() for flow in crowd.flow]
-        hosts = [_host((x, y), network, net_file) for x, y in places]
-    lit = lit_crossings(sumo.lanes.crossings, () if network is None else network.signals)
-    return Arrivals(Flows(config, roster, prefixes, time_step, lit), sumo, hosts)
+    sources: list[Source] = []
+    places = [middle_of(flow.start) for flow in flows]
+    if flows:
+        prefixes = [free_prefix(f"{flow.name}.", files) for flow in flows]
+        lit = lit_crossings(sumo.lanes.crossings, () if network is None else network.signals)
+        sources.append(Flows(config, roster, prefixes, time_step, lit))
+    if crowd.recorded:
+        # imported here, since pandas comes with it
+        from giveway.cosimulation.people.recorded import recorded_people
+
+        assert network is not None
+        recorded = recorded_people(config, roster, time_step, files, network)
+        sources += recorded
+        places += [source.middle for source in recorded]
+    hosts = [crowd.host_edge] * len(places)
+    if not crowd.host_edge:
+        assert network is not None
+        hosts = [_host((x, y), network, net_file) for x, y in map(Array.tolist, places)]
+    return Arrivals(Sources(sources), sumo, hosts)
 
 
 def _middle(config: RunConfig, drive: FreeDrive | None) -> tuple[float, float]:

@@ -189,6 +189,11 @@ class Flows:
         return None
 
     @property
+    def identity(self) -> bytes:
+        """No bytes, since configuration and seed decide who comes."""
+        return b""
+
+    @property
     def keeps_coming(self) -> bool:
         """Return whether a flow with an end still runs or somebody waits for room."""
         time = self._step * self._time_step

@@ -58,10 +58,14 @@ class Inattentive(AroundModel):
 
 def distance_to_next(position: Array, vehicles: Vehicles) -> Array:
     """Return the distance (n,) [m] of each ``position`` (n, 2) [m] to the nearest vehicle."""
+    return np.asarray(distances(position, vehicles).min(axis=1))
+
+
+def distances(position: Array, vehicles: Vehicles) -> Array:
+    """Return the distance (n, m) [m] of each ``position`` (n, 2) [m] to each of m vehicles."""
     x, y, heading, _, front, rear, width = vehicles.array.T
     d_x, d_y = position[:, :1] - x, position[:, 1:] - y
     along = d_x * np.cos(heading) + d_y * np.sin(heading)
     beside = np.abs(d_y * np.cos(heading) - d_x * np.sin(heading)) - width / 2.0
     beyond = np.maximum(along - front, -rear - along)
-    apart = np.hypot(np.maximum(beyond, 0.0), np.maximum(beside, 0.0))
-    return np.asarray(apart.min(axis=1))
+    return np.asarray(np.hypot(np.maximum(beyond, 0.0), np.maximum(beside, 0.0)))

@@ -6,6 +6,8 @@ along +x. A person is a circle of 0.27 m.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -188,3 +190,10 @@ def test_two_at_once_are_two_persons_but_one_share(driving, crowd, walking):
 def test_a_drive_without_anybody_has_no_conflicts(driving, crowd):
     found = conflicts(driving(TIME, 4.0), crowd(), CAR, R, 0.2)
     assert (found.pedestrians, found.share) == (0, 0.0)
+
+
+def test_a_contact_before_a_person_reacts_is_of_a_kind_of_its_own(driving, crowd, walking):
+    """Both stand before the bumper, which reaches them at 0.3 s; one reacts from 0.2 s on."""
+    stand = walking(TIME, (1.5, 0.0), (0.0, 0.0))
+    track = replace(crowd(stand, stand, stand), reacts_from=np.array([0, 4, 40]))
+    assert kinds(driving(TIME, 4.0), track) == ["frontal", "frontal", "recorded"]

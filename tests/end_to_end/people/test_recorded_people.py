@@ -1,0 +1,160 @@
+"""Recorded people in a run, through the real SUMO, FMU and solver."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import giveway
+from giveway.errors import ConfigError, DatasetError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    import pandas as pd
+
+# Starts [m] and velocities [m/s]: two cross the ego's way before it comes, one walks into its side
+# at once, one later, one meets it head-on, and one is far away. The ego's front starts at x = 2.5 m
+# with 4 m/s, along y = 0.
+WALKS = (
+    ((12.0, -4.0), (0.0, 1.4)),
+    ((14.0, 4.0), (0.0, -1.3)),
+    ((3.0, -1.9), (0.0, 1.3)),
+    ((17.0, -6.9), (0.0, 1.3)),
+    ((40.0, 0.3), (-1.2, 0.0)),
+    ((30.0, -25.0), (1.0, 0.2)),
+)
+FRAMES = 400  # 13 s
+NEVER = {"time": 0.0, "distance": 0.0}
+TABLES = ("ego", "trajectories", "pedestrians", "summary")
+
+
+@pytest.fixture
+def run(tmp_path: Path, write_clip: Callable, straight_walks: Callable) -> Callable:
+    """Run the plaza with the recorded people: (model, model_options, **settings) -> result."""
+    starts, velocities = map(list, zip(*WALKS, strict=True))
+    path = write_clip(tmp_path / "clips", "yard", *straight_walks(FRAMES, starts, velocities))
+
+    def make(model: str = "vci", options: dict | None = None, **settings: Any) -> Any:
+        entry = {"name": "yard", "path": str(path), "dataset": "citr"} | settings.pop("entry", {})
+        crowd = {"pedestrians": 0, "model": model, "recorded": [entry]}
+        base = {"scenario": "shared_space", "controller": "pid-tuned", "model_options": options}
+        config = base | {"crowd": crowd, "record": {"near": 500.0}, "model_options": options or {}}
+        results = settings.pop("results", None)
+        return giveway.run(config | settings, results=results, pictures=False)
+
+    return make
+
+
+def tracks(result: Any) -> dict[str, pd.DataFrame]:
+    """Return the rows of each pedestrian, by id."""
+    people = result.trajectories.query("type == 'pedestrian'")
+    return {str(name): rows for name, rows in people.groupby("id")}
+
+
+def off_the_line(number: int, rows: pd.DataFrame) -> np.ndarray:
+    """Return the distance [m] of each row from where the person was recorded then."""
+    (x, y), (vx, vy) = WALKS[number]
+    time = rows["time"].to_numpy()
+    apart = rows["x"] - (x + vx * time), rows["y"] - (y + vy * time)
+    return np.hypot(*apart).to_numpy()
+
+
+def test_simulated_people_enter_as_recorded(run: Callable) -> None:
+    result = run(entry={"begin": -1.0})
+    assert result.ending == "completed"
+    for number, rows in enumerate(tracks(result).values()):
+        first = rows.iloc[0]
+        (x, y), (vx, vy) = WALKS[number]
+        assert (first.time, first.x, first.y) == pytest.approx((0.0, x + vx, y + vy), abs=1e-9)
+        assert first.speed == pytest.approx(np.hypot(vx, vy))
+        assert off_the_line(number, rows.assign(time=rows["time"] + 1.0)).max() > 0.01
+    (hashed,) = result.manifest["recordings"].values()
+    assert list(hashed) == ["yard_traj_ped_filtered.csv"]
+
+
+def test_people_without_a_hand_over_walk_as_recorded(run: Callable) -> None:
+    result = run("recorded", NEVER)
+    people = tracks(result)
+    assert list(people) == [f"yard.{number + 1}" for number in range(len(WALKS))]
+    for number, rows in enumerate(people.values()):
+        assert off_the_line(number, rows).max() < 1e-6
+    assert result.summary["handed_over"] == 0
+
+
+def test_contacts_with_people_who_do_not_react_count_apart(run: Callable) -> None:
+    """A person walks into the side of the car, which cannot help it."""
+    blind = run("recorded", NEVER)
+    summary = blind.summary
+    assert summary["recorded_contacts"] == summary["overlaps"] >= 1
+    assert summary["frontal_contacts"] == summary["side_contacts"] == 0
+    kinds = blind.pedestrians["contact"]
+    assert (kinds == "recorded").sum() == summary["recorded_contacts"]
+    assert (blind.pedestrians["severity"] != "collision").all()
+    aware = run("recorded").summary
+    assert aware["recorded_contacts"] == 0
+    assert aware["handed_over"] >= 4
+
+
+def test_the_model_takes_over_when_the_ego_is_near(run: Callable) -> None:
+    result = run("recorded", {"time": 0.0, "distance": 3.0})
+    ego = result.ego
+    clearances = result.pedestrians.set_index("id")["minimum_clearance"]
+    handed = 0
+    for number, (name, rows) in enumerate(tracks(result).items()):
+        away = off_the_line(number, rows) > 1e-6
+        if clearances[name] > 3.0:
+            assert not away.any()
+            continue
+        handed += 1
+        when = rows["time"].to_numpy()[away.argmax()]
+        if when < 0.1:
+            continue  # near from the beginning on
+        # the model's first step began one instant earlier
+        car, place = (
+            one.iloc[np.searchsorted(one["time"], when - 0.025) - 1] for one in (ego, rows)
+        )
+        beyond = max(place.x - car.x, car.x - 5.0 - place.x, 0.0)
+        beside = max(abs(place.y - car.y) - 1.0, 0.0)
+        assert 2.7 < np.hypot(beyond, beside) < 3.0
+    assert result.summary["handed_over"] == handed >= 2
+
+
+@pytest.mark.parametrize("scenario", ["shared_space", "street"])
+def test_people_who_feel_no_vehicle_lose_nothing(run: Callable, scenario: str) -> None:
+    """The counterfactual run has the very same people, on open ground and with SUMO."""
+    speed = {"regulation": {"reference_speed": 4.0}}
+    result = run("recorded", NEVER, scenario=scenario, twin=True, entry={"x": 40.0}, **speed)
+    delays = result.pedestrians["delay"].dropna()
+    assert len(delays) >= 3
+    assert delays.abs().max() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_handed_over_people_lose_time_to_the_recording(run: Callable) -> None:
+    result = run("recorded", twin=True)
+    assert result.effect is not None
+    assert result.pedestrians["delay"].abs().max() > 0.1
+
+
+@pytest.mark.parametrize("model", ["vci", "recorded"])
+def test_equal_runs_have_equal_bytes(run: Callable, tmp_path: Path, model: str) -> None:
+    for name, seed in (("one", 1), ("same", 1), ("seed", 2)):
+        run(model, seed=seed, twin=True, results=tmp_path / name)
+    for table in TABLES:
+        one, same, seed = (
+            (tmp_path / name / f"{table}.csv").read_bytes() for name in ("one", "same", "seed")
+        )
+        assert one == same
+        assert (one == seed) == (table != "summary")  # nothing is drawn; the summary has the seed
+
+
+def test_a_wrong_recording_ends_before_the_run(run: Callable, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"'yard': x = 5000, y = 0: its people walk"):
+        run(entry={"x": 5000.0})
+    with pytest.raises(DatasetError, match="no such file or folder"):
+        run(entry={"path": str(tmp_path / "nowhere")})
+    with pytest.raises(ConfigError, match="clip = 'lawn': not in "):
+        run(entry={"clip": "lawn"})
