@@ -27,7 +27,7 @@ class Evaluation:
         horizons: Horizons (K,) [frames].
         clip: Clip (R,) of each row.
         valid: Flags (R, K): the pedestrian is seen for that long.
-        near: Flags (R, K): the pedestrian comes near the vehicle within that time.
+        near: Flags (R, K): the pedestrian comes near a moving vehicle within that time.
         ade, fde: Errors (P, R, K) [m]; nan where not valid.
         error: Displacement (P, R, H) [m] at each frame; nan where not seen.
         place: Place (R, 2) [m] at the start, ahead and to the left of the vehicle; nan without one.

@@ -66,7 +66,7 @@ def _curves(found: Validation) -> dict[str, dict[str, Curve]]:
     groups = {EVERYWHERE: np.ones(len(near), dtype=bool), NEAR: near}
     titles = {
         EVERYWHERE: "everybody",
-        NEAR: f"within {found.protocol.near:g} m of the vehicle",
+        NEAR: f"within {found.protocol.near:g} m of a moving vehicle",
     }
     return {
         titles[group]: {name: _curve(found, p, mask) for p, name in enumerate(rows.names)}

@@ -17,7 +17,7 @@ from giveway.validation.clips import Clip
 
 _PAUSE = 0.5  # Time [s] skipped at the start, and between the starts of windows
 _HORIZONS = (0.75, 2.0, 4.0)  # Prediction horizons [s]
-_NOWHERE = 1e6  # Place [m] of a vehicle in frames in which it is not seen
+_NOWHERE = 1e6  # Place [m] of a vehicle in frames in which it is not seen, or does not count
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,8 @@ class Protocol:
     skip: int = 15  # frames at the start, in which the dataset's filter settles
     stride: int = 15  # frames from window to window
     horizons: tuple[int, ...] = (22, 60, 120)  # frames ahead: 0.75, 2 and 4 s
-    near: float = 2.0  # [m] largest distance of a near pedestrian from the vehicle's body
+    near: float = 3.0  # [m] largest distance of a near pedestrian from a moving vehicle's body
+    moving: float = 0.5  # [m/s] speed above which a vehicle moves
     front: float = CITR.vehicle.front  # [m] front of the body, from the tracked point
     rear: float = CITR.vehicle.rear  # [m] rear of the body, from the tracked point
     width: float = CITR.vehicle.width  # [m]
@@ -73,8 +74,8 @@ class Window:
             them.
         observed: Positions (H, n, 2) [m] at 1 ... H frames ahead; nan from the first frame on in
             which a pedestrian is not seen.
-        distance: Observed distance (H + 1, n) [m] from centre to the nearest body; inf without
-            vehicles.
+        distance: Observed distance (H + 1, n) [m] from centre to the nearest body of a vehicle that
+            moves; inf without vehicles, and very large if none moves.
     """
 
     clip: int
@@ -96,7 +97,7 @@ def windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ...]:
 def _of_clip(number: int, clip: Clip, protocol: Protocol) -> Iterator[Window]:
     shortest, longest = min(protocol.horizons), protocol.longest
     bodies = vehicle_rows(clip, protocol)
-    distances = distance_to_bodies(clip.position, bodies)
+    distances = distance_to_bodies(clip.position, _only_moving(bodies, protocol.moving))
     for frame in range(protocol.skip, clip.frames - shortest, protocol.stride):
         who = np.flatnonzero(clip.seen[frame])
         observed = _padded(clip.position[frame + 1 : frame + 1 + longest, who], longest)
@@ -126,6 +127,13 @@ def vehicle_rows(clip: Clip, protocol: Protocol) -> Array:
     rows[:, :, 4:] = protocol.front, protocol.rear, protocol.width
     rows[np.isnan(rows).any(axis=2), :4] = _NOWHERE, _NOWHERE, 0.0, 0.0
     return rows
+
+
+def _only_moving(rows: Array, least: float) -> Array:
+    """Return the vehicles (T, m, 7), far away in frames in which they are not faster than that."""
+    away = rows.copy()
+    away[np.abs(rows[:, :, 3]) <= least, :2] = _NOWHERE
+    return away
 
 
 def distance_to_bodies(position: Array, rows: Array) -> Array:

@@ -52,7 +52,7 @@ def _print(console: Console, found: Validation, preset: str) -> None:
         f"pedestrians, {len(found.cut)} windows; parameters {escape(preset)}",
         highlight=False,
     )
-    near = f"within {found.protocol.near:g} m of the vehicle"
+    near = f"within {found.protocol.near:g} m of a moving vehicle"
     for subset, title in ((EVERYWHERE, "everybody"), (NEAR, near)):
         rows = found.errors[found.errors["subset"] == subset]
         if rows["count"].sum():

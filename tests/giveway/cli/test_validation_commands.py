@@ -22,7 +22,7 @@ AS_CITR = ("--dataset", "citr")
 @pytest.fixture
 def dataset(tmp_path, write_clip, straight_walks) -> Path:
     x, v = straight_walks(200, [[-4, 1.6], [3, -2], [0, 4]], [[1, 0], [-1, 0.3], [1.2, 0.1]])
-    cart = np.tile([0.0, 0.0, 0.1, 0.5], (200, 1))
+    cart = np.tile([0.0, 0.0, 0.1, 0.6], (200, 1))
     folder = tmp_path / "citr" / "trajectories_filtered"
     write_clip(folder / "vci_front", "front_interaction_01", x, v, cart)
     write_clip(folder / "p2p_uni", "unidirection_no_vehicle_01", x, v)
@@ -41,7 +41,7 @@ def test_validate_prints_both_tables_and_writes_csv_and_pictures(dataset, tmp_pa
     assert giveway("validate", dataset, *AS_CITR, "--preset", "TABLE2", "--out", out) == 0
     said = capsys.readouterr().out
     assert "3 clips, 1 with a vehicle, 9 pedestrians" in said
-    for words in ("goalCV", "VCI without f_v", "within 2 m of the vehicle", "closest [m]"):
+    for words in ("goalCV", "VCI without f_v", "within 3 m of a moving vehicle", "closest [m]"):
         assert words in said
     names = {"errors.csv", "contacts.csv"}
     names |= {f"{n}.{kind}" for n in ("growth", "tracks", "places") for kind in ("png", "svg")}

@@ -44,16 +44,23 @@ def test_a_velocity_that_is_wrong_by_so_much_gives_so_much_error(
     assert numbers(errors, "CV", "ADE") == pytest.approx(0.1 * (h + 1) / 2 * DT)
 
 
-def test_near_is_who_comes_near_within_the_horizon(tmp_path, write_clip, straight_walks) -> None:
-    """The walker passes a standing cart 1 m beside it; the other stays 20 m away."""
+@pytest.mark.parametrize(("speed", "counts"), [(0.6, True), (0.4, False)])
+def test_near_is_who_meets_a_vehicle_that_moves(
+    tmp_path, write_clip, straight_walks, speed, counts
+) -> None:
+    """The walker passes a cart 1 m beside it; the other stays 20 m away."""
     x, v = straight_walks(200, [[-4.0, 1.6], [-4.0, 20.0]], [[1.0, 0.0], [1.0, 0.0]])
-    write_clip(tmp_path, "drive_01", x, v, np.tile([0.0, 0.0, 0.0, 0.0], (200, 1)))
+    cart = np.zeros((200, 4))
+    cart[:, 0], cart[:, 3] = speed * DT * np.arange(200), speed
+    write_clip(tmp_path, "drive_01", x, v, cart)
     found = validate(read_clips(tmp_path, CITR), SIM)
     assert not found.found.near[1::2].any()
-    assert found.found.near[::2].any()
+    assert found.found.near[::2].any() == counts
     near = found.errors.query("subset == 'near' and metric == 'FDE' and predictor == 'CV'")
-    assert near["count"].min() > 0
-    assert near["mean"].tolist() == pytest.approx([0, 0, 0], abs=1e-9)
+    assert near["mean"].tolist() == pytest.approx(
+        [0, 0, 0] if counts else [np.nan] * 3, abs=1e-9, nan_ok=True
+    )
+    assert (near["count"].min() > 0) == counts
 
 
 def test_a_cart_hits_constant_velocity_walkers_not_the_model(
