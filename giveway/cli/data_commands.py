@@ -26,6 +26,8 @@ def build_data() -> typer.Typer:
     app.add("describe", _describe)
     app.add("measure", _measure)
     app.add("behave", _behave)
+    app.add("scenario", _scenario)
+    app.add("compare", _compare)
     return app
 
 
@@ -75,3 +77,32 @@ def _behave(
     from giveway.cli.commands.behave_command import behave_command
 
     behave_command(folder, dataset, model, preset, out, force=force, quiet=quiet)
+
+
+def _scenario(
+    folder: Annotated[Path, typer.Argument(help="Folder with recordings, or a file of one.")],
+    out: Annotated[Path, typer.Option(help="Folder for the scenario.")],
+    dataset: _Dataset = None,
+    clip: Annotated[str, typer.Option(help="Name of the recording; the only one needs none.")] = "",
+    vehicle: Annotated[
+        str | None, typer.Option(help="Id of the vehicle in whose place the ego drives.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the scenario there.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
+) -> None:
+    """Write a scenario in which the ego drives in place of a recorded vehicle, among its people."""
+    from giveway.cli.commands.recorded_drive_command import scenario_command
+
+    scenario_command(folder, dataset, clip, vehicle, out, force=force, quiet=quiet)
+
+
+def _compare(
+    runs: Annotated[list[Path], typer.Argument(help="Results of runs among recorded people.")],
+    out: _Out = None,
+    force: _Force = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Compare drives of egos with those of the recorded vehicles in whose place they drove."""
+    from giveway.cli.commands.recorded_drive_command import compare_command
+
+    compare_command(runs, out, force=force, quiet=quiet)

@@ -23,20 +23,36 @@ def read_clip(entry: RecordedConfig) -> Recording:
         ConfigError: the data set or the clip is unknown, or there is nobody in the recording.
         DatasetError: there is no such file or folder, or a file cannot be used.
     """
-    files, dataset = _found(entry)
+    return clip_at(Path(entry.path), entry.dataset, entry.clip, _heading(entry))
+
+
+def clip_at(path: Path, dataset_name: str | None, clip: str, heading: str) -> Recording:
+    """Return a recording, without riders among its people.
+
+    Args:
+        path: Folder of recordings, or a file of the recording.
+        dataset_name: Name or description of the data set, or None if it is not given.
+        clip: Name of the recording, or an empty text if it is the only one.
+        heading: Words with which messages begin.
+
+    Raises:
+        ConfigError: the data set or the clip is unknown, or there is nobody in the recording.
+        DatasetError: there is no such file or folder, or a file cannot be used.
+    """
+    files, dataset = _found(path, dataset_name, clip, heading)
     stamps = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in _all(files)]
     key = (dataset.model_dump_json(), *stamps)
     if key not in _read:
         try:
             _read[key] = read_files(files, dataset).walkers()
         except DatasetError as error:
-            raise _about(entry, error) from error
+            raise DatasetError(f"{heading}: {error}") from error
         if len(_read) > _KEPT:
             _read.popitem(last=False)
     recording = _read[key]
     if not recording.people.ids:
         raise ConfigError(
-            f"{_heading(entry)}: {recording.file}: clip '{recording.name}' of {dataset.name} has "
+            f"{heading}: {recording.file}: clip '{recording.name}' of {dataset.name} has "
             "no people on foot; name a clip that has (giveway data describe)"
         )
     return recording
@@ -49,41 +65,39 @@ def clip_files(entry: RecordedConfig) -> tuple[Path, ...]:
         ConfigError: the data set or the clip is unknown.
         DatasetError: there is no such file or folder.
     """
-    files, _ = _found(entry)
+    files, _ = _found(Path(entry.path), entry.dataset, entry.clip, _heading(entry))
     own = Path(entry.dataset)
     return (*_all(files), own) if own.suffix == ".toml" else tuple(_all(files))
 
 
-def _found(entry: RecordedConfig) -> tuple[RecordingFiles, Dataset]:
+def _found(
+    path: Path, dataset_name: str | None, clip: str, heading: str
+) -> tuple[RecordingFiles, Dataset]:
     """Return the files of the clip that is named, or of the only one that is there."""
-    dataset = dataset_of(entry.dataset, f"{_heading(entry)}: dataset")
-    path = Path(entry.path)
+    dataset = dataset_of(dataset_name, f"{heading}: dataset")
     if not path.exists():
         raise DatasetError(
-            f"{_heading(entry)}: path = '{path}': no such file or folder; expected a recording, or "
+            f"{heading}: path = '{path}': no such file or folder; expected a recording, or "
             "a folder of recordings"
         )
     try:
         clips = files_in(path if path.is_dir() else path.parent, dataset)
     except DatasetError as error:
-        raise _about(entry, error) from error
+        raise DatasetError(f"{heading}: {error}") from error
     if not path.is_dir():
-        clips = [clip for clip in clips if path in {file for file, _, _ in clip.tables}]
+        clips = [each for each in clips if path in {file for file, _, _ in each.tables}]
         if not clips:
             raise DatasetError(
-                f"{_heading(entry)}: path = '{path}': no file of tracks of {dataset.name}; expected"
+                f"{heading}: path = '{path}': no file of tracks of {dataset.name}; expected"
                 f" {', '.join(table.files for table in dataset.layout)}"
             )
-    names = [clip.name for clip in clips]
-    if entry.clip and entry.clip not in names:
-        raise ConfigError(
-            f"{_heading(entry)}: clip = '{entry.clip}': not in {path}; "
-            f"{suggestion(entry.clip, names)}"
-        )
-    wanted = [clip for clip in clips if entry.clip in {"", clip.name}]
+    names = [each.name for each in clips]
+    if clip and clip not in names:
+        raise ConfigError(f"{heading}: clip = '{clip}': not in {path}; {suggestion(clip, names)}")
+    wanted = [each for each in clips if clip in {"", each.name}]
     if len(wanted) > 1:
         raise ConfigError(
-            f"{_heading(entry)}: {path} has {len(wanted)} recordings; name one as clip: "
+            f"{heading}: {path} has {len(wanted)} recordings; name one as clip: "
             f"{', '.join(names[:5])}{', ...' if len(names) > 5 else ''}"
         )
     return wanted[0], dataset
@@ -98,7 +112,3 @@ def _all(files: RecordingFiles) -> list[Path]:
 
 def _heading(entry: RecordedConfig) -> str:
     return f"[[crowd.recorded]] '{entry.name}'"
-
-
-def _about(entry: RecordedConfig, error: DatasetError) -> DatasetError:
-    return DatasetError(f"{_heading(entry)}: {error}")

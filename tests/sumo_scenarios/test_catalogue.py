@@ -24,8 +24,9 @@ def message(name_or_path: str | Path) -> str:
     return str(caught.value)
 
 
-def test_five_scenarios_are_bundled() -> None:
-    assert available() == ("crossings", "encounter", "junction", "shared_space", "street")
+def test_six_scenarios_are_bundled() -> None:
+    known = ("crossings", "encounter", "junction", "recorded", "shared_space", "street")
+    assert available() == known
 
 
 def test_a_bundled_scenario_is_found_by_name_with_its_settings(scenario: Scenario) -> None:
@@ -97,7 +98,7 @@ def test_a_linked_config_is_taken_where_the_link_is(my_folder: Path, tmp_path: P
 def test_a_mistyped_name_is_answered_with_the_right_one(typo: str) -> None:
     assert message(typo) == (
         f"unknown scenario {typo!r}; did you mean 'shared_space'? "
-        "(bundled: crossings, encounter, junction, shared_space, street; "
+        "(bundled: crossings, encounter, junction, recorded, shared_space, street; "
         "or a folder, or a .sumocfg file)"
     )
 
@@ -105,7 +106,7 @@ def test_a_mistyped_name_is_answered_with_the_right_one(typo: str) -> None:
 @pytest.mark.parametrize("nonsense", ["", "   ", "xyzzy", "a\0b"])
 def test_nonsense_is_answered_with_what_there_is(nonsense: str) -> None:
     answer = message(nonsense)
-    assert "crossings, encounter, junction, shared_space, street" in answer
+    assert "crossings, encounter, junction, recorded, shared_space, street" in answer
     assert "did you mean" not in answer
     assert "\n" not in answer
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import giveway
@@ -13,8 +14,6 @@ from giveway.errors import ConfigError, DatasetError
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
-
-    import pandas as pd
 
 # Starts [m] and velocities [m/s]: two cross the ego's way before it comes, one walks into its side
 # at once, one later, one meets it head-on, and one is far away. The ego's front starts at x = 2.5 m
@@ -158,3 +157,33 @@ def test_a_wrong_recording_ends_before_the_run(run: Callable, tmp_path: Path) ->
         run(entry={"path": str(tmp_path / "nowhere")})
     with pytest.raises(ConfigError, match="clip = 'lawn': not in "):
         run(entry={"clip": "lawn"})
+
+
+STUDY = """
+name = "recorded"
+replications = 4
+[run]
+scenario = "recorded"
+[factors]
+controller = ["mpc", "pid-tuned"]
+"crowd.model" = ["recorded", "vci"]
+[comparison]
+minimum_pairs = 3
+resamples = 99
+"""
+
+
+def test_the_bundled_recording_runs_and_no_worker_changes_a_byte(
+    study_of: Callable, tmp_path: Path
+) -> None:
+    alone = study_of(STUDY, tmp_path / "alone")
+    parallel = study_of(STUDY, tmp_path / "parallel", jobs=2)
+    tables = [study.path / "runs.csv" for study in (alone, parallel)]
+    assert tables[0].read_bytes() == tables[1].read_bytes()
+    rows = pd.read_csv(tables[0])
+    assert len(rows) == 16
+    assert (rows["ending"] == "completed").all()
+    # nothing is drawn: all seeds are equal, and the models are not
+    times = rows.groupby(["controller", "crowd.model"])["completion_time"]
+    assert (times.nunique() == 1).all()
+    assert (rows["frontal_contacts"] == 0).all()

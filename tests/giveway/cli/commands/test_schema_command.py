@@ -68,6 +68,9 @@ def test_what_giveway_ships_fits(validators: Validators) -> None:
     for name in available():
         for file in find(name).config_file.parent.glob("*.toml"):
             values = tomllib.loads(file.read_text(encoding="utf-8"))
+            if "frame_rate" in values:  # the description of a recording
+                assert validators["giveway-dataset.schema.json"].is_valid(values), file
+                continue
             values.pop("description", None)
             settings = values.get("settings", values)
             assert validators["giveway-run.schema.json"].is_valid(settings), file

@@ -1,0 +1,74 @@
+"""Drives of egos beside the recorded vehicle's, by the recording that is bundled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+import giveway
+from giveway.errors import ConfigError
+from giveway.recordings.measuring import measure
+from giveway.replays.run_folder import RunFolder
+from giveway.results.recorded_drive import MEASURES, RECORDED_DRIVER, compared, recording_of_run
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("recorded") / "mpc"
+    giveway.run({"scenario": "recorded"}, results=folder, pictures=False)
+    return folder
+
+
+def test_the_same_controller_drives_as_recorded(folder: Path) -> None:
+    """The recorded car was driven by mpc, and has the same place, time and speed."""
+    recorded, own = compared([folder]).to_dict("records")
+    assert (recorded["driver"], own["driver"]) == (RECORDED_DRIVER, "mpc")
+    assert recorded["recording"] == own["recording"] == "yard"
+    assert recorded["near"] >= 5
+    for name, tolerance in (("duration", 0.3), ("mean_speed", 0.1), ("clearance", 0.2)):
+        assert own[name] == pytest.approx(recorded[name], abs=tolerance)
+    for name in ("near", "close", "person_first", "vehicle_first", "touched", "unaware"):
+        assert own[name] == recorded[name]
+
+
+def test_a_run_is_measured_as_its_own_tables_say(folder: Path) -> None:
+    run = RunFolder.read(folder)
+    found = measure([recording_of_run(run)])
+    (drive,) = found.drives.to_dict("records")
+    assert drive["maximum_speed"] == pytest.approx(run.summary["maximum_speed"], abs=1e-6)
+    assert drive["duration"] == pytest.approx(run.summary["simulated_time"], abs=1e-6)
+    own = run.pedestrians.set_index("id")["minimum_clearance"]
+    for row in found.people.itertuples():
+        assert row.clearance == pytest.approx(own[row.person], abs=2e-6)
+
+
+def test_a_recorded_driver_has_one_row_for_all_runs(folder: Path) -> None:
+    table = compared([folder, folder])
+    assert table["driver"].tolist() == [RECORDED_DRIVER, "mpc"]
+    assert list(table.columns)[3:] == [name for name, _ in MEASURES]
+    assert np.isfinite(table["duration"]).all()
+
+
+def test_a_run_without_a_recorded_vehicle_is_refused(tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    giveway.run({"time_limit": 0.5, "crowd.pedestrians": 2}, results=other, pictures=False)
+    with pytest.raises(ConfigError, match=r"other: no \[\[crowd.recorded\]\] with a vehicle"):
+        compared([other])
+    entry = {"name": "yard", "path": str(yard()), "dataset": str(yard().with_name("yard.toml"))}
+    crowd = {"recorded": [{**entry, "vehicle": "7"}]}
+    nobody = tmp_path / "nobody"
+    giveway.run({"scenario": "recorded", "crowd": crowd, "time_limit": 1.0}, results=nobody)
+    with pytest.raises(ConfigError, match=r"'yard': vehicle = '7': not in 'yard'; expected one of"):
+        compared([nobody])
+
+
+def yard() -> Path:
+    """Return the people's file of the bundled recording."""
+    import sumo_scenarios
+
+    return sumo_scenarios.find("recorded").folder / "yard_traj_ped_filtered.csv"
