@@ -153,7 +153,9 @@ class Roster:
         leaving = there.copy()
         for row, name in enumerate(self.names):
             if name in self.written:
-                leaving[row] = self.written.has_ended(name)
+                leaving[row] &= self.written.has_ended(name)
+                if self.written.has_ended(name) and not there[row]:
+                    self.written.release(name)  # the destination is beyond the written walk
             elif name in self._stays:
                 leaving[row] &= step >= self._stays[name]
         for row in np.flatnonzero(leaving).tolist():

@@ -18,7 +18,7 @@ class RecordedPeopleMetric:
         """The columns that these runs have besides."""
 
         handed_over: Annotated[
-            int, Quantity(None, "recorded pedestrians who began to react to a vehicle")
+            int, Quantity(None, "recorded pedestrians whom another model moved from an instant on")
         ]
         recorded_contacts: Annotated[
             int,

@@ -14,6 +14,7 @@ _SMOOTHED = 0.5  # Time [s] over which the places of the vehicle are averaged
 _APART = 2.0  # Distance [m] between the points of its path
 _BEHIND = 1.0  # Length [m] of the lane behind the vehicle's rear at the beginning
 _BEYOND = 30.0  # Length [m] of the lane beyond the vehicle's last place
+_WALK_ON = 20.0  # Distance [m] that people go on after the end of the recording
 _PATIENCE = 60.0  # Time [s] that the ego may take longer than the vehicle
 
 
@@ -79,6 +80,7 @@ def scenario_for(
                 "clip": recording.name,
                 "begin": round(0.0 - float(frames[0]) / recording.frame_rate, 6),
                 "vehicle": str(vehicle),
+                "walk_on": _WALK_ON,
             }
         ],
     }

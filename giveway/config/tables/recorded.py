@@ -72,8 +72,8 @@ class RecordedConfig(Section):
     walk_on: float = option(
         0.0,
         "m",
-        "Distance beyond the end of each track, in the last direction, to the destination of a "
-        "person who is simulated",
+        "Distance that people go on beyond the end of their tracks, in the last direction, moved "
+        "by a model",
         ge=0,
         le=1000,
         because="nothing is known of people so far from where they were seen",
