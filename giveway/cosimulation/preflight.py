@@ -48,6 +48,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
         ControlError: a controller, model or metric is not installed.
         MetricError: the columns of a metric cannot be used.
         VehicleError: a vehicle FMU cannot be read, or its profile does not fit.
+        DatasetError: a recording whose people are to come in cannot be read.
     """
     if config.measure:
         require_pedpy()
@@ -60,6 +61,12 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     require_vehicles(egos, time_step)
     require_code(config, time_step)
     metric_columns(config)  # raises an error if the columns are not sound
+    if config.crowd.recorded:
+        # imported here, since pandas comes with it
+        from giveway.recordings.clips import read_clip
+
+        for entry in config.crowd.recorded:
+            read_clip(entry)
     require_steady_preset(config.crowd.preset, time_step, "[crowd] preset")
     for ego in egos:
         if ego.perception.preset:

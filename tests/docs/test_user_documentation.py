@@ -9,6 +9,8 @@ import pytest
 
 from fmus import VehicleProfile, make_profile
 from giveway.config.files.layers import options
+from giveway.config.option import declared
+from giveway.config.tables.recorded import RecordedConfig, RecordedOptions
 from giveway.metrics import (
     DELAY_FIELDS,
     DELAY_SUMMARY_FIELDS,
@@ -80,6 +82,18 @@ def test_every_option_is_documented_with_flag_unit_and_meaning() -> None:
         description = str(option.field.description).replace("|", "/")
         assert f"| `{option.location[-1]}` | `{option.flag}` | {option.unit or ''} |" in text
         assert description in text
+
+
+def test_every_key_of_recorded_people_is_documented() -> None:
+    text = (DOCS / "options.md").read_text(encoding="utf-8")
+    for name, field in RecordedConfig.model_fields.items():
+        meaning = re.escape(str(field.description))
+        (row,) = re.findall(rf"^\| `{name}` \| .* \| {meaning} \|$", text, re.MULTILINE)
+        assert row.startswith(f"| `{name}` | {declared(field).get('unit') or ''} |")
+    page = (DOCS / "recordings.md").read_text(encoding="utf-8")
+    for name, field in RecordedOptions.model_fields.items():
+        value = f'"{field.default}"' if isinstance(field.default, str) else field.default
+        assert f"\n{name} = {value} " in page
 
 
 def toml_blocks(page: str) -> list[str]:
