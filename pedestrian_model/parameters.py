@@ -74,6 +74,8 @@ _RANGES: Mapping[str, _Range] = MappingProxyType(
         "detour_margin": _Range(0.001, 10.0, _LENGTH, zero=True),
         "max_acceleration": _Range(0.1, 50.0, "a sprinter starts with 10 m/s^2"),
         "max_speed": _Range(0.1, 12.5, "nobody runs faster than that"),
+        "sway": _Range(0.001, 10.0, "it is less than a sprinter's acceleration", zero=True),
+        "sway_time": _Range(0.01, 60.0, "people do not shiver, and change within a minute"),
     }
 )
 
@@ -133,6 +135,10 @@ class VciParameters:
     # Limits, TSAS 2020.
     max_acceleration: float = 5.0  # a_max [m/s^2]
     max_speed: float = 2.5  # v_max [m/s]
+
+    # The sway, a random acceleration that giveway adds to the model's (ours; giveway's docs).
+    sway: float = 0.0  # standard deviation [m/s^2] on each axis
+    sway_time: float = 0.5  # correlation time [s]
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -67,7 +67,7 @@ RUNS: dict[str, dict[str, Any]] = {
     },
     "an FMU that is not ours": {"crowd": {"pedestrians": 20}, "vehicle": {"fmu": "FOREIGN"}},
     "noise": {
-        "crowd": {"pedestrians": 20, "acceleration_noise": 0.3, "two_sided": True},
+        "crowd": {"pedestrians": 20, "two_sided": True},
         "perception": {"position_noise": 0.1, "preset": "TABLE2"},
         "seed": 5,
     },

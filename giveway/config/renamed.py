@@ -68,6 +68,8 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("regulation", "follow_up_gap"): "leave it out: it is the Highway Capacity Manual's",
     ("crowd", "desired_speed_min"): "leave it out: it is always 0.5 m/s",
     ("crowd", "desired_speed_max"): "leave it out: it is always 2.2 m/s",
+    ("crowd", "acceleration_noise"): "write a preset file with base = 'SIM' and [parameters] sway "
+    "[m/s^2] and sway_time [s] (--crowd-preset FILE)",
     ("crowd", "detour"): ("model_options", "detour"),
     ("crowd", "creep"): ("model_options", "creep"),
     ("vehicle", "exact"): "for true write [vehicle] fmu = 'fmi2-exact' (--vehicle fmi2-exact)",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from giveway.config import RunConfig
 from giveway.config.tables.people import DISTRACTED
 from giveway.crowd.motion.as_recorded import WrittenWalks
-from giveway.crowd.motion.disturbance import disturbance_of
+from giveway.crowd.motion.sway import sway_of
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
 
 ARRIVAL_RADIUS = 0.5  # distance [m] to the destination, within which a pedestrian has arrived
@@ -195,7 +195,7 @@ class Walking:
         self._model = model
         self._roster = roster
         self._log = log
-        self._disturbance = disturbance_of(config, model)
+        self._sway = sway_of(config, model, config.seed)
 
     def note(self, step: int) -> None:
         """Note the positions of all people at the control instant ``step``."""
@@ -215,12 +215,10 @@ class Walking:
         if not len(roster.person_ids):
             return []
         crowd = roster.crowd
-        if self._disturbance is None:
+        if self._sway is None:
             self._model.advance(crowd, vehicles, surroundings)
         else:
-            self._disturbance.advance(
-                crowd, vehicles, surroundings, roster.person_ids, len(roster.ids)
-            )
+            self._sway.advance(crowd, vehicles, surroundings, roster.person_ids, len(roster.ids))
         if not (roster.holds or any_arrived(roster.crowd, ARRIVAL_RADIUS)):
             return []
         there = arrived(roster.crowd, ARRIVAL_RADIUS)

@@ -15,7 +15,8 @@ from giveway.precompile import compile_kernels_once
 from giveway.recordings import dataset_of, read_recordings
 from giveway.results.folder import check_folder
 from giveway.validation.behaviour import Comparison, compare
-from giveway.validation.behaviour.comparison import HALVES, RECORDED, SEED, SIMULATED
+from giveway.validation.behaviour.comparison import DRAWS, HALVES, RECORDED, SEED, SIMULATED
+from giveway.validation.behaviour.measures import MEASURES
 from giveway.validation.behaviour.output import FILES, write_behaviour
 from pedestrian_model import LONGEST_STEP, PedestrianModelError
 
@@ -78,18 +79,21 @@ def _distributions(found: Comparison, title: str) -> Table:
         caption=(
             "medians; speed, acceleration: within 3 m of a moving vehicle; distance: "
             "Wasserstein-1; floor: its mean between two halves of the "
-            f"{found.near} recorded people, {HALVES} draws, seed {SEED}"
+            f"{found.near} recorded people, {HALVES} times, seed {SEED}; people are simulated "
+            f"{DRAWS} times"
         ),
     )
-    for each in found.distributions:
+    for number, each in enumerate(found.distributions):
+        if number == len(MEASURES):
+            table.add_section()
+            table.add_row("mean of the six ratios", "", "", "", "", _number(found.mean_ratio, 2))
+            table.add_section()
         table.add_row(
             escape(f"{each.measure.title} [{each.measure.unit}]"),
             *(_number(median, 2) for median in each.medians),
             *(_number(value, 3) for value in (each.distance, each.floor)),
             _number(each.ratio, 2),
         )
-    table.add_section()
-    table.add_row("mean of the ratios", "", "", "", "", _number(found.mean_ratio, 2))
     return table
 
 
@@ -101,11 +105,12 @@ def _counts(found: Comparison) -> Table:
     table = Table(*numbers_of(RECORDED, SIMULATED), title="Near recorded vehicles")
     recorded, simulated = found.counts[RECORDED], found.counts[SIMULATED]
     both = (recorded, simulated)
-    table.add_row(f"contacts, of {found.people} people", *(str(each.contacts) for each in both))
+    table.add_row(f"contacts, of {found.people} people", *(f"{each.contacts:g}" for each in both))
     table.add_row(
         f"close passes, of {recorded.pairs} pairs within 4 m",
-        *(f"{each.close} ({each.close_share:.1%})" for each in both),
+        *(f"{each.close:g} ({each.close_share:.1%})" for each in both),
     )
+    table.add_row("the person goes first, of those who cross", *(f"{e.first:.0%}" for e in both))
     table.add_row(
         escape("95 % of accelerations are below [m/s^2]"),
         *(_number(each.acceleration, 2) for each in both),

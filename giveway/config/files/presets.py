@@ -5,7 +5,7 @@ import functools
 from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import tomlkit
 
@@ -18,6 +18,8 @@ SUFFIX = ".toml"
 NAMES = tuple(field.name for field in fields(VciParameters))
 """The names of the model's parameters, in the order of declaration."""
 
+_ADDED: Final = {name: getattr(VciParameters, name) for name in ("sway", "sway_time")}
+"""Parameters that preset files of earlier versions do not name, with the values of these files."""
 _TABLES = frozenset({"name", "base", "parameters", "provenance"})
 
 
@@ -123,7 +125,7 @@ def _read(path: Path, _stamp: object) -> VciParameters:
     given = values.get("parameters", {})
     if not isinstance(given, dict):
         raise ConfigError(f"{path}: parameters = {given!r}: expected a table [parameters]")
-    known = {**_base(path, values.get("base")), **given}
+    known = {**_ADDED, **_base(path, values.get("base")), **given}
     _require_names(path, known)
     try:
         return VciParameters(**known)

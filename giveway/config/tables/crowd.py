@@ -102,15 +102,6 @@ class CrowdConfig(Section):
         le=1,
         because=SHARE,
     )
-    acceleration_noise: float = option(
-        0.0,
-        "m/s^2",
-        "Standard deviation per axis of a random acceleration in each step. It is cut off at "
-        "twice that",
-        ge=0,
-        le=5,
-        because="people of the model accelerate with at most 5 m/s^2",
-    )
     minimum_spacing: float = option(
         0.5,
         "m",
@@ -236,9 +227,4 @@ class CrowdConfig(Section):
             raise ValueError(
                 f"model = '{RECORDED}': nobody is recorded; name a recording in "
                 "[[crowd.recorded]] (path, dataset), or another model"
-            )
-        if self.acceleration_noise:
-            raise ValueError(
-                f"acceleration_noise = {self.acceleration_noise:g}: people who walk as they were "
-                f"recorded have none; leave it out, or name another model than '{RECORDED}'"
             )

@@ -146,19 +146,17 @@ def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
     """A hash of all that a crowd without egos depends on."""
     digest = hashlib.sha256()
     settings, crowd = config.crowd, beginning.crowd
-    noise = settings.acceleration_noise
+    parameters = parameters_of(settings.preset)
     come_in = settings.flow or settings.recorded
     drawn = (settings, config.seed, beginning.substeps) if come_in else None
     for part in (
-        parameters_of(settings.preset),
+        parameters,
         (
             settings.model,
             sorted(code_hashes(config, (MODEL,)).items()),
             sorted(config.model_options.items()),
-            config.seed if settings.plugged_in else None,
+            config.seed if settings.plugged_in or parameters.sway else None,
             time_step,
-            noise,
-            config.seed if noise else None,
         ),
         beginning.names,
         sorted(beginning.traits.items()),

@@ -1,1 +1,1 @@
-"""The disturbances and attractions on top of a pedestrian model."""
+"""The sway of people, and attractions, on top of a pedestrian model."""

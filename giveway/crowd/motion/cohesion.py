@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.crowd.motion.disturbance import pushed
+from giveway.crowd.motion.sway import pushed
 from giveway.crowd.motion.neighbours import AroundModel
 from giveway.geometry.kernel import Array
 from pedestrian_model import (

@@ -1,7 +1,12 @@
-"""The comparison of simulated with recorded people: distances of distributions, and counts."""
+"""The comparison of simulated with recorded people: distances of distributions, and counts.
 
-from collections.abc import Callable, Sequence
+People are simulated several times with other desired speeds and sways, and all of them are compared
+with the recorded ones, so that little depends on a draw.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -13,20 +18,26 @@ from giveway.geometry.kernel import Array
 from giveway.recordings import Recording
 from giveway.validation.behaviour.measures import (
     ACCELERATION,
+    ALL,
+    ENCROACHMENT,
     MEASURES,
     Behaviour,
     Measure,
+    Samples,
     behaviour_of,
     near_vehicles,
     together,
 )
 from giveway.validation.behaviour.replaying import replayed, settled
+from pedestrian_model import VciParameters
 
 RECORDED, SIMULATED = "recorded", "simulated"
 HALVES = 200
 """Number of draws of two halves of the recorded people."""
 SEED = 0
 """Seed of these draws."""
+DRAWS = 5
+"""Number of times that people are simulated."""
 LEVELS = np.linspace(0.0, 1.0, 101)
 """Levels of the quantiles between which the halves' band is drawn."""
 _BAND = (2.5, 97.5)  # Percentiles of the halves' quantiles
@@ -74,16 +85,18 @@ class Counts:
     """The counts of recorded or of simulated people.
 
     Attributes:
-        contacts: Number of people who touch a vehicle.
-        close: Number of close passes: pairs of a person and a vehicle.
+        contacts: Number of people who touch a vehicle; if simulated, the mean of the draws.
+        close: Number of close passes: pairs of a person and a vehicle; if simulated, the mean.
         pairs: Number of pairs of a person and a moving vehicle within 4 m.
         acceleration: Acceleration [m/s^2] near a moving vehicle that 95 % of samples are below.
+        first: Share of people who cross a vehicle's path before it, of those who cross it.
     """
 
-    contacts: int
-    close: int
+    contacts: float
+    close: float
     pairs: int
     acceleration: float
+    first: float
 
     @property
     def close_share(self) -> float:
@@ -99,7 +112,7 @@ class Comparison:
         recordings: Number of recordings.
         people: Number of people in them.
         near: Number of these near a moving vehicle.
-        distributions: Distributions, in the order of ``MEASURES``.
+        distributions: Distributions, in the order of ``ALL``.
         counts: Counts, by ``RECORDED`` and ``SIMULATED``.
         table: Table with a row per person near a moving vehicle, recorded and simulated.
     """
@@ -113,8 +126,9 @@ class Comparison:
 
     @property
     def mean_ratio(self) -> float:
-        """The mean of the ratios that are known."""
-        ratios = [each.ratio for each in self.distributions if np.isfinite(each.ratio)]
+        """The mean of the ratios of ``MEASURES`` that are known."""
+        ratios = [each.ratio for each in self.distributions[: len(MEASURES)]]
+        ratios = [ratio for ratio in ratios if np.isfinite(ratio)]
         return float(np.mean(ratios)) if ratios else np.nan
 
     @property
@@ -138,73 +152,149 @@ def compare(
     Raises:
         DatasetError: fewer than four people are near a moving vehicle.
     """
-    parts: dict[str, list[Behaviour]] = {RECORDED: [], SIMULATED: []}
-    names: list[tuple[str, str]] = []
-    for read in recordings:
-        recording = settled(read)
-        near = near_vehicles(recording)
-        names += [(recording.name, person) for person in recording.people.ids]
-        parts[RECORDED].append(behaviour_of(recording, near))
-        parts[SIMULATED].append(behaviour_of(replayed(recording, config), near))
-        advance(recording.name)
-    found = {who: together(each) for who, each in parts.items()}
-    inside = np.flatnonzero(found[RECORDED].pairs)
-    if len(inside) < _FEWEST:
-        raise DatasetError(
-            f"recordings: of {len(names)} people {len(inside)} are within 4 m of a vehicle "
-            f"faster than 0.5 m/s; expected at least {_FEWEST}; giveway data describe lists "
-            "people and vehicles"
-        )
+    yardstick = Yardstick(recordings)
+    simulated = yardstick.simulated(config, DRAWS, advance)
+    found = {RECORDED: yardstick.recorded, SIMULATED: together(simulated)}
     return Comparison(
         recordings=len(recordings),
-        people=len(names),
-        near=len(inside),
-        distributions=distributions(found[RECORDED], found[SIMULATED]),
-        counts={who: _counts(each) for who, each in found.items()},
-        table=_people(names, found),
+        people=len(yardstick.names),
+        near=yardstick.near,
+        distributions=yardstick.distributions(found[SIMULATED]),
+        counts={RECORDED: counts_of([yardstick.recorded]), SIMULATED: counts_of(simulated)},
+        table=_people(yardstick.names, {RECORDED: yardstick.recorded, SIMULATED: simulated[0]}),
     )
 
 
-def distributions(recorded: Behaviour, simulated: Behaviour) -> tuple[Distribution, ...]:
-    """Return the distribution of each measure, with the same halves for all of them."""
+class Yardstick:
+    """Recorded people, with which simulated ones are compared, and how far two halves differ.
+
+    Args:
+        recordings: Recordings from :func:`giveway.recordings.read_recordings`.
+
+    Raises:
+        DatasetError: fewer than four people are near a moving vehicle.
+    """
+
+    def __init__(self, recordings: Sequence[Recording]) -> None:
+        self._recordings = [settled(read) for read in recordings]
+        self._near = [near_vehicles(each) for each in self._recordings]
+        self.names = [(each.name, who) for each in self._recordings for who in each.people.ids]
+        pairs = zip(self._recordings, self._near, strict=True)
+        self.recorded = together([behaviour_of(*pair) for pair in pairs])
+        inside = np.flatnonzero(self.recorded.pairs)
+        self.near = len(inside)
+        if self.near < _FEWEST:
+            raise DatasetError(
+                f"recordings: of {len(self.names)} people {self.near} are within 4 m of a vehicle "
+                f"faster than 0.5 m/s; expected at least {_FEWEST}; giveway data describe lists "
+                "people and vehicles"
+            )
+        self._floors = floors_of(self.recorded)
+
+    def simulated(
+        self,
+        config: RunConfig,
+        draws: int,
+        advance: Callable[[str], None] = lambda _name: None,
+        parameters: VciParameters | None = None,
+    ) -> list[Behaviour]:
+        """Return the behaviour of simulated people, of each draw.
+
+        Args:
+            config: Configuration that names the pedestrian model and its preset.
+            draws: Number of draws of desired speeds and sways.
+            advance: Function that is called with the name of each recording that is done.
+            parameters: Parameters of VCI in place of the preset's, or None.
+        """
+        found: list[list[Behaviour]] = [[] for _ in range(draws)]
+        for recording, near in zip(self._recordings, self._near, strict=True):
+            for draw, each in enumerate(found):
+                each.append(behaviour_of(replayed(recording, config, draw, parameters), near))
+            advance(recording.name)
+        return [together(each) for each in found]
+
+    def ratios(self, simulated: Behaviour) -> dict[str, float]:
+        """Return the ratio of each measure to its floor, by its name; nan without samples."""
+        return {each.measure.name: each.ratio for each in self.distributions(simulated)}
+
+    def distributions(self, simulated: Behaviour) -> tuple[Distribution, ...]:
+        """Return the distribution of each measure."""
+        return distributions(self.recorded, simulated, self._floors)
+
+
+class Floor(NamedTuple):
+    """What two halves of the recorded people differ by, in one measure.
+
+    Attributes:
+        distance: Mean Wasserstein-1 distance between the halves, in the measure's unit.
+        low, high: 95 % band (L,) of the halves' quantiles at ``LEVELS``.
+    """
+
+    distance: float
+    low: Array
+    high: Array
+
+
+def floors_of(recorded: Behaviour) -> dict[str, Floor]:
+    """Return the floor of each measure, with the same halves for all of them."""
     inside = np.flatnonzero(recorded.pairs)
     generator = np.random.default_rng(SEED)
     halves = np.zeros((HALVES, len(recorded.pairs)), dtype=bool)
     for half in halves:
         half[generator.permutation(inside)[: len(inside) // 2]] = True
-    return tuple(_distribution(each, recorded, simulated, halves) for each in MEASURES)
+    return {each.name: _floor(recorded.samples[each.name], halves) for each in ALL}
 
 
-def _distribution(
-    measure: Measure, recorded: Behaviour, simulated: Behaviour, halves: Array
-) -> Distribution:
-    samples, other = recorded.samples[measure.name], simulated.samples[measure.name].value
-    floors, quantiles = [], []
+def _floor(samples: Samples, halves: Array) -> Floor:
+    distances, quantiles = [], []
     for half in halves:
         chosen = half[samples.person]
         one, two = samples.value[chosen], samples.value[~chosen]
         if len(one) and len(two):
-            floors.append(wasserstein_distance(one, two))
+            distances.append(wasserstein_distance(one, two))
             quantiles.append(np.quantile(one, LEVELS))
-    known = len(samples.value) and len(other)
     band = np.percentile(quantiles, _BAND, axis=0) if quantiles else np.full((2, 101), np.nan)
-    return Distribution(
-        measure,
-        samples.value,
-        other,
-        float(wasserstein_distance(samples.value, other)) if known else np.nan,
-        float(np.mean(floors)) if floors else np.nan,
-        *band,
+    return Floor(float(np.mean(distances)) if distances else np.nan, *band)
+
+
+def distributions(
+    recorded: Behaviour, simulated: Behaviour, floors: Mapping[str, Floor]
+) -> tuple[Distribution, ...]:
+    """Return the distribution of each measure.
+
+    Args:
+        recorded: Recorded people.
+        simulated: Simulated people, of all draws.
+        floors: Floors by measure, see :func:`floors_of`.
+    """
+    return tuple(
+        _distribution(each, recorded.samples[each.name], simulated.samples[each.name], floors)
+        for each in ALL
     )
 
 
-def _counts(found: Behaviour) -> Counts:
-    hard = found.samples[ACCELERATION.name].value
+def _distribution(
+    measure: Measure, recorded: Samples, simulated: Samples, floors: Mapping[str, Floor]
+) -> Distribution:
+    both = recorded.value, simulated.value
+    known = all(len(values) for values in both)
+    distance = float(wasserstein_distance(*both)) if known else np.nan
+    floor, low, high = floors[measure.name]
+    return Distribution(measure, *both, distance, floor, low, high)
+
+
+def counts_of(draws: Sequence[Behaviour]) -> Counts:
+    """Return the counts of people: means of the draws, or those of the recorded people alone."""
+    hard, signed = (
+        np.concatenate([each.samples[name].value for each in draws])
+        for name in (ACCELERATION.name, ENCROACHMENT.name)
+    )
     return Counts(
-        contacts=int(found.contact.sum()),
-        close=int(found.close.sum()),
-        pairs=int(found.pairs.sum()),
+        contacts=float(np.mean([each.contact.sum() for each in draws])),
+        close=float(np.mean([each.close.sum() for each in draws])),
+        pairs=int(draws[0].pairs.sum()),
         acceleration=float(np.quantile(hard, 0.95)) if len(hard) else np.nan,
+        first=float(np.mean(signed > 0.0)) if len(signed) else np.nan,
     )
 
 
@@ -214,7 +304,7 @@ def _people(names: Sequence[tuple[str, str]], found: dict[str, Behaviour]) -> pd
     for who, each in found.items():
         table = pd.DataFrame(names, columns=["recording", "person"])
         table["who"] = who
-        for measure in MEASURES:
+        for measure in ALL:
             table[measure.name] = each.of_each(measure)
         table["contact"] = each.contact
         table["vehicles"] = each.pairs

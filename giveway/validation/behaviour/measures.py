@@ -19,6 +19,15 @@ BESIDE = 3.0
 """Clearance [m] up to which speeds and accelerations of people count."""
 INTERVAL = 0.2
 """Time [s] between two samples, and over which velocities are differenced."""
+STRIDE = 0.5
+"""Time [s] between the positions whose second difference is an acceleration. The filters of files
+lag behind in the velocities, and over a shorter time the errors of positions are felt."""
+LAG = 0.5
+"""Time [s] of the autocorrelation of a person's speed."""
+
+
+_LAGS = 3  # Number of lags for which a person must be seen
+_STEADY = 1e-8  # Variance [m^2/s^2] of a speed that does not change
 
 
 class Measure(NamedTuple):
@@ -42,6 +51,12 @@ ENCROACHMENT: Final = Measure("post_encroachment_time", "s", "post-encroachment 
 NEIGHBOUR: Final = Measure("neighbour", "m", "nearest person")
 ACCELERATION: Final = Measure("acceleration", "m/s^2", "acceleration")
 MEASURES: Final = (SPEED, CLEARANCE, EVASION, ENCROACHMENT, NEIGHBOUR, ACCELERATION)
+"""The measures whose mean ratio says how like recorded people the simulated ones are."""
+CHANGE: Final = Measure("change", "m/s^2", "acceleration over 0.2 s")
+PERSISTENCE: Final = Measure("persistence", "-", "autocorrelation of speed")
+SHORT_TERM: Final = (CHANGE, PERSISTENCE)
+"""The measures that a model may buy with white noise: they are told apart."""
+ALL: Final = MEASURES + SHORT_TERM
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,15 +140,18 @@ def behaviour_of(recording: Recording, near: NDArray[np.bool_]) -> Behaviour:
     counted: NDArray[np.bool_] = near.sum(axis=1) > 0
     every = max(1, round(INTERVAL * recording.frame_rate))
     sampled = counted[people.track] & (people.frame % every == 0)
-    change = _accelerations(people, every, recording.frame_rate)
+    beside_one = sampled & (beside <= BESIDE)
+    rate = recording.frame_rate
     apart = _nearest(people, sampled)
     samples = {
-        SPEED.name: _rows(people, people.speed, sampled & (beside <= BESIDE)),
+        SPEED.name: _rows(people, people.speed, beside_one),
         CLEARANCE.name: _each(np.minimum(least, NEAR), counted),
         EVASION.name: _each(_evasions(people), counted),
         ENCROACHMENT.name: _each(signed, counted),
         NEIGHBOUR.name: _rows(people, apart, sampled),
-        ACCELERATION.name: _rows(people, change, sampled & (beside <= BESIDE)),
+        ACCELERATION.name: _rows(people, _accelerations(people, rate), beside_one),
+        CHANGE.name: _rows(people, _changes(people, every, rate), beside_one),
+        PERSISTENCE.name: _each(_autocorrelations(people, rate), counted),
     }
     return Behaviour(samples, touching < 0.0, near.sum(axis=1), close)
 
@@ -142,7 +160,7 @@ def together(parts: list[Behaviour]) -> Behaviour:
     """Return the behaviour of all people of several recordings, numbered in order."""
     offsets = np.cumsum([0, *(len(part.contact) for part in parts)]).tolist()
     samples = {}
-    for measure in MEASURES:
+    for measure in ALL:
         found = [part.samples[measure.name] for part in parts]
         samples[measure.name] = Samples(
             np.concatenate([each.value for each in found]),
@@ -173,17 +191,45 @@ def _each(values: Array, counted: NDArray[np.bool_]) -> Samples:
     return Samples(values[who], who)
 
 
-def _accelerations(people: Tracks, frames: int, frame_rate: float) -> Array:
+def _accelerations(people: Tracks, frame_rate: float) -> Array:
+    """Return the second difference (R,) [m/s^2] of each row's positions over ``STRIDE``."""
+    frames = max(1, round(STRIDE * frame_rate))
+    found = np.full(len(people.track), np.nan)
+    place = people.position
+    if len(found) > 2 * frames:
+        turn = place[2 * frames :] - 2.0 * place[frames:-frames] + place[: -2 * frames]
+        size = np.hypot(turn[:, 0], turn[:, 1]) * (frame_rate / frames) ** 2
+        found[frames:-frames] = np.where(_apart(people, 2 * frames), size, np.nan)
+    return found
+
+
+def _changes(people: Tracks, frames: int, frame_rate: float) -> Array:
     """Return the change (R,) [m/s^2] of each row's velocity from a row some frames before."""
     found = np.full(len(people.track), np.nan)
-    if len(found) <= frames:
-        return found
-    same = people.track[frames:] == people.track[:-frames]
-    same &= people.frame[frames:] - people.frame[:-frames] == frames
-    change = people.velocity[frames:] - people.velocity[:-frames]
-    size = np.hypot(change[:, 0], change[:, 1]) * frame_rate / frames
-    found[frames:] = np.where(same, size, np.nan)
+    if len(found) > frames:
+        change = people.velocity[frames:] - people.velocity[:-frames]
+        size = np.hypot(change[:, 0], change[:, 1]) * frame_rate / frames
+        found[frames:] = np.where(_apart(people, frames), size, np.nan)
     return found
+
+
+def _autocorrelations(people: Tracks, frame_rate: float) -> Array:
+    """Return the autocorrelation (n,) of each person's speed at ``LAG``, nan if seen briefly."""
+    lag = max(1, round(LAG * frame_rate))
+    found = np.full(len(people.ids), np.nan)
+    for track, (first, end) in enumerate(zip(people.bounds[:-1], people.bounds[1:], strict=True)):
+        if end - first >= _LAGS * lag:
+            speed = people.speed[first:end] - people.speed[first:end].mean()
+            spread = float(np.mean(speed * speed))
+            if spread > _STEADY:
+                found[track] = np.mean(speed[lag:] * speed[:-lag]) / spread
+    return found
+
+
+def _apart(people: Tracks, frames: int) -> NDArray[np.bool_]:
+    """Return whether each row and the one ``frames`` rows later are so many frames of one track."""
+    same: NDArray[np.bool_] = people.track[frames:] == people.track[:-frames]
+    return same & (people.frame[frames:] - people.frame[:-frames] == frames)
 
 
 def _evasions(people: Tracks) -> Array:

@@ -1,20 +1,34 @@
 """Replays of recordings: the vehicles as recorded, and people moved by a pedestrian model."""
 
+import zlib
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import RunConfig
+from giveway.config.tables.crowd import DESIRED_SPEEDS
+from giveway.crowd.generation.kinds import desired_speeds
 from giveway.crowd.models import model_of
+from giveway.crowd.motion.sway import sway_of
 from giveway.crowd.roster import Roster
 from giveway.geometry.kernel import Array
 from giveway.recordings import Recording, Tracks
-from giveway.validation.predictors import crowd_of
-from pedestrian_model import Vehicles
+from pedestrian_model import (
+    OPEN_GROUND,
+    Crowd,
+    CrowdModel,
+    PedestrianModel,
+    VciParameters,
+    Vehicles,
+)
 from pedestrian_model.stepping import substeps
 
+_STREAM = 0x5EED  # Key of the random stream of desired speeds
 _SETTLING = 0.5  # Time [s] skipped at the start of a recording, in which filters settle
+_BEYOND = 30.0  # Distance [m] that people want to go on from their last recorded place
+_HARDLY = 0.6  # Speed [m/s] in the first second, up to which the desired speed is drawn
+_STANDING = 0.3  # Speed [m/s] below which somebody stands at the end
 _SHORTEST = 1.0  # Time [s] for which a person must be seen
 
 
@@ -30,16 +44,24 @@ def settled(recording: Recording) -> Recording:
     return replace(recording, people=people.only(long))
 
 
-def replayed(recording: Recording, config: RunConfig) -> Recording:
+def replayed(
+    recording: Recording,
+    config: RunConfig,
+    draw: int = 0,
+    parameters: VciParameters | None = None,
+) -> Recording:
     """Return the recording with all its people simulated together, and its vehicles as recorded.
 
-    Each person enters at the recorded place and velocity, walks at the desired speed of the model's
-    parameters towards the last recorded place, and leaves at the recorded end. The vehicles react
-    to nobody.
+    Each person enters at the recorded place and velocity, walks to the last recorded place and on
+    from there, and leaves at the recorded end. The desired speed is the largest of the first
+    second, since a predictor of behaviour should not know of later. Who hardly walks then has a
+    drawn one, as in any crowd. People sway as the preset says. The vehicles react to nobody.
 
     Args:
         recording: Recording, see :func:`settled`.
-        config: Configuration that names the pedestrian model and its preset.
+        config: Configuration that names the pedestrian model, its preset, and the seed.
+        draw: Number of the draw; another one has other desired speeds and another sway.
+        parameters: Parameters of VCI in place of the preset's, or None.
 
     Raises:
         GivewayError: the model cannot be made.
@@ -51,11 +73,19 @@ def replayed(recording: Recording, config: RunConfig) -> Recording:
     position, velocity = np.empty((start[-1], 2)), np.empty((start[-1], 2))
     position[start[:-1]] = people.position[bounds[:-1]]
     velocity[start[:-1]] = people.velocity[bounds[:-1]]
-    destination = people.position[bounds[1:] - 1]
+    routes, passed = _routes(people), np.zeros(len(people.ids), dtype=np.int64)
     parts = substeps(1.0 / recording.frame_rate)
     step = 1.0 / recording.frame_rate / parts
     roster = Roster(people.ids)
-    model = model_of(config, step, roster)
+    model: PedestrianModel = (
+        CrowdModel(parameters, step) if parameters else model_of(config, step, roster)
+    )
+    seed = zlib.crc32(f"{recording.name} {config.seed} {draw}".encode())
+    random = np.random.default_rng((seed, _STREAM))
+    drawn = desired_speeds(config.crowd, ("",) * len(people.ids), random)
+    begun = _begun(people, round(_SHORTEST * recording.frame_rate))
+    desired_speed = np.where(begun > _HARDLY, begun.clip(*DESIRED_SPEEDS), drawn)
+    sway = sway_of(config, model, seed)
     vehicles = _Vehicles(recording.vehicles)
     now = np.empty(0, dtype=np.int64)
     crowd = None
@@ -64,16 +94,40 @@ def replayed(recording: Recording, config: RunConfig) -> Recording:
         rows = start[there] + k - first[there]
         if crowd is None or not np.array_equal(there, now):
             now = roster.person_ids = there
-            crowd = crowd_of(
-                position[rows],
-                velocity[rows],
-                destination[there],
-                model.parameters.desired_speed,
+            crowd = Crowd.create(
+                position[rows], velocity[rows], desired_speed[there], list(routes[there])
             )
+            crowd.waypoint_index[:] = passed[there]
         for part in range(parts):
-            model.advance(crowd, Vehicles(vehicles.at(k, part * step)))
+            now_there = Vehicles(vehicles.at(k, part * step))
+            if sway is None:
+                model.advance(crowd, now_there)
+            else:
+                sway.advance(crowd, now_there, OPEN_GROUND, there, len(people.ids))
         position[rows + 1], velocity[rows + 1] = crowd.position, crowd.velocity
+        passed[there] = crowd.waypoint_index
     return replace(recording, people=_walked(people, first, start, position, velocity))
+
+
+def _routes(people: Tracks) -> Array:
+    """Return the way-points (n, 2, 2) [m] of each person: the last recorded place, and beyond.
+
+    Beyond lies in the last recorded direction. Who stands at the end is bound for that place.
+    """
+    last = people.bounds[1:] - 1
+    place, velocity = people.position[last], people.velocity[last]
+    speed = np.hypot(velocity[:, 0], velocity[:, 1])[:, None]
+    on = np.where(speed > _STANDING, _BEYOND * velocity / np.maximum(speed, _STANDING), 0.0)
+    return np.stack([place, place + on], axis=1)
+
+
+def _begun(people: Tracks, frames: int) -> Array:
+    """Return the largest speed (n,) [m/s] of each person in the first ``frames``."""
+    first = people.bounds[:-1]
+    early = people.frame - people.frame[first][people.track] <= frames
+    largest = np.zeros(len(people.ids))
+    np.maximum.at(largest, people.track[early], people.speed[early])
+    return largest
 
 
 class _Vehicles:

@@ -37,7 +37,9 @@ def test_only_people_who_react_to_egos_lose_time_before_one() -> None:
 
 def test_the_same_seed_has_the_same_bytes_and_another_has_not(tmp_path: Path) -> None:
     people = {"elderly": 0.3, "distracted": 0.3}
-    mixed = with_crowd(PLAZA, groups=0.6, people=people, acceleration_noise=0.2)
+    preset = tmp_path / "swaying.toml"
+    preset.write_text("base = 'SIM'\n[parameters]\nsway = 0.2\n")
+    mixed = with_crowd(PLAZA, groups=0.6, people=people, preset=str(preset))
     for name, seed in (("one", 3), ("same", 3), ("other", 4)):
         giveway.run({**mixed, "seed": seed}, results=tmp_path / name, pictures=False)
     for table in ("ego", "trajectories", "pedestrians", "summary"):

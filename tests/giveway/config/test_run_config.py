@@ -93,7 +93,6 @@ def test_no_length_or_duration_or_force_may_be_a_billionth() -> None:
     free = {  # where next to nothing is as good as nothing
         "depart_time", "depart_position", "friction", "near",
         "position_noise", "initial_speed", "desired_speed_sd",
-        "acceleration_noise",
     }  # fmt: skip
     for option in options():
         bound = any(hasattr(limit, "gt") or hasattr(limit, "ge") for limit in option.field.metadata)

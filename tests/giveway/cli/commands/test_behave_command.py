@@ -22,13 +22,13 @@ def test_behave_prints_the_ratios_and_writes_tables_and_picture(
     words = ("data", "behave", folder, "--dataset", description)
     assert giveway(*words, "--out", out) == 0
     said = capsys.readouterr().out
-    for text in ("MADE, vci, SIM", "4 people near a vehicle, 1 clip", "mean of the ratios"):
+    for text in ("MADE, vci, SIM", "4 people near a vehicle, 1 clip", "mean of the six ratios"):
         assert text in said
     names = {"behaviour.csv", "people.csv", "behaviour.png", "behaviour.svg"}
     assert {path.name for path in out.iterdir()} == names
     table = pd.read_csv(out / "behaviour.csv")
-    assert len(table) == 6
-    assert table["recorded_count"].min() > 0
+    assert len(table) == 8
+    assert table["recorded_count"][:7].min() > 0
     people = pd.read_csv(out / "people.csv")
     assert people["who"].value_counts().to_dict() == {"recorded": 4, "simulated": 4}
     recorded = people[people["who"] == "recorded"].set_index("person")

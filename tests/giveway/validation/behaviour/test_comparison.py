@@ -10,8 +10,9 @@ import pytest
 from giveway.config import RunConfig
 from giveway.errors import DatasetError
 from giveway.validation.behaviour import compare
-from giveway.validation.behaviour.comparison import LEVELS, distributions
-from giveway.validation.behaviour.measures import MEASURES, Behaviour, Samples
+from giveway.validation.behaviour.comparison import LEVELS, Distribution, floors_of
+from giveway.validation.behaviour.comparison import distributions as with_floors
+from giveway.validation.behaviour.measures import ALL, Behaviour, Samples
 
 PEOPLE = 40
 
@@ -20,11 +21,15 @@ def behaviour(values: np.ndarray) -> Behaviour:
     """Return a behaviour in which each person has one sample of every measure."""
     person = np.arange(PEOPLE)
     return Behaviour(
-        {each.name: Samples(values, person) for each in MEASURES},
+        {each.name: Samples(values, person) for each in ALL},
         np.zeros(PEOPLE, dtype=bool),
         np.ones(PEOPLE, dtype=np.int64),
         np.zeros(PEOPLE, dtype=np.int64),
     )
+
+
+def distributions(recorded: Behaviour, simulated: Behaviour) -> tuple[Distribution, ...]:
+    return with_floors(recorded, simulated, floors_of(recorded))
 
 
 @pytest.fixture
@@ -40,7 +45,7 @@ def test_a_shift_is_the_distance(recorded) -> None:
 
 
 def test_the_recorded_people_are_at_no_distance_from_themselves(recorded) -> None:
-    assert [found.ratio for found in distributions(recorded, recorded)] == [0.0] * 6
+    assert [found.ratio for found in distributions(recorded, recorded)] == [0.0] * 8
 
 
 def test_the_floor_is_what_two_halves_differ_by(recorded) -> None:

@@ -1,6 +1,9 @@
-"""Random accelerations of the actual pedestrians: real, but within what people can do."""
+"""The sway of people: it lasts, no controller changes it, and it is within what people can do."""
 
 from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,8 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from giveway.config import RunConfig
-from giveway.crowd.motion.disturbance import Disturbance, disturbance_of, pushed
-from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
+from giveway.crowd.motion.sway import Sway, pushed, sway_of
+from pedestrian_model import (
+    OPEN_GROUND,
+    SIM,
+    Crowd,
+    CrowdModel,
+    ParameterError,
+    Vehicles,
+)
 
 DT = 0.05
 WALKING = (0.0, 1.4)  # [m/s] as they wish to: the model itself leaves them room to accelerate
@@ -21,9 +31,25 @@ def make_crowd(velocity: np.ndarray) -> Crowd:
     return Crowd.create(place, velocity, 1.4, list(place[:, None] + (0.0, 30.0)))
 
 
-def test_without_noise_there_is_no_disturbance():
-    assert disturbance_of(RunConfig(), CrowdModel()) is None
-    assert disturbance_of(RunConfig(crowd={"acceleration_noise": 0.1}), CrowdModel()) is not None
+def swaying(deviation: float, time: float = 0.5) -> CrowdModel:
+    return CrowdModel(replace(SIM, sway=deviation, sway_time=time), DT)
+
+
+def pushes(model: CrowdModel, sway: Sway, present: list[int], known: int) -> np.ndarray:
+    """The accelerations that the sway adds to people who walk as they wish to."""
+    crowd = make_crowd(np.tile(WALKING, (len(present), 1)))
+    after = crowd.copy()
+    model.advance(after, Vehicles.empty())
+    sway.advance(crowd, Vehicles.empty(), OPEN_GROUND, np.array(present), known)
+    return (crowd.velocity - after.velocity) / DT
+
+
+def test_only_people_of_vci_sway_and_by_default_nobody_does():
+    assert sway_of(RunConfig(), CrowdModel(), 0) is None
+    assert sway_of(RunConfig(), swaying(0.1), 0) is not None
+    assert sway_of(RunConfig(crowd={"model": "orca"}), swaying(0.1), 0) is None
+    with pytest.raises(ParameterError, match=r"sway_time = 0.0, expected a number > 0"):
+        replace(SIM, sway_time=0.0)
 
 
 @given(st.integers(0, 10**6), st.floats(0.01, 5.0))
@@ -34,8 +60,8 @@ def test_no_step_exceeds_the_model_s_limits(seed, deviation):
     before = np.column_stack((speed * np.cos(angle), speed * np.sin(angle)))
     crowd = make_crowd(before)
     place = crowd.position.copy()
-    disturbance = Disturbance(CrowdModel(SIM, DT), deviation, seed)
-    disturbance.advance(crowd, Vehicles.empty(), OPEN_GROUND, np.arange(12), 12)
+    sway = Sway(swaying(deviation), seed)
+    sway.advance(crowd, Vehicles.empty(), OPEN_GROUND, np.arange(12), 12)
     change = np.hypot(*(crowd.velocity - before).T)
     assert (change <= SIM.max_acceleration * DT + 1e-12).all()
     assert (np.hypot(*crowd.velocity.T) <= SIM.max_speed + 1e-12).all()
@@ -57,33 +83,35 @@ def test_a_push_beyond_the_limit_keeps_its_direction():
 
 
 def test_it_is_drawn_for_all_so_that_leaving_changes_no_others():
-    pushes = []
-    for present in ([0, 1, 2, 3], [1, 3]):
-        crowd = make_crowd(np.tile(WALKING, (len(present), 1)))
-        model, after = CrowdModel(SIM, DT), crowd.copy()
-        model.advance(after, Vehicles.empty())
-        Disturbance(model, 0.5, 9).advance(
-            crowd, Vehicles.empty(), OPEN_GROUND, np.array(present), 4
-        )
-        pushes.append(dict(zip(present, crowd.velocity - after.velocity, strict=True)))
-    for person in (1, 3):
-        assert pushes[0][person] == pytest.approx(pushes[1][person])
-        assert np.abs(pushes[0][person]).max() > 0.0
+    model = swaying(0.5)
+    everybody, some = Sway(model, 9), Sway(model, 9)
+    for _ in range(3):
+        all_four, two = pushes(model, everybody, [0, 1, 2, 3], 4), pushes(model, some, [1, 3], 4)
+        assert two == pytest.approx(all_four[[1, 3]])
+        assert np.abs(two).max() > 0.0
 
 
-def test_its_size_is_that_of_a_normal_cut_at_two_deviations():
-    crowd = make_crowd(np.tile(WALKING, (400, 1)))
-    model, after = CrowdModel(SIM, DT), crowd.copy()
-    model.advance(after, Vehicles.empty())
-    Disturbance(model, 0.5, 1).advance(crowd, Vehicles.empty(), OPEN_GROUND, np.arange(400), 400)
-    added = (crowd.velocity - after.velocity) / DT
-    assert np.abs(added).max() <= 1.0 + 1e-9
-    assert added.std() == pytest.approx(0.5 * 0.8796, rel=0.05)
+def test_it_has_the_deviation_and_the_correlation_time_of_the_preset():
+    model = swaying(0.5, 0.4)
+    sway, people = Sway(model, 1), list(range(2000))
+    found = np.array([pushes(model, sway, people, 2000) for _ in range(9)])
+    assert found.std(axis=(1, 2)) == pytest.approx(0.5, rel=0.05)
+    lasting = (found[0] * found[8]).mean() / found.var()  # 0.4 s later
+    assert lasting == pytest.approx(np.exp(-1.0), abs=0.03)
 
 
-def test_runs_with_it_repeat_and_differ_from_those_without(run_once):
+def test_a_person_who_comes_later_sways_from_the_first_step():
+    model = swaying(0.5)
+    sway = Sway(model, 3)
+    pushes(model, sway, [0], 1)
+    assert pushes(model, sway, list(range(1000)), 1000)[1:].std() == pytest.approx(0.5, rel=0.1)
+
+
+def test_runs_with_it_repeat_and_differ_from_those_without(run_once, tmp_path: Path):
+    preset = tmp_path / "swaying.toml"
+    preset.write_text("base = 'SIM'\n[parameters]\nsway = 0.5\n")
     people = {"pedestrians": 5, "spawn_area": (12.0, -6.0, 20.0, -2.0)}
-    shaken = people | {"acceleration_noise": 0.5}
+    shaken = people | {"preset": str(preset)}
     plain = run_once(seed=4, time_limit=2.0, crowd=people).crowd_track
     first = run_once(seed=4, time_limit=2.0, crowd=shaken).crowd_track
     again = run_once(seed=4, time_limit=2.0, crowd=shaken, controller="mpc").crowd_track
