@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.crowd.motion.sway import pushed
 from giveway.crowd.motion.neighbours import AroundModel
+from giveway.crowd.motion.sway import pushed
 from giveway.geometry.kernel import Array
 from pedestrian_model import (
     OPEN_GROUND,

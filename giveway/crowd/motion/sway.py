@@ -45,7 +45,7 @@ class Sway:
         crowd: Crowd,
         vehicles: Vehicles,
         surroundings: Surroundings,
-        person_ids: NDArray[np.integer],
+        person_ids: NDArray[np.int64],
         known: int,
     ) -> None:
         """Step the crowd in place as the model does, and add the random accelerations.

@@ -214,8 +214,9 @@ class Yardstick:
         return [together(each) for each in found]
 
     def ratios(self, simulated: Behaviour) -> dict[str, float]:
-        """Return the ratio of each measure to its floor, by its name; nan without samples."""
-        return {each.measure.name: each.ratio for each in self.distributions(simulated)}
+        """Return the ratio of each measure that has a floor, by its name; nan without samples."""
+        found = self.distributions(simulated)
+        return {each.measure.name: each.ratio for each in found if each.floor > 0.0}
 
     def distributions(self, simulated: Behaviour) -> tuple[Distribution, ...]:
         """Return the distribution of each measure."""
@@ -283,19 +284,23 @@ def _distribution(
     return Distribution(measure, *both, distance, floor, low, high)
 
 
-def counts_of(draws: Sequence[Behaviour]) -> Counts:
+def counts_of(draws: list[Behaviour]) -> Counts:
     """Return the counts of people: means of the draws, or those of the recorded people alone."""
-    hard, signed = (
-        np.concatenate([each.samples[name].value for each in draws])
-        for name in (ACCELERATION.name, ENCROACHMENT.name)
-    )
+    both = together(draws)
+    signed = both.samples[ENCROACHMENT.name].value
     return Counts(
         contacts=float(np.mean([each.contact.sum() for each in draws])),
         close=float(np.mean([each.close.sum() for each in draws])),
         pairs=int(draws[0].pairs.sum()),
-        acceleration=float(np.quantile(hard, 0.95)) if len(hard) else np.nan,
+        acceleration=hardest(both, ACCELERATION),
         first=float(np.mean(signed > 0.0)) if len(signed) else np.nan,
     )
+
+
+def hardest(found: Behaviour, measure: Measure) -> float:
+    """Return the value of a measure that 95 % of its samples are below; nan without any."""
+    values = found.samples[measure.name].value
+    return float(np.quantile(values, 0.95)) if len(values) else np.nan
 
 
 def _people(names: Sequence[tuple[str, str]], found: dict[str, Behaviour]) -> pd.DataFrame:

@@ -228,8 +228,9 @@ def _autocorrelations(people: Tracks, frame_rate: float) -> Array:
 
 def _apart(people: Tracks, frames: int) -> NDArray[np.bool_]:
     """Return whether each row and the one ``frames`` rows later are so many frames of one track."""
-    same: NDArray[np.bool_] = people.track[frames:] == people.track[:-frames]
-    return same & (people.frame[frames:] - people.frame[:-frames] == frames)
+    same = people.track[frames:] == people.track[:-frames]
+    same &= people.frame[frames:] - people.frame[:-frames] == frames
+    return np.asarray(same, dtype=np.bool_)
 
 
 def _evasions(people: Tracks) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from giveway.config import RunConfig
-from giveway.validation.behaviour.comparison import Counts, Yardstick, counts_of
+from giveway.validation.behaviour.comparison import Counts, Yardstick, counts_of, hardest
 from giveway.validation.behaviour.corridor import walk, weidmann
 from giveway.validation.behaviour.measures import CHANGE, MEASURES, together
 from pedestrian_model import CrowdModel, VciParameters
@@ -23,7 +23,7 @@ _LARGE, _LARGER = 1.5, 0.3  # Ratio above which a measure counts more, and by ho
 _CONTACT, _CLOSE, _FIRST, _CORRIDOR = 20.0, 15.0, 2.0, 2.0  # Weights
 _ALIKE = 0.1  # Logarithm of the quotient to Weidmann's speeds that is good enough
 _DURATION, _STEP = 16.0, 0.05  # Time and time step [s] in the corridors
-_FAILED = 99.0
+FAILED = 99.0
 """Value of parameters with which people tremble, leave the numbers or meet nobody."""
 
 
@@ -57,7 +57,9 @@ class Likeness:
         more = (self.simulated.contacts - self.recorded.contacts) / self.near
         closer = self.simulated.close_share - self.recorded.close_share
         found += _CONTACT * max(0.0, more) + _CLOSE * max(0.0, closer)
-        return found + _FIRST * abs(self.simulated.first - self.recorded.first)
+        if math.isfinite(self.recorded.first):
+            found += _FIRST * abs(self.simulated.first - self.recorded.first)
+        return found
 
 
 class Objective:
@@ -77,14 +79,14 @@ class Objective:
         self._weidmann = weidmann()
 
     def __call__(self, parameters: VciParameters) -> float:
-        """Return the value; ``_FAILED`` at most."""
+        """Return the value; ``FAILED`` at most."""
         values = [each.value for each in self.likenesses(parameters)]
         value = float(np.mean(values))
         if self._corridors:
             speed = self.speeds(parameters)
             apart = np.abs(np.log(np.maximum(speed, 0.01) / self._weidmann))
             value += _CORRIDOR * float(np.mean(np.maximum(apart - _ALIKE, 0.0)))
-        return value if math.isfinite(value) else _FAILED
+        return value if math.isfinite(value) else FAILED
 
     def likenesses(self, parameters: VciParameters) -> list[Likeness]:
         """Return how like the recorded people of each site the simulated ones are."""
@@ -100,14 +102,14 @@ class Objective:
         ratios = site.ratios(both)
         recorded, simulated = site.recorded, counts_of(draws)
         real = counts_of([recorded])
-        short = [
-            float(np.quantile(each.samples[CHANGE.name].value, 0.95)) for each in (both, recorded)
-        ]
         return Likeness(
             ratios=ratios,
-            mean=float(np.mean([ratios[each.name] for each in MEASURES])),
+            mean=float(np.mean([ratios[m.name] for m in MEASURES if m.name in ratios])),
             recorded=real,
             simulated=simulated,
             near=site.near,
-            hardness=(simulated.acceleration / real.acceleration, short[0] / short[1]),
+            hardness=(
+                simulated.acceleration / real.acceleration,
+                hardest(both, CHANGE) / hardest(recorded, CHANGE),
+            ),
         )

@@ -83,11 +83,6 @@ def test_paths_count_from_the_folder_of_the_file(tmp_path: Path) -> None:
             "recorded 'a b': name = 'a b': ",
         ),
         ("model = 'recorded'", "model = 'recorded': nobody is recorded"),
-        (
-            "model = 'recorded'\nacceleration_noise = 1\n"
-            "[[crowd.recorded]]\npath = 'a'\ndataset = 'dut'",
-            "acceleration_noise = 1: people who walk as they were recorded have none",
-        ),
     ],
 )
 def test_a_wrong_entry_is_named_in_one_line(text: str, said: str) -> None:
