@@ -130,18 +130,39 @@ class StudyOutputs(NamedTuple):
 class FitSettings(NamedTuple):
     """The settings of a fit of the pedestrian model."""
 
+    aim: Annotated[
+        str,
+        typer.Option(
+            help="behaviour: people who behave as recorded near vehicles; displacement: the least "
+            "error of predictions."
+        ),
+    ] = "behaviour"
     parameters: Annotated[
-        str, typer.Option(help="What is fitted, comma-separated; see docs/validation.md.")
-    ] = "destination_gain,repulsion_strength,navigation_strength,vehicle_strength,vehicle_lookahead"
+        str,
+        typer.Option(
+            help="What is fitted, comma-separated; by default what the aim needs: "
+            "docs/validation.md."
+        ),
+    ] = ""
     start: Annotated[
-        str, typer.Option("--preset", help="Where the fit starts: SIM, TABLE2 or a preset file.")
+        str, typer.Option("--preset", help="Where the fit starts: a preset or a preset file.")
     ] = "SIM"
-    held_out: Annotated[float, typer.Option(help="Share of the clips to judge the fit by.")] = 0.3
-    seed: Annotated[int, typer.Option(help="Of the choice of these clips.", min=0)] = 0
+    seed: Annotated[
+        int, typer.Option(help="Of the search, or of the choice of held-out clips.", min=0)
+    ] = 0
+    evaluations: Annotated[
+        int | None,
+        typer.Option(help="At most; by default 1,500 for behaviour, 400 for displacement.", min=1),
+    ] = None
+    held_out: Annotated[
+        float, typer.Option(help="displacement: share of the clips to judge the fit by.")
+    ] = 0.3
     own_pace: Annotated[
-        bool, typer.Option(help="Desired speed: each one's present one; or the parameters'.")
+        bool,
+        typer.Option(
+            help="displacement: the desired speed is each one's present one, or the parameters'."
+        ),
     ] = True
-    evaluations: Annotated[int, typer.Option(help="Of the error, at most.", min=1)] = 400
 
 
 class DryRun(NamedTuple):

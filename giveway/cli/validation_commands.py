@@ -44,11 +44,22 @@ def _validate(
 
 def _calibrate(
     *,
-    clips: _Clips,
+    clips: Annotated[
+        list[Path], typer.Argument(help="Data sets' folders, or any parts of them with clips.")
+    ],
     out: Annotated[Path, typer.Option(help="Preset file (TOML) to write.")],
-    dataset: _Dataset = None,
+    dataset: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Which ones they are, in the order of the folders: citr, dut, another known one, "
+            "or a description (TOML); docs/recordings.md."
+        ),
+    ] = None,
     fit: FitSettings,
-    force: Annotated[bool, typer.Option("--force", help="Replace the file.")] = False,
+    force: Annotated[
+        bool,
+        typer.Option("--force", help="Replace the file, and write a fit that is worse."),
+    ] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")
     ] = False,
@@ -56,4 +67,4 @@ def _calibrate(
     """Fit parameters of the pedestrian model to recorded trajectories: a preset file."""
     from giveway.cli.commands.calibrate_command import calibrate_command
 
-    calibrate_command(clips, out, dataset, fit, force=force, quiet=quiet)
+    calibrate_command(clips, out, dataset or [], fit, force=force, quiet=quiet)

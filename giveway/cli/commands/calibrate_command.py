@@ -7,58 +7,98 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from giveway.cli.commands.behaviour_fit import fit_behaviour
 from giveway.cli.option_groups import FitSettings
 from giveway.cli.screen.printing import escape, numbers_of, print_place, writing
 from giveway.cli.screen.progress_bars import counting
 from giveway.config.files.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
 from giveway.precompile import compile_kernels_once
-from giveway.validation import Calibration, calibrate, dataset_of, read_clips
-from giveway.validation.calibrating import Fit, HeldOut
+from giveway.validation import Calibration, Dataset, calibrate, dataset_of, read_clips
+from giveway.validation.behaviour.loss import lost
+from giveway.validation.calibrating import DEFAULT, Fit, HeldOut
 from giveway.validation.fitting import FACTOR
+from pedestrian_model import VciParameters
+
+DISPLACEMENT = "displacement"
+_AIMS = ("behaviour", DISPLACEMENT)
+_EVALUATIONS = 400  # Evaluations of a fit for displacement, at most
 
 
 def calibrate_command(
-    clips_in: Path,
+    folders: list[Path],
     out: Path,
-    dataset: str | None,
+    datasets: list[str],
     fit: FitSettings,
     *,
     force: bool,
     quiet: bool,
 ) -> None:
-    """Fit, print the errors before and after the fit, and write the preset.
+    """Fit, print what the fit changes, and write the preset unless the fit is worse.
 
     Args:
-        clips_in: Folder of the data set, or a part of it.
+        folders: Folders of the data sets, or parts of them.
         out: Preset file to write.
-        dataset: Name or description of the data set, or None to recognise it.
+        datasets: Name or description of each folder's data set; one stands for all.
         fit: Settings of the fit.
-        force: True to replace the file.
+        force: True to replace the file, and to write a fit that is worse.
         quiet: True to print nothing.
 
     Raises:
         GivewayError: one line that says what to do.
     """
     console = Console(quiet=quiet)
+    if fit.aim not in _AIMS:
+        raise ConfigError(f"--aim {fit.aim}: expected {' or '.join(_AIMS)}")
     if out.suffix != SUFFIX:
         raise ConfigError(f"--out {out}: expected the name of a preset file, like my_crowd{SUFFIX}")
     if out.exists() and not force:
         raise ResultsError(
             f"{out}: exists; replace it with --force or name another file with --out"
         )
-    names = [name.strip() for name in fit.parameters.split(",")]
-    clips = read_clips(clips_in, dataset_of(dataset))
-    first = parameters_of(fit.start)
+    if len(datasets) not in {0, 1, len(folders)}:
+        raise ConfigError(
+            f"--dataset: given {len(datasets)} times for {len(folders)} folders; expected one for "
+            "each folder in their order, or one for all"
+        )
+    described = [dataset_of(name) for name in datasets] or [dataset_of(None)]
+    if len(described) == 1:
+        described *= len(folders)
+    places = list(zip(folders, described, strict=True))
+    if fit.aim == DISPLACEMENT:
+        if len(folders) > 1:
+            raise ConfigError(f"--aim {DISPLACEMENT}: expected one folder; name one data set")
+        parameters, provenance, worse = _by_displacement(console, places[0], fit)
+    else:
+        parameters, provenance, worse = fit_behaviour(console, places, fit, out)
+    for remark in worse:
+        console.print(remark, markup=False, highlight=False)
+    if worse and not force:
+        raise ConfigError(
+            f"{out}: not written, since the fit is worse than {fit.start}: {worse[0]} Fit with "
+            "--aim behaviour or from another --preset, or write it with --force"
+        )
+    text = preset_text(out.stem, parameters, {"made_by": "giveway calibrate", **provenance})
+    with writing(out, "name another file with --out"):
+        out.write_text(text, encoding="utf-8", newline="\n")
+    print_place(console, "Preset", out)
+
+
+def _by_displacement(
+    console: Console, place: tuple[Path, Dataset], fit: FitSettings
+) -> tuple[VciParameters, dict[str, Any], list[str]]:
+    """Fit the error of predictions; return parameters, provenance, and what is worse."""
+    clips = read_clips(*place)
     compile_kernels_once(console)
+    names = fit.parameters.split(",") if fit.parameters else DEFAULT
     with counting(console, "Fitting") as count:
         found = calibrate(
             clips,
-            first,
-            names,
+            parameters_of(fit.start),
+            [name.strip() for name in names],
             held_out=HeldOut(fit.held_out, fit.seed),
             own_pace=fit.own_pace,
-            evaluations=fit.evaluations,
+            evaluations=fit.evaluations or _EVALUATIONS,
             progress=lambda done, of, best: count(done, of, f"error {best:.4f} m"),
         )
     settings = {
@@ -67,17 +107,17 @@ def calibrate_command(
         "seed": fit.seed,
         "own_pace": fit.own_pace,
     }
-    text = preset_text(out.stem, found.parameters, _provenance(found, settings))
-    with writing(out, "name another file with --out"):
-        out.write_text(text, encoding="utf-8", newline="\n")
     _print(console, found)
-    print_place(console, "Preset", out)
+    worse = lost(found.start, found.parameters)
+    before, after = found.touching
+    if after > before:
+        worse.append(f"In replays {after} pedestrians touch the vehicle, {before} before the fit.")
+    return found.parameters, _provenance(found, settings), worse
 
 
 def _provenance(found: Calibration, settings: dict[str, Any]) -> dict[str, Any]:
     """Return a description of how the preset was made, for readers of the file."""
     return {
-        "made_by": "giveway calibrate",
         **settings,
         "fitted": list(found.fitted),
         "objective": "ADE [m] averaged over people in windows, then over the horizons",
