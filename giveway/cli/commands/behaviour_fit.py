@@ -16,12 +16,23 @@ from giveway.validation.behaviour.comparison import Yardstick
 from giveway.validation.behaviour.corridor import DENSITIES, weidmann
 from giveway.validation.behaviour.loss import lost
 from giveway.validation.behaviour.objective import Likeness, Objective
-from giveway.validation.behaviour.search import DEFAULT, Found, Journal, Search
+from giveway.validation.behaviour.search import (
+    DEFAULT,
+    Found,
+    Journal,
+    Search,
+    require_fittable,
+)
 from pedestrian_model import VciParameters
 
 _EVALUATIONS = 1500
 _JUDGES = 5  # Number of times that people are simulated to judge the fit
 _MORE_CONTACTS = 0.02  # Share of the people near a vehicle who may touch it in addition
+
+
+def journal_of(preset: Path) -> Path:
+    """Return the file that keeps the values of a fit until its preset is written."""
+    return preset.with_suffix(".journal")
 
 
 def fit_behaviour(
@@ -41,8 +52,9 @@ def fit_behaviour(
         GivewayError: one line that says what to do.
     """
     start = parameters_of(fit.start)
+    names = [name.strip() for name in fit.parameters.split(",")] if fit.parameters else [*DEFAULT]
+    require_fittable(names)
     sites = [Yardstick(read_recordings(*place)) for place in places]
-    names = [name.strip() for name in fit.parameters.split(",")] if fit.parameters else DEFAULT
     search = Search(
         Objective(sites),
         start,
@@ -52,7 +64,7 @@ def fit_behaviour(
     )
     compile_kernels_once(console)
     settings = start, names, fit.seed, [site.names for site in sites]
-    journal = Journal(out.with_suffix(".journal"), settings)
+    journal = Journal(journal_of(out), settings)
     if journal.known:
         console.print(f"{journal.known} evaluations are known from an earlier call.")
     with counting(console, "Fitting") as count:
@@ -65,7 +77,6 @@ def fit_behaviour(
     for label, *pair in zip(labels, before, after, strict=True):
         console.print(_likenesses(label, *pair))
     console.print(_corridors(*speeds))
-    journal.remove()
     provenance = {
         "start": fit.start,
         "seed": fit.seed,
@@ -101,7 +112,7 @@ def _worse(
 
 
 def _print_parameters(
-    console: Console, start: VciParameters, found: Found, names: tuple[str, ...] | list[str]
+    console: Console, start: VciParameters, found: Found, names: list[str]
 ) -> None:
     table = Table(*numbers_of("before", "after"), title="Parameters")
     for name in names:

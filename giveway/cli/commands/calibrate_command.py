@@ -7,7 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from giveway.cli.commands.behaviour_fit import fit_behaviour
+from giveway.cli.commands.behaviour_fit import fit_behaviour, journal_of
 from giveway.cli.option_groups import FitSettings
 from giveway.cli.screen.printing import escape, numbers_of, print_place, writing
 from giveway.cli.screen.progress_bars import counting
@@ -81,6 +81,7 @@ def calibrate_command(
     text = preset_text(out.stem, parameters, {"made_by": "giveway calibrate", **provenance})
     with writing(out, "name another file with --out"):
         out.write_text(text, encoding="utf-8", newline="\n")
+    journal_of(out).unlink(missing_ok=True)
     print_place(console, "Preset", out)
 
 

@@ -95,12 +95,7 @@ class Search:
         seed: int = 0,
         evaluations: int = 1500,
     ) -> None:
-        for name in names:
-            if name not in RANGES:
-                known = ", ".join(RANGES)
-                raise ConfigError(
-                    f"--parameters {name}: cannot be fitted for behaviour; expected of {known}"
-                )
+        require_fittable(names)
         self._objective, self._start, self._names = objective, start, tuple(names)
         self._seed, self._generations = seed, -(-evaluations // _POPULATION)
         self._low, self._high = np.log(np.array([RANGES[name] for name in names])).T
@@ -179,6 +174,20 @@ class Search:
             return FAILED
 
 
+def require_fittable(names: Sequence[str]) -> None:
+    """Make sure that each of ``names`` is a parameter that may be fitted for behaviour.
+
+    Raises:
+        ConfigError: one is not.
+    """
+    for name in names:
+        if name not in RANGES or names.count(name) > 1:
+            raise ConfigError(
+                f"--parameters {name}: cannot be fitted for behaviour; expected, once each, of "
+                f"{', '.join(RANGES)}"
+            )
+
+
 class Journal:
     """The values of a search in a file, one a line after a line that says what was searched.
 
@@ -231,11 +240,6 @@ class Journal:
             except OSError as error:
                 raise _unusable(self._file, error) from error
         return self._values[-1]
-
-    def remove(self) -> None:
-        """Remove the file: the search is over."""
-        if self._file is not None:
-            self._file.unlink(missing_ok=True)
 
 
 def _whole(lines: list[str]) -> list[float]:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 AS_CITR = ("--dataset", "citr")
+BY_DISPLACEMENT = ("--aim", "displacement")
 
 
 @pytest.fixture
@@ -83,6 +84,7 @@ def test_calibrate_writes_a_preset_that_can_be_validated_with(dataset, tmp_path,
         "calibrate",
         dataset,
         *AS_CITR,
+        *BY_DISPLACEMENT,
         "--parameters",
         "repulsion_strength, navigation_strength",
     )
@@ -109,9 +111,10 @@ def test_calibrate_writes_a_preset_that_can_be_validated_with(dataset, tmp_path,
 
 def test_calibrate_refuses_an_unknown_parameter(dataset, tmp_path, capsys) -> None:
     out = tmp_path / "mine.toml"
-    assert (
-        giveway("calibrate", dataset, *AS_CITR, "--parameters", "vehicle_force", "--out", out) == 2
-    )
+    words = ("calibrate", dataset, *AS_CITR, "--parameters", "vehicle_force", "--out", out)
+    assert giveway(*words) == 2
+    assert "--parameters vehicle_force: cannot be fitted for behaviour" in capsys.readouterr().err
+    assert giveway(*words, *BY_DISPLACEMENT) == 2
     assert "--parameters vehicle_force: unknown parameter" in capsys.readouterr().err
     assert giveway("calibrate", dataset, *AS_CITR, "--out", tmp_path / "mine.txt") == 2
     assert "expected the name of a preset file" in capsys.readouterr().err
@@ -149,6 +152,7 @@ def test_a_name_that_would_steer_the_terminal_is_shown_harmless(dataset, tmp_pat
     text = MINE.format(rate=29.97, rear=2).replace('"MINE"', '"\\u001b[31mRED"')
     mine.write_text(text)
     out = ("--out", tmp_path / "m.toml", "--evaluations", 1, "--parameters", "mass")
+    out += BY_DISPLACEMENT
     assert giveway("validate", dataset, "--dataset", mine, "--out", tmp_path / "o") == 0
     assert giveway("calibrate", dataset, "--dataset", mine, *out) == 0
     said = capsys.readouterr().out
