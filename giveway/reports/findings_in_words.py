@@ -23,11 +23,12 @@ from giveway.reports.wording import (
     interval,
     number,
     quantity,
+    quantity_of,
     share,
     shown_ego,
 )
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.statistics import metric
+from giveway.studies.statistics import confirmatory, metric
 
 METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
 # Largest number of sentences on a metric; further groups are counted in one
@@ -70,10 +71,33 @@ def facts(study: StudyFolder) -> list[tuple[str, str]]:
 
 def findings(study: StudyFolder) -> list[str]:
     """Return the main results, the most important first."""
-    sentences = [sentence for name in METRICS_IN_WORDS for sentence in _of_metric(study, name)]
+    sentences = [primary_outcome(study)] if study.definition.primary_outcome else []
+    sentences += [sentence for name in METRICS_IN_WORDS for sentence in _of_metric(study, name)]
     sentences += _overlaps(study)
     sentences += _overall(study)
     return sentences
+
+
+def primary_outcome(study: StudyFolder) -> str:
+    """Return the sentences on the primary outcome: which differences are confirmatory."""
+    outcome = study.definition.primary_outcome
+    if outcome is None:
+        return (
+            "The study names no primary outcome ([primary_outcome] in its file): all its "
+            "differences are exploratory."
+        )
+    known, rows = metric(outcome.metric), confirmatory(study.comparison, study.definition)
+    shown = int(rows["verdict"].isin(["better", "worse"]).sum())
+    smaller = rows["smaller_effects"].value_counts()
+    least = quantity_of(outcome.smallest_effect, known.unit)
+    return (
+        f"Primary outcome: {known.label} ({outcome.situation}). The study has "
+        f"{counted(len(rows), 'confirmatory difference')}, of which {shown} "
+        f"{'is' if shown == 1 else 'are'} shown after Holm's correction. Effects smaller than "
+        f"{least}, the smallest of interest ({outcome.reason}), are excluded by the interval of "
+        f"{smaller.get('excluded', 0)}, and no larger ones are possible in "
+        f"{smaller.get('only these', 0)}. All other differences are exploratory."
+    )
 
 
 def cautions(study: StudyFolder) -> list[str]:
@@ -96,6 +120,8 @@ def cautions(study: StudyFolder) -> list[str]:
             f"In {incomplete:,} of {counted(pairs, 'pair')} a side did not reach its goal: {result}"
         )
     sentences.append(_too_few(study))
+    if study.definition.primary_outcome is None and len(study.comparison):
+        sentences.append(primary_outcome(study))
     published = published_frame(study)
     if published is not None:
         sentences.append(agreement(published))

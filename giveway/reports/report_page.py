@@ -203,6 +203,7 @@ def _content(
         "findings": findings.findings(study) if some else [],
         "cautions": findings.cautions(study),
         "published": None if published is None else published_table(published),
+        "confirmatory": tables.confirmatory_table(study) if some else None,
         "glance": glance if glance is not None and glance.rows else None,
         "comparison": tables.comparison_table(study) if some else None,
         "levels": levels_section(study),

@@ -11,6 +11,7 @@ __all__ = [
     "number",
     "pretty_unit",
     "quantity",
+    "quantity_of",
     "share",
     "shown_ego",
 ]
@@ -32,6 +33,11 @@ def quantity(value: float, unit: str, digits: int = 2) -> str:
     """Return a number with its unit: "−0.57 s"."""
     text = number(value, digits)
     return f"{text} {pretty_unit(unit)}" if unit and math.isfinite(value) else text
+
+
+def quantity_of(value: float, unit: str) -> str:
+    """Return a number with all its digits and its unit: "0.4 s"."""
+    return f"{value:g} {pretty_unit(unit)}".rstrip()
 
 
 def interval(low: float, high: float, unit: str = "") -> str:

@@ -56,6 +56,19 @@ class Precision(Section):
     batch: int = Field(100, description="seeds that are added at a time", ge=1, le=_MOST_SEEDS)
 
 
+class PrimaryOutcome(Section):
+    """The outcome that is named before the runs: its differences alone are confirmatory."""
+
+    metric: str = Field(description="whose differences are confirmatory")
+    situation: Situation = Field("general", description="in which situation")
+    smallest_effect: float = Field(
+        description="smallest difference of interest, in the metric's unit", gt=0
+    )
+    reason: str = Field(
+        description="source of the smallest effect, or the reason for it", min_length=1
+    )
+
+
 class StudyDefinition(Section):
     """One study, as its TOML file has it."""
 
@@ -91,6 +104,7 @@ class StudyDefinition(Section):
     )
     comparison: Comparison = Comparison()
     precision: Precision | None = None
+    primary_outcome: PrimaryOutcome | None = None
 
     def placed(self, settings: dict[str, Any]) -> dict[str, Any]:
         """Return ``settings`` with the paths of those files that exist in the study's folder."""
@@ -246,7 +260,11 @@ def _explain(error: Any) -> str:
 
 
 def _fields(place: list[str]) -> dict[str, Any]:
-    tables: dict[str, type[Section]] = {"comparison": Comparison, "precision": Precision}
+    tables: dict[str, type[Section]] = {
+        "comparison": Comparison,
+        "precision": Precision,
+        "primary_outcome": PrimaryOutcome,
+    }
     model = tables.get(place[0] if place else "", StudyDefinition)
     return dict(model.model_fields)
 

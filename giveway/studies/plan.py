@@ -102,7 +102,7 @@ def plan(definition: StudyDefinition, origin: str) -> Plan:
     """
     designed = design(definition, origin)
     definition = _with_comparison(definition, designed, origin)
-    _require_metric(definition, origin)
+    _require_metrics(definition, origin)
     cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
     _require_own_names(designed, cells, origin)
     return Plan(definition, designed, cells)
@@ -140,14 +140,15 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
     return definition.model_copy(update={"comparison": complete})
 
 
-def _require_metric(definition: StudyDefinition, origin: str) -> None:
-    """Make sure that the metric of [precision] is one that is compared."""
-    if definition.precision is None:
-        return
-    try:
-        metric(definition.precision.metric)
-    except ConfigError as error:
-        raise ConfigError(f"{origin}: [precision] {error}") from None
+def _require_metrics(definition: StudyDefinition, origin: str) -> None:
+    """Make sure that the metrics of [precision] and [primary_outcome] are compared."""
+    for table in ("precision", "primary_outcome"):
+        wanted = getattr(definition, table)
+        try:
+            if wanted is not None:
+                metric(wanted.metric)
+        except ConfigError as error:
+            raise ConfigError(f"{origin}: [{table}] {error}") from None
 
 
 def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCell:

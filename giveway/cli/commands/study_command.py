@@ -19,6 +19,7 @@ from giveway.precompile import compile_kernels_once
 from giveway.processes.processors import processors
 from giveway.studies.definition import changed, read_definition
 from giveway.studies.plan import plan
+from giveway.studies.statistics import confirmatory
 from giveway.studies.study import StudyOptions, StudyProgress, estimate, run_study
 from giveway.studies.study_files import find_study
 from giveway.studies.varying import chosen, varied
@@ -92,6 +93,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
                 "seconds": elapsed,
                 "levels": study.levels.to_dict("records"),
                 "comparison": study.comparison.to_dict("records"),
+                "confirmatory": confirmatory(study.comparison, study.definition).to_dict("records"),
             }
         )
     return 1 if len(study.failures) else 0

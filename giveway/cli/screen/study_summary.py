@@ -13,6 +13,7 @@ from rich.table import Column, Table
 
 from giveway.cli.screen.printing import escape
 from giveway.cli.screen.study_levels import print_levels
+from giveway.reports.findings_in_words import primary_outcome
 from giveway.reports.labels import level_label
 from giveway.reports.wording import counted
 from giveway.studies.contexts import other_factors
@@ -90,6 +91,8 @@ def print_summary(
         print_levels(console, study)
     else:
         print_comparison(console, study)
+    if study.definition.primary_outcome is not None and len(study.comparison):
+        console.print(escape(primary_outcome(study)), highlight=False)
     _print_precision(console, study)
     by = "" if workers is None else f" on {counted(workers, 'worker')}"
     there = len(study.records)

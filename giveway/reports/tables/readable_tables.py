@@ -10,10 +10,18 @@ import pandas as pd
 from giveway.reports.choice import WorstRun
 from giveway.reports.labels import level_label
 from giveway.reports.tables.table import Cell, Table, number_cell, verdict_cell, whole_cell
-from giveway.reports.wording import digits_for, interval, number, pretty_unit, quantity, share
+from giveway.reports.wording import (
+    digits_for,
+    interval,
+    number,
+    pretty_unit,
+    quantity,
+    quantity_of,
+    share,
+)
 from giveway.studies.contexts import other_factors, short_name
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.statistics import Metric, metric
+from giveway.studies.statistics import Metric, confirmatory, is_confirmatory, metric
 
 SHOWN_IN_CELLS = (
     "completion_time",
@@ -34,16 +42,18 @@ def comparison_table(study: StudyFolder) -> Table:
     filters = tuple(range(len(headings)))
     verdict = len(headings) + 2
     headings += ["mean difference", "interval", "verdict", "pairs", "share", "treatment mean"]
-    headings += ["baseline mean", "median difference", "q"]
+    headings += ["baseline mean", "median difference", "q", "kind"]
     labels = {known.name: _with_unit(known) for known in study.metrics}
+    primary = is_confirmatory(frame, study.definition)
     rows = [
         [
             *(_level(row[name]) for name in names),
             Cell(row["situation"]),
             Cell(labels[row["metric"]], "text"),
             *_numbers(row),
+            Cell("confirmatory" if named else "exploratory"),
         ]
-        for row in frame.to_dict("records")
+        for row, named in zip(frame.to_dict("records"), primary, strict=True)
     ]
     percent = 100.0 * study.definition.comparison.confidence
     return Table(
@@ -51,7 +61,7 @@ def comparison_table(study: StudyFolder) -> Table:
         caption=f"Paired differences, treatment minus baseline, with {percent:g} % intervals",
         headings=headings,
         rows=rows,
-        filters=(*filters, verdict),
+        filters=(*filters, verdict, len(headings) - 1),
     )
 
 
@@ -75,6 +85,35 @@ def _probability(value: float) -> Cell:
     if math.isfinite(value) and value < 0.001:
         return Cell("< 0.001", "number")
     return number_cell(value, 3)
+
+
+def confirmatory_table(study: StudyFolder) -> Table | None:
+    """Return the differences of the primary outcome, or None if the study names none."""
+    outcome = study.definition.primary_outcome
+    if outcome is None:
+        return None
+    frame, known = confirmatory(study.comparison, study.definition), metric(outcome.metric)
+    names = _distinguishing(study, frame)
+    least = quantity_of(outcome.smallest_effect, known.unit)
+    rows = [
+        [
+            *(_level(row[name]) for name in names),
+            *_numbers(row)[:4],
+            _probability(row["p_holm"]),
+            Cell(row["smaller_effects"]),
+        ]
+        for row in frame.to_dict("records")
+    ]
+    headings = ["mean difference", "interval", "verdict", "pairs", "p (Holm)"]
+    return Table(
+        name="confirmatory-table",
+        caption=f"Confirmatory differences: {_with_unit(known)}, {outcome.situation}",
+        headings=[*map(short_name, names), *headings, f"effects below {least}"],
+        rows=rows,
+        note=f"The smallest effect of interest is {least}: {outcome.reason}. Excluded: the "
+        "interval has larger effects alone. Possible: it has both. Only these: it has smaller "
+        "ones alone. The verdict is that of the test after Holm over this table.",
+    )
 
 
 def glance_table(study: StudyFolder) -> Table:

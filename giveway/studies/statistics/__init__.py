@@ -4,6 +4,7 @@ docs/statistics.md describes the methods.
 """
 
 from giveway.studies.statistics.comparing import compare
+from giveway.studies.statistics.confirmatory import confirmatory, is_confirmatory
 from giveway.studies.statistics.fronts import fronts
 from giveway.studies.statistics.level_means import levels
 from giveway.studies.statistics.metrics import METRICS, Metric, compared, metric
@@ -32,7 +33,9 @@ __all__ = [
     "Metric",
     "compare",
     "compared",
+    "confirmatory",
     "fronts",
+    "is_confirmatory",
     "levels",
     "looks",
     "metric",

@@ -88,6 +88,11 @@ def test_the_papers_study_is_twelve_thousand_runs():
             "[precision]\nwidth = 1\nmetric = 'x'\n[factors]\ncontroller = ['mpc', 'pid']",
             "[precision] ",
         ),
+        (
+            "[primary_outcome]\nmetric = 'delay'\nsmallest_effect = 1\nreason = 'r'\n"
+            "[factors]\ncontroller = ['mpc', 'pid']",
+            "[primary_outcome] metric 'delay': no such number to compare; ",
+        ),
     ],
 )
 def test_a_cell_that_cannot_be_run_is_found_before_anything_runs(text, said):

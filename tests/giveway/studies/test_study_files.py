@@ -1,5 +1,7 @@
 """Bundled studies: all can be planned, and an unknown one names them."""
 
+from pathlib import Path
+
 import pytest
 
 from giveway.errors import ConfigError
@@ -11,8 +13,6 @@ from giveway.studies.study_files import bundled_studies, find_study
 
 
 def parsed(text, folder=None, tmp="."):
-    from pathlib import Path
-
     return parse_definition(text, "mine.toml", folder or Path(tmp))
 
 
@@ -23,6 +23,16 @@ def test_every_bundled_study_can_be_planned(name):
     planned = plan(read_definition(find_study(name)), name)
     assert len(planned) == len(planned.cells) * planned.definition.replications
     assert len({cell.digest for cell in planned.cells}) == len(planned.cells)
+
+
+@pytest.mark.parametrize("name", bundled_studies())
+def test_every_bundled_study_names_its_primary_outcome(name):
+    outcome = read_definition(find_study(name)).primary_outcome
+    assert outcome is not None
+    assert len(outcome.reason.split()) > 5
+    page = (Path(__file__).parents[3] / "docs" / "studies.md").read_text("utf-8")
+    row = f"| `{name}` | `{outcome.metric}` | {outcome.smallest_effect:g}"
+    assert any(line.startswith(row) and outcome.reason in line for line in page.split("\n"))
 
 
 def test_an_unknown_study_names_the_known_ones():
