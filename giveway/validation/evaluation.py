@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
 from giveway.recordings.intervals import ClipBootstrap
-from giveway.validation.predictors import CV, TrackPredictor
+from giveway.validation.predictors import CV, GOAL_CV, TrackPredictor
 from giveway.validation.protocol import Protocol, Window, to_vehicle_frame
 
 EVERYWHERE = "all"
@@ -106,7 +106,9 @@ def displacement(predicted: Array, window: Window) -> Array:
 
 
 def error_table(found: Evaluation, protocol: Protocol, draws: ClipBootstrap) -> pd.DataFrame:
-    """Return means, their intervals, and paired differences from constant velocity.
+    """Return means, their intervals, and paired differences from the two simplest predictors.
+
+    These are constant velocity and the walk straight to the destination.
 
     There is one row per subset, horizon [s], metric [m] and predictor. ``count`` is the number of
     pedestrians in windows, ``clips`` the number of clips with such pedestrians.
@@ -134,11 +136,12 @@ def _numbers(
     people = count.sum()
     low, high = draws.interval(total, count)
     numbers = {"mean": _ratio(total.sum(), people), "low": low, "high": high}
-    if CV in sums:
-        apart = total - sums[CV][0]
-        low, high = draws.interval(apart, count)
-        numbers |= {"against_cv": _ratio(apart.sum(), people)}
-        numbers |= {"against_cv_low": low, "against_cv_high": high}
+    for other, column in ((CV, "against_cv"), (GOAL_CV, "against_goal_cv")):
+        if other in sums:
+            apart = total - sums[other][0]
+            low, high = draws.interval(apart, count)
+            numbers |= {column: _ratio(apart.sum(), people)}
+            numbers |= {f"{column}_low": low, f"{column}_high": high}
     return numbers | {"count": int(people), "clips": int(np.count_nonzero(count))}
 
 

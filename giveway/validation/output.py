@@ -21,7 +21,7 @@ from giveway.validation.protocol import Window
 from giveway.validation.validating import Validation
 from pedestrian_model import VciParameters
 
-TABLES = ("errors.csv", "contacts.csv")
+TABLES = ("errors.csv", "contacts.csv", "prediction.csv")
 PICTURES = ("growth", "tracks", "places")
 _SUFFIXES = (".png", ".svg")
 FILES = frozenset({*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)})
@@ -35,10 +35,11 @@ def write_validation(found: Validation, parameters: VciParameters, folder: Path)
     Raises:
         ResultsError: a file cannot be written.
     """
+    tables = found.errors, found.contacts, found.prediction
     pictures = dict(zip(PICTURES, _pictures(found, parameters), strict=True))
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, table in zip(TABLES, (found.errors, found.contacts), strict=True):
+        for name, table in zip(TABLES, tables, strict=True):
             table.round(_DECIMALS).to_csv(folder / name, index=False, lineterminator="\n")
         for name, figure in pictures.items():
             for suffix in _SUFFIXES:

@@ -17,6 +17,7 @@ from giveway.validation.clips import Clip
 
 _PAUSE = 0.5  # Time [s] skipped at the start, and between the starts of windows
 _HORIZONS = (0.75, 2.0, 4.0)  # Prediction horizons [s]
+_PAST = 3.0  # Time [s] before a window of which the predictors know the tracks
 _NOWHERE = 1e6  # Place [m] of a vehicle in frames in which it is not seen, or does not count
 
 
@@ -69,6 +70,8 @@ class Window:
         clip: Index of its clip.
         frame: Frame of the clip, at which the prediction begins.
         who: Indices (n,) in the clip of the pedestrians seen at that frame.
+        past: Positions and velocities (K, n, 4) [m], [m/s] at 0, 1 ... frames before, over 3 s or
+            to the clip's first frame; nan where a pedestrian is not seen.
         position, velocity, destination: Arrays (n, 2) [m], [m/s], [m].
         vehicles: Vehicles (H, m, 7) at 0 ... H - 1 frames ahead, as the pedestrian model takes
             them.
@@ -81,6 +84,7 @@ class Window:
     clip: int
     frame: int
     who: NDArray[np.int64]
+    past: Array
     position: Array
     velocity: Array
     destination: Array
@@ -96,6 +100,8 @@ def windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ...]:
 
 def _of_clip(number: int, clip: Clip, protocol: Protocol) -> Iterator[Window]:
     shortest, longest = min(protocol.horizons), protocol.longest
+    states = np.concatenate([clip.position, clip.velocity], axis=2)
+    before = max(1, round(_PAST * protocol.frame_rate))
     bodies = vehicle_rows(clip, protocol)
     distances = distance_to_bodies(clip.position, _only_moving(bodies, protocol.moving))
     for frame in range(protocol.skip, clip.frames - shortest, protocol.stride):
@@ -111,6 +117,7 @@ def _of_clip(number: int, clip: Clip, protocol: Protocol) -> Iterator[Window]:
             clip=number,
             frame=frame,
             who=who,
+            past=states[max(0, frame - before) : frame + 1, who][::-1].copy(),
             position=np.ascontiguousarray(clip.position[frame, who]),
             velocity=np.ascontiguousarray(clip.velocity[frame, who]),
             destination=clip.destination[who],

@@ -10,9 +10,11 @@ from giveway.recordings.intervals import ClipBootstrap
 from giveway.validation.clips import Clip
 from giveway.validation.contacts import contact_table, people_apart
 from giveway.validation.evaluation import Evaluation, error_table, evaluate
+from giveway.validation.prediction import predict_all, prediction_table
 from giveway.validation.predictors import predictors
 from giveway.validation.protocol import Protocol, Window, windows
 from pedestrian_model import VciParameters
+from pedestrian_model.drift.trained import unseen_fit
 
 Progress = Callable[[int, int], None]  # numbers of windows done and of all
 
@@ -27,6 +29,9 @@ class Validation:
         errors: Table, see :func:`giveway.validation.evaluation.error_table`.
         contacts: Table, see :func:`giveway.validation.contacts.contact_table`.
         apart: Distances, see :func:`giveway.validation.contacts.people_apart`.
+        prediction: Table, see :func:`giveway.validation.prediction.prediction_table`; empty if each
+            fit of drift has seen one of the clips.
+        fit: Name of the fit of drift, or empty.
     """
 
     clips: tuple[Clip, ...]
@@ -37,6 +42,8 @@ class Validation:
     errors: pd.DataFrame
     contacts: pd.DataFrame
     apart: dict[str, float]
+    prediction: pd.DataFrame
+    fit: str
 
     @property
     def pedestrians(self) -> int:
@@ -79,7 +86,11 @@ def validate(
     errors = error_table(found, protocol, draws)
     contacts = contact_table(clips, parameters, protocol, advance)
     apart = people_apart(clips, parameters, protocol)
-    return Validation(clips, cut, protocol, draws, found, errors, contacts, apart)
+    fit, prediction = unseen_fit([clip.name for clip in clips]), pd.DataFrame()
+    if fit is not None:
+        prediction = prediction_table(predict_all(cut, fit, protocol), protocol, draws)
+    name = "" if fit is None else fit.name
+    return Validation(clips, cut, protocol, draws, found, errors, contacts, apart, prediction, name)
 
 
 def protocol_of(clips: Sequence[Clip]) -> Protocol:

@@ -17,6 +17,7 @@ from giveway.validation.contacts import DATA, ORDER
 from giveway.validation.evaluation import EVERYWHERE, NEAR
 from giveway.validation.output import FILES, write_validation
 from giveway.validation.predictors import VCI
+from giveway.validation.verdict import verdict
 
 
 def validate_command(
@@ -66,6 +67,35 @@ def _print(console: Console, found: Validation, preset: str) -> None:
         f"{found.apart[VCI]:.2f} m by the model.",
         highlight=False,
     )
+    if len(found.prediction):
+        console.print(_prediction(found.prediction, found.fit))
+    else:
+        console.print("drift: each fit has seen one of these clips; not judged.", highlight=False)
+    for sentence in verdict(found.errors, found.prediction):
+        console.print(escape(sentence), highlight=False)
+
+
+def _prediction(rows: pd.DataFrame, fit: str) -> Table:
+    """Return the table of drift and the best constant velocity per subset and horizon."""
+    title = f"drift ({fit}) against the best constant velocity"
+    caption = "FDE [m], negative log likelihood, share within the 95 % ellipse: both predictors"
+    numbers = numbers_of("n", "FDE", "change [95 % interval]", "NLL", "95 %")
+    table = Table(
+        "people", "horizon", "baseline", *numbers[1:], title=escape(title), caption=escape(caption)
+    )
+    for _, row in rows.iterrows():
+        low, high = 100.0 * row["change_low"], 100.0 * row["change_high"]
+        table.add_row(
+            row["subset"],
+            f"{row['horizon']:g} s",
+            row["baseline"],
+            str(row["count"]),
+            f"{row['fde']:.3f} / {row['baseline_fde']:.3f}",
+            escape(f"{100.0 * row['change']:+.1f} % [{low:+.0f}, {high:+.0f}]"),
+            f"{row['nll']:.2f} / {row['baseline_nll']:.2f}",
+            f"{row['inside_0.95']:.0%} / {row['baseline_inside_0.95']:.0%}",
+        )
+    return table
 
 
 def _errors(rows: pd.DataFrame, title: str) -> Table:

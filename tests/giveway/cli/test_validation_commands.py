@@ -42,9 +42,10 @@ def test_validate_prints_both_tables_and_writes_csv_and_pictures(dataset, tmp_pa
     assert giveway("validate", dataset, *AS_CITR, "--preset", "TABLE2", "--out", out) == 0
     said = capsys.readouterr().out
     assert "3 clips, 1 with a vehicle, 9 pedestrians" in said
+    assert "VCI, people near a moving vehicle: at 0.73 s" in said
     for words in ("goalCV", "VCI without f_v", "within 3 m of a moving vehicle", "closest [m]"):
         assert words in said
-    names = {"errors.csv", "contacts.csv"}
+    names = {"errors.csv", "contacts.csv", "prediction.csv"}
     names |= {f"{n}.{kind}" for n in ("growth", "tracks", "places") for kind in ("png", "svg")}
     assert {path.name for path in out.iterdir()} == names
     errors = pd.read_csv(out / "errors.csv")
