@@ -19,11 +19,13 @@ BundledModel = Literal[
     "jupedsim:SocialForceModel",
 ]
 BundledCrowdModel = Literal[BundledModel, "recorded"]
+BundledBelief = Literal[BundledModel, "drift"]
 BundledSensor = Literal["all"]
 _JUPEDSIM = "jupedsim:"
 BUNDLED: frozenset[str] = frozenset(get_args(BundledController))
 BUNDLED_MODELS: frozenset[str] = frozenset(get_args(BundledModel))
 BUNDLED_CROWD_MODELS: frozenset[str] = frozenset(get_args(BundledCrowdModel))
+BUNDLED_BELIEFS: frozenset[str] = frozenset(get_args(BundledBelief))
 BUNDLED_SENSORS: frozenset[str] = frozenset(get_args(BundledSensor))
 
 
@@ -34,8 +36,8 @@ def _controller(value: Any) -> Any:
     return _known("pid-paper" if value == "pid" else value, get_args(BundledController), CONTROLLER)
 
 
-def _model(value: Any) -> Any:
-    return _known(value, get_args(BundledModel), MODEL)
+def _belief(value: Any) -> Any:
+    return _known(value, get_args(BundledBelief), MODEL)
 
 
 def _crowd_model(value: Any) -> Any:
@@ -64,6 +66,6 @@ def _known(name: Any, bundled: tuple[str, ...], socket: Socket) -> Any:
 _Other = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"^[\w.]+:[\w.]+$"})]
 _Fmu = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"\.[Ff][Mm][Uu]$"})]
 ControllerName = Annotated[BundledController | _Other | _Fmu, BeforeValidator(_controller)]
-ModelName = Annotated[BundledModel | _Other, BeforeValidator(_model)]
+BeliefName = Annotated[BundledBelief | _Other, BeforeValidator(_belief)]
 CrowdModelName = Annotated[BundledCrowdModel | _Other, BeforeValidator(_crowd_model)]
 SensorName = Annotated[BundledSensor | _Other, BeforeValidator(_sensor)]

@@ -17,7 +17,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from giveway.config.option import LANE, Section, expectation, option
-from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
+from giveway.config.plug_in_names import BUNDLED, BUNDLED_BELIEFS, ControllerName
 from giveway.config.tables.basics import (
     EgoConfig,
     RecordConfig,
@@ -424,7 +424,7 @@ class EgoRunConfig(RunConfig):
         if self.perception.plugged_in and believed != moving:
             raise ValueError(
                 f"[perception] model = '{believed}': the people walk by '{moving}'; expected "
-                f"{', '.join(sorted(BUNDLED_MODELS))}, or the same as [crowd] model"
+                f"{', '.join(sorted(BUNDLED_BELIEFS))}, or the same as [crowd] model"
             )
 
     def require_rolling(self) -> None:

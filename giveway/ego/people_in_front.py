@@ -12,6 +12,7 @@ from giveway.ego.perception.truth import Truth
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
 from pedestrian_model import Crowd, CrowdPredictor, Surroundings
+from pedestrian_model.drift.predictor import DriftPredictor
 
 _LIKELY = 0.75  # share of the largest position error that plans take into account
 
@@ -32,6 +33,8 @@ class PeopleInFront:
         path, time_step, half_width = corridor.path, corridor.time_step, corridor.half_width
         span, worst = waiting.horizon * time_step, waiting.worst
         self._corridor, self._kerbs, self._predictor = corridor, kerbs, waiting.predictor
+        predictor = waiting.predictor
+        self._drift = predictor if isinstance(predictor, DriftPredictor) else None
         self._relevance = Relevance(waiting, span, shape.length + half_width)
         self._nearby = Nearby(waiting, path, shape, span, half_width, time_step)
         self._chosen: Crowd | None = None  # memory for those who matter
@@ -66,6 +69,8 @@ class PeopleInFront:
             percept = perception.observe(truth, person_ids, own)
         people, predictor = percept.people, self._predictor
         seen.percept = percept
+        if self._drift is not None:
+            self._drift.remember(people, percept.person_ids)
         if kerbs is not None:
             seen.kerbs = kerbs.of(people.position, people.velocity, front)
             seen.sudden_starts = self._sudden_starts.beyond(
@@ -105,6 +110,8 @@ class PeopleInFront:
         if relevant is not None:
             self._chosen = people = people.select(relevant, self._chosen)
             numbers = numbers[relevant]
+            if self._drift is not None:
+                self._drift.choose(numbers)
         seen.relevant, seen.foresight = relevant, foresight
         if foresight is None:
             poses = seen.poses[: predictor.horizon]

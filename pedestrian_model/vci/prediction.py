@@ -19,6 +19,8 @@ from pedestrian_model.vci.model import CELL_LIST_FROM, require_steady
 from pedestrian_model.vci.rollout import roll_out
 from pedestrian_model.vci.step import Scene, parts
 
+_NONE_GIVEN = np.empty((0, 0, 2))  # positions of a prediction by the model itself
+
 
 class Predictor:
     """Predicts N steps of the crowd in one compiled call.
@@ -131,6 +133,10 @@ class Predictor:
         arrays = (*crowd.state, *crowd.fixed_arrays, *surroundings.arrays, *scratch, *self._state)
         self._latest = crowd, surroundings, arrays
         return arrays
+
+    def given(self, crowd: Crowd) -> NDArray[np.float64]:  # noqa: ARG002
+        """Return positions (N, n, 2) [m] that the model's steps do not change; here none, N = 0."""
+        return _NONE_GIVEN
 
     def desired_velocities(
         self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND

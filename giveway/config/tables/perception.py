@@ -4,9 +4,9 @@ from typing import Literal
 
 from giveway.config.option import Preset, Section, option
 from giveway.config.plug_in_names import (
-    BUNDLED_MODELS,
+    BUNDLED_BELIEFS,
     BUNDLED_SENSORS,
-    ModelName,
+    BeliefName,
     SensorName,
 )
 
@@ -49,11 +49,12 @@ class PerceptionConfig(Section):
         "expected to walk on as now (heading)",
         flag="--goals",
     )
-    model: ModelName = option(
+    model: BeliefName = option(
         "vci",
         None,
-        "Model by which mpc and mpc-paper predict people: one of [crowd] model. Another package's"
-        " model must be the one that moves people",
+        "Model by which mpc and mpc-paper predict people: one of [crowd] model but recorded, or "
+        "drift (constant velocity, corrected as recorded people deviate from it). Another "
+        "package's model must be the one that moves people",
     )
     preset: Preset = option(
         "",
@@ -70,4 +71,4 @@ class PerceptionConfig(Section):
     @property
     def plugged_in(self) -> bool:
         """True if the predicting pedestrian model is a plug-in."""
-        return self.model not in BUNDLED_MODELS
+        return self.model not in BUNDLED_BELIEFS

@@ -39,7 +39,8 @@ def branch_and_bound(
     Args:
         path: Vertices, stations and headings of the ego's path.
         people: Arrays of the crowd, as :func:`pedestrian_model.kernels.start` takes them.
-        law: Constants of the pedestrian model, and :attr:`IntentEstimator.yielding`.
+        law: Constants of the pedestrian model; positions (M, n, 2) [m] that are predicted already,
+            or M = 0; and :attr:`IntentEstimator.yielding`.
         ego: Poses of all vehicles, (M, m, 7), in which the ego's row is changed; index of that
             row; station of the ego's front bumper [m].
         sight: Fields of a ``View`` and of an ``Alarm``.
@@ -168,6 +169,22 @@ def enter(
         alike[k, other] = alike[other, k] = same
 
 
+@inner
+def follow(there: Array, time_step: float, position: Array, velocity: Array) -> None:
+    """Move people to where they are predicted, at the mean velocity of this step.
+
+    Args:
+        there: Predicted positions (n, 2) [m].
+        time_step: Time [s] of the step.
+        position: Positions (n, 2) [m], changed.
+        velocity: Velocities (n, 2) [m/s], changed.
+    """
+    for p in range(there.shape[0]):
+        for axis in range(2):
+            velocity[p, axis] = (there[p, axis] - position[p, axis]) / time_step
+            position[p, axis] = there[p, axis]
+
+
 @inlined
 def advance(
     k: int,
@@ -216,9 +233,13 @@ def advance(
         station = front + 0.5 * (distance[k, step] + distance[k, late])
         pace = 0.5 * (speed[k, step] + speed[k, late])
         set_pose((vertices, stations, headings), station, pace, View(*view).length, poses[j, row])
-        bad = rollout_step(ahead, scene, poses[j], scratch, law[:-1])
-        if bad != _FINE:
-            return bad
+        given = law[-2]
+        if given.shape[0] > 0:
+            follow(given[j], law[1] * law[2], x, v)
+        else:
+            bad = rollout_step(ahead, scene, poses[j], scratch, law[:-2])
+            if bad != _FINE:
+                return bad
         if j > 0:  # step 0 is the walking model's: intent estimation compares people with it
             step_yielding(law[-1], 4 * (here - n), state, scene, x, v)
         for p in range(n):

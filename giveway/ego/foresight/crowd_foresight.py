@@ -263,7 +263,7 @@ class CrowdForesight:
         ended: tuple[int, bool, int] = branch_and_bound(
             self._way,
             vci.arrays(people, self._surroundings),
-            (*vci.law, yielding),
+            (*vci.law, vci.given(people), yielding),
             (self._poses, self._row, self._front),
             (self._view, self._alarm),
             (tuple(trials), workspace.arrays, workspace.rows_of(batches), probe),

@@ -12,6 +12,7 @@ from pedestrian_model import (
     VciParameters,
     unmoved,
 )
+from pedestrian_model.drift.predictor import DriftPredictor
 
 
 def predictor_of(
@@ -36,6 +37,10 @@ def predictor_of(
     horizon, believed = controller.horizon, config.perception.model
     if not horizon:
         return None
+    if believed == "drift":
+        every = steps_at_once(time_step, horizon) if controller.foresees else 1
+        step, bodies = every * time_step, unmoved(parameters)
+        return DriftPredictor(bodies, step, horizon // every, interval=time_step)
     if believed in {"vci", "constant-velocity"}:
         readings = dict(config.vci_options)
         if believed != "vci":

@@ -3,7 +3,7 @@
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from giveway.config.plug_in_names import ControllerName, ModelName, SensorName
+from giveway.config.plug_in_names import BeliefName, ControllerName, SensorName
 
 
 def test_the_papers_pid_keeps_its_old_name() -> None:
@@ -19,8 +19,8 @@ def test_ours_classes_and_fmus_are_controllers(name: str) -> None:
     ("kind", "name"),
     [
         (ControllerName, "mpcc"),
-        (ModelName, "jupedsim:NoSuchModel"),
-        (ModelName, "walker.fmu"),
+        (BeliefName, "jupedsim:NoSuchModel"),
+        (BeliefName, "walker.fmu"),
         (SensorName, 3),
     ],
 )

@@ -39,3 +39,9 @@ def test_a_predictor_that_equals_the_crowds_model_is_exact(model):
 @pytest.mark.parametrize(("moving", "believed"), [("orca", "vci"), ("vci", "social-force")])
 def test_who_believes_in_another_does_not(moving, believed):
     assert surprise(drive(moving, believed, **ON_RECORD)).max() > 1e-3
+
+
+@pytest.mark.parametrize("controller", ["mpc", "mpc-paper"])
+def test_drift_predicts_people_who_walk_by_another_model(controller):
+    found = surprise(drive("vci", "drift", controller, **ON_RECORD))
+    assert 1e-6 < found.mean() < 0.05
