@@ -13,7 +13,7 @@ from pedestrian_model.errors import (
 from pedestrian_model.other_models.jupedsim import JUPEDSIM_MODELS, JuPedSimName, JuPedSimPeople
 from pedestrian_model.other_models.simple import PLAIN_MODELS, PlainModel, PlainName, unmoved
 from pedestrian_model.other_models.stepwise_prediction import StepwisePredictor
-from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
+from pedestrian_model.parameters import SIM, TABLE2, VciParameters
 from pedestrian_model.plug_in import (
     Accelerations,
     Goals,
@@ -23,6 +23,7 @@ from pedestrian_model.plug_in import (
     Walkers,
     WallsAround,
 )
+from pedestrian_model.presets import PRESETS
 from pedestrian_model.protocol import CrowdPredictor, PedestrianModel
 from pedestrian_model.stepping import LONGEST_STEP
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls

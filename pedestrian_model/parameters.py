@@ -177,6 +177,3 @@ SIM = VciParameters()
 TABLE2 = replace(
     SIM, repulsion_strength=30.028, navigation_strength=41.875, collision_stiffness=982.125
 )
-
-#: The presets by name.
-PRESETS: Mapping[str, VciParameters] = MappingProxyType({"SIM": SIM, "TABLE2": TABLE2})

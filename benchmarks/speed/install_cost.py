@@ -19,6 +19,7 @@ from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[2]
 USED_FOR = {
+    "cmaes": "the search of giveway calibrate",
     "contourpy": "contours of the vehicle's influence; comes with matplotlib",
     "filelock": "one process at a time compiles, or writes a study",
     "fmpy": "calls vehicle FMUs",

@@ -227,7 +227,9 @@ def _influence(
     speeds: Annotated[
         str, typer.Option(help="Vehicle speeds in m/s, comma-separated, one panel each.")
     ] = "0,1,2,4",
-    preset: Annotated[str, typer.Option(help="VCI parameter set: SIM or TABLE2.")] = "SIM",
+    preset: Annotated[
+        str, typer.Option(help="VCI parameter set: SIM, TABLE2, MIXED, CITR or DUT.")
+    ] = "SIM",
     length: Annotated[float, typer.Option(help="Vehicle length in m.")] = 5.0,
     width: Annotated[float, typer.Option(help="Vehicle width in m.")] = 2.0,
 ) -> None:

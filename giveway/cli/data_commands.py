@@ -66,7 +66,9 @@ def _behave(
     model: Annotated[
         str, typer.Option(help="Pedestrian model: a bundled one, as in [crowd] model.")
     ] = "vci",
-    preset: Annotated[str, typer.Option(help="SIM, TABLE2 or a preset file (TOML).")] = "SIM",
+    preset: Annotated[
+        str, typer.Option(help="SIM, TABLE2, MIXED, CITR, DUT or a preset file (TOML).")
+    ] = "SIM",
     out: Annotated[
         Path | None, typer.Option(help="Folder for tables and picture; without it, none.")
     ] = None,

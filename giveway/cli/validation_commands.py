@@ -27,7 +27,9 @@ def add_validation(app: Commands) -> None:
 def _validate(
     clips: _Clips,
     dataset: _Dataset = None,
-    preset: Annotated[str, typer.Option(help="SIM, TABLE2 or a preset file (TOML).")] = "SIM",
+    preset: Annotated[
+        str, typer.Option(help="SIM, TABLE2, MIXED, CITR, DUT or a preset file (TOML).")
+    ] = "SIM",
     out: Annotated[
         Path | None, typer.Option(help="Folder (default results/validation_PRESET).")
     ] = None,

@@ -3,7 +3,7 @@
 import math
 import shlex
 from collections.abc import Callable
-from typing import Annotated, Any, Literal, Protocol, TypeVar, get_args
+from typing import Annotated, Any, Final, Literal, Protocol, TypeVar, get_args
 
 from pydantic import (
     AfterValidator,
@@ -109,11 +109,17 @@ def _text(value: Any) -> Any:
     return f"{value:.12g}" if is_number else value
 
 
+PRESET_NAMES: Final = ("SIM", "TABLE2", "MIXED", "CITR", "DUT")
+"""The presets of the VCI model, named here since to import the model takes time."""
+
+
 def _preset(value: str) -> str:
     """Return a name or file of the model's parameters; the file is read when it is needed."""
-    if value in {"", "SIM", "TABLE2"} or value.endswith(".toml"):
+    if value in {"", *PRESET_NAMES} or value.endswith(".toml"):
         return value
-    msg = "expected SIM, TABLE2 or a preset file (.toml; giveway calibrate writes one)"
+    msg = (
+        f"expected {', '.join(PRESET_NAMES)} or a preset file (.toml; giveway calibrate writes one)"
+    )
     raise PydanticCustomError("preset", "{expected}", {"expected": msg})
 
 

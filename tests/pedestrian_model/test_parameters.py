@@ -7,7 +7,6 @@ from dataclasses import FrozenInstanceError, fields, replace
 import pytest
 
 from pedestrian_model import (
-    PRESETS,
     SIM,
     TABLE2,
     ParameterError,
@@ -16,7 +15,6 @@ from pedestrian_model import (
 
 
 def test_presets_are_frozen_and_differ_in_the_strengths_only():
-    assert dict(PRESETS) == {"SIM": SIM, "TABLE2": TABLE2}
     assert VciParameters() == SIM
     assert (TABLE2.repulsion_strength, TABLE2.navigation_strength) == (30.028, 41.875)
     assert TABLE2.collision_stiffness == 982.125

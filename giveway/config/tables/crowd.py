@@ -130,7 +130,8 @@ class CrowdConfig(Section):
     preset: Preset = option(
         "SIM",
         None,
-        "Parameters of the VCI model: SIM, TABLE2, or a preset file (TOML)",
+        "Parameters of the VCI model: SIM, TABLE2, or a preset file (TOML); fitted to recorded "
+        "people: MIXED, CITR, DUT",
         min_length=1,
     )
     zone: TextOrNumber = option(

@@ -224,7 +224,7 @@ class Yardstick:
 
 
 class Floor(NamedTuple):
-    """What two halves of the recorded people differ by, in one measure.
+    """The difference between two halves of the recorded people, in one measure.
 
     Attributes:
         distance: Mean Wasserstein-1 distance between the halves, in the measure's unit.

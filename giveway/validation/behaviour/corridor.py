@@ -28,7 +28,7 @@ _NONE = Vehicles.empty()
 
 
 class Walked(NamedTuple):
-    """What people did in the corridors.
+    """The result of a walk in the corridors.
 
     Attributes:
         speed: Mean speed (D,) [m/s] at each of ``DENSITIES``.

@@ -29,7 +29,7 @@ FAILED = 99.0
 
 @dataclass(frozen=True)
 class Likeness:
-    """How like the recorded people of a site the simulated ones are.
+    """The likeness of simulated to recorded people, at one site.
 
     Attributes:
         ratios: Ratio of each measure, by its name.

@@ -45,8 +45,15 @@ RANGES: Final[Mapping[str, tuple[float, float]]] = {
 }
 """The parameters that may be fitted for behaviour, each with its range in its own unit."""
 DEFAULT: Final = tuple(RANGES)
-_BEGIN_ACCELERATION = 1.2  # Largest acceleration [m/s^2] with which a search begins (ours)
-_BEGIN_SWAY = 0.3  # Sway [m/s^2] with which a search begins if the start has none (ours)
+# Where a search begins unless its start is beyond: recorded people accelerate less than the
+# published parameters let them, and heed a car from farther off (ours).
+_AT_MOST: Final = {"max_acceleration": 1.2, "vehicle_decay": 1.3}
+_AT_LEAST: Final = {
+    "vehicle_strength": 1500.0,
+    "influence_high": 2000.0,
+    "sway": 0.3,
+    "sway_time": 0.5,
+}
 _INSIDE = 0.1  # Distance from the ends of the ranges at the beginning, in the logarithm
 _POPULATION = 14  # Number of parameter sets of a generation
 _SPREAD = 0.4  # First standard deviation, in the logarithm
@@ -152,8 +159,8 @@ class Search:
 
     def _begin(self) -> Array:
         begun = asdict(self._start)
-        begun["max_acceleration"] = min(begun["max_acceleration"], _BEGIN_ACCELERATION)
-        begun["sway"] = begun["sway"] or _BEGIN_SWAY
+        begun |= {name: min(begun[name], value) for name, value in _AT_MOST.items()}
+        begun |= {name: max(begun[name], value) for name, value in _AT_LEAST.items()}
         begin = np.log([begun[name] or RANGES[name][0] for name in self._names])
         if self._seed:
             begin = begin + np.random.default_rng(self._seed).normal(0.0, _SPREAD, len(begin))

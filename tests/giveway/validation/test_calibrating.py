@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from giveway.cli.option_groups import FitSettings
 from giveway.errors import ConfigError, DatasetError
 from giveway.validation import calibrate
-from giveway.validation.calibrating import DEFAULT, HeldOut, split
+from giveway.validation.calibrating import HeldOut, split
 from pedestrian_model import SIM
 from tests.giveway.validation.conftest import TRUTH
 
@@ -79,10 +78,6 @@ def test_too_few_clips_to_hold_one_out(clips) -> None:
         calibrate(clips[:1], SIM, ["mass"])
     with pytest.raises(ConfigError, match=r"--held-out 1\.5"):
         calibrate(clips, SIM, ["mass"], held_out=HeldOut(1.5))
-
-
-def test_the_command_line_offers_the_packages_own_default() -> None:
-    assert tuple(FitSettings().parameters.split(",")) == DEFAULT
 
 
 def test_the_closest_two_people_stand_beside_the_error(clips) -> None:

@@ -43,7 +43,7 @@ def test_a_fit_is_told_and_can_be_walked_by(recorded_crossing, tmp_path, capsys)
 def test_a_fit_that_loses_the_car_is_refused(recorded_crossing, tmp_path, capsys) -> None:
     folder, description = recorded_crossing
     strong = tmp_path / "strong.toml"
-    strong.write_text("base = 'SIM'\n[parameters]\nvehicle_strength = 20000\n")
+    strong.write_text("base = 'SIM'\n[parameters]\nvehicle_strength = 20000\nvehicle_decay = 8\n")
     file = tmp_path / "mine.toml"
     words = ("calibrate", folder, "--dataset", description, "--out", file, "--evaluations", 1)
     words += ("--preset", strong, "--parameters", "vehicle_strength")

@@ -10,6 +10,7 @@ import pytest
 import giveway
 from giveway.config.files.loading import as_layer, load
 from giveway.config.files.presets import parameters_of, preset_text
+from giveway.config.option import PRESET_NAMES
 from giveway.errors import ConfigError
 from giveway.studies.identity import cell_digest, input_hashes
 from pedestrian_model import PRESETS, SIM, TABLE2, VciParameters
@@ -28,6 +29,10 @@ def preset(tmp_path: Path):
 def test_a_preset_file_comes_back_to_the_last_digit(preset) -> None:
     odd = replace(SIM, vehicle_strength=777.5852 / 3.0, mass=81.0)
     assert parameters_of(preset(odd)) == odd
+
+
+def test_the_configuration_knows_all_names() -> None:
+    assert tuple(PRESETS) == PRESET_NAMES
 
 
 @pytest.mark.parametrize("name", PRESETS)
@@ -71,7 +76,7 @@ def test_a_file_that_cannot_be_used_is_named_with_the_key(tmp_path, text, said) 
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({"crowd": {"preset": "SIMM"}}, "expected SIM, TABLE2 or a preset file"),
+        ({"crowd": {"preset": "SIMM"}}, "expected SIM, TABLE2, MIXED, CITR, DUT or a preset file"),
         ({"crowd": {"preset": "no.toml"}}, r"\[crowd\] preset: no.toml: no preset file"),
         ({"perception": {"preset": "no.toml"}}, r"\[perception\] preset: no.toml"),
         ({"crowd": {"preset": ""}}, "at least 1"),
