@@ -45,6 +45,8 @@ def behaviour_figure(panels: Sequence[Panel], title: str) -> Figure:
     rows = -(-len(panels) // _COLUMNS)
     figure = Figure(figsize=(3.1 * _COLUMNS, 2.6 * rows + 0.6), layout="constrained")
     grid = figure.subplots(rows, _COLUMNS, sharey=True, squeeze=False)
+    for axes in grid.flat[len(panels) :]:
+        axes.set_axis_off()
     for axes, panel in zip(grid.flat, panels, strict=False):
         axes.fill_betweenx(
             panel.levels,

@@ -71,14 +71,14 @@ def behave_command(
 
 
 def _distributions(found: Comparison, title: str) -> Table:
-    columns = numbers_of(RECORDED, SIMULATED, "distance", "floor", "ratio")
+    columns = numbers_of(RECORDED, SIMULATED, "W1", "floor", "ratio")
     table = Table(
         Column(no_wrap=True),
         *columns[1:],
         title=escape(f"{title}: {found.near} people near a vehicle, {_clips(found)}"),
         caption=(
-            "medians; speed, acceleration: within 3 m of a moving vehicle; distance: "
-            "Wasserstein-1; floor: its mean between two halves of the "
+            "medians; speed, acceleration: within 3 m of a moving vehicle; W1: the "
+            "Wasserstein-1 distance; floor: its mean between two halves of the "
             f"{found.near} recorded people, {HALVES} times, seed {SEED}; people are simulated "
             f"{DRAWS} times"
         ),

@@ -52,7 +52,7 @@ NEIGHBOUR: Final = Measure("neighbour", "m", "nearest person")
 ACCELERATION: Final = Measure("acceleration", "m/s^2", "acceleration")
 MEASURES: Final = (SPEED, CLEARANCE, EVASION, ENCROACHMENT, NEIGHBOUR, ACCELERATION)
 """The measures whose mean ratio says how like recorded people the simulated ones are."""
-CHANGE: Final = Measure("change", "m/s^2", "acceleration over 0.2 s")
+CHANGE: Final = Measure("change", "m/s^2", "acceleration, 0.2 s")
 PERSISTENCE: Final = Measure("persistence", "-", "autocorrelation of speed")
 SHORT_TERM: Final = (CHANGE, PERSISTENCE)
 """The measures that a model may buy with white noise: they are told apart."""
