@@ -25,9 +25,10 @@ BLOCK = 8
  VFX, VFY, S,             # force from the vehicles, signed distance to their contours
  TX, TY, V0, SOFT,        # target, desired speed, [m^2] s_des^2 of the target
  WS, WX, WY,              # signed distance to the nearest wall, its normal
+ MOST,                    # largest total force
  NX, NY, NVX, NVY,        # next state
  PRIORITY,                # 0 to 1; filled if anybody has priority
- ROWS) = range(24)
+ ROWS) = range(25)
 # fmt: on
 
 #: Distance of the buffer's rows, in float64; not a multiple of 4096 bytes.

@@ -15,6 +15,7 @@ from pedestrian_model.vci.buffers import (
     FX,
     FY,
     LARGEST_RING,
+    MOST,
     NVX,
     NVY,
     NX,
@@ -109,7 +110,7 @@ def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
     n is a multiple of the block. Results of dummies are never read.
     """
     m, k_des, F_2, inverse_F = c.m, c.k_des, c.F_2, c.inverse_F
-    most, v_max = c.m * c.a_max, c.v_max
+    most, v_max = rows[MOST], c.v_max
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
     fx, fy, vfx, vfy = rows[FX], rows[FY], rows[VFX], rows[VFY]
     to_x, to_y, v0, s_des_2 = rows[TX], rows[TY], rows[V0], rows[SOFT]
@@ -124,9 +125,9 @@ def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
         drive = beta * k_des
         F_x = fx[k] + vfx[k] + drive * fma(pace, dx, -vx[k])
         F_y = fy[k] + vfy[k] + drive * fma(pace, dy, -vy[k])
-        # The force is limited to m a_max.
+        # The force is limited to m a_max, or to what a wall holds with.
         F = math.sqrt(fma(F_x, F_x, F_y * F_y))
-        scale = most / F if most < F else 1.0
+        scale = most[k] / F if most[k] < F else 1.0
         a_x, a_y = F_x * scale / m, F_y * scale / m
         # The speed at the end of the step is limited to v_max.
         end_x, end_y = fma(a_x, dt, vx[k]), fma(a_y, dt, vy[k])

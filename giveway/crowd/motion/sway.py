@@ -15,6 +15,7 @@ from giveway.config.tables.crowd import VCI
 from giveway.geometry.kernel import Array, inlined, kernel
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles
 
+_MORE = 1.001  # Factor by which a wall's acceleration is surely above a_max
 _STREAM = 0xACC  # key of the random stream of sways, which differs from all others
 
 
@@ -73,7 +74,8 @@ class Sway:
 def pushed(model: PedestrianModel, crowd: Crowd, before: Array, push: Array) -> None:
     """Change the velocities after a model's step by ``push``, within the model's limits.
 
-    The change of the whole step, the model's plus the added one, is limited by a_max. The result is
+    The change of the whole step, the model's plus the added one, is limited by a_max, or by the
+    model's own if a wall makes that larger. The result is
     limited by v_max, which does not increase the change, because ``before`` is within v_max.
     Positions change by half of the added velocity times the step, as for a constant acceleration.
 
@@ -107,7 +109,10 @@ def _add(
     """Add a change of velocity to pedestrian ``k``; see :func:`pushed`."""
     position, velocity, before = moved
     time_step, most, fastest = limits
-    most *= time_step  # largest change [m/s] in a step
+    x, y = velocity[k, 0] - before[k, 0], velocity[k, 1] - before[k, 1]
+    own, most = math.hypot(x, y), most * time_step  # changes [m/s] in a step
+    if own > _MORE * most:  # a wall holds people with more than they accelerate by
+        most = own
     x, y = velocity[k, 0] + push[0] - before[k, 0], velocity[k, 1] + push[1] - before[k, 1]
     within = most / max(math.hypot(x, y), most)
     x, y = before[k, 0] + x * within, before[k, 1] + y * within
