@@ -263,6 +263,7 @@ def test_an_event_leads_to_its_instant(watched: Any, ego: pd.DataFrame) -> None:
     acting = ego["controller"].to_numpy()
     first = next(i + 1 for i, (a, b) in enumerate(pairwise(acting)) if (a, b) == ("mpc", "pid"))
     watched.tab.locator("#events button", has_text="PID").first.click()
+    watched.settle()
     assert watched.time == pytest.approx(ego["time"].iloc[first])
     assert "no solution" in watched.tab.inner_text(".wheel")
 
