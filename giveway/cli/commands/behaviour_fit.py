@@ -6,6 +6,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from giveway._version import __version__
 from giveway.cli.option_groups import FitSettings
 from giveway.cli.screen.printing import escape, numbers_of
 from giveway.cli.screen.progress_bars import counting
@@ -63,7 +64,7 @@ def fit_behaviour(
         evaluations=fit.evaluations or _EVALUATIONS,
     )
     compile_kernels_once(console)
-    settings = start, names, fit.seed, [site.names for site in sites]
+    settings = __version__, start, names, fit.seed, [(site.names, site.floors) for site in sites]
     journal = Journal(journal_of(out), settings)
     if journal.known:
         console.print(f"{journal.known} evaluations are known from an earlier call.")

@@ -213,6 +213,11 @@ class Yardstick:
             advance(recording.name)
         return [together(each) for each in found]
 
+    @property
+    def floors(self) -> dict[str, float]:
+        """The noise floor of each measure, by its name; it changes with any recorded person."""
+        return {name: floor.distance for name, floor in self._floors.items()}
+
     def ratios(self, simulated: Behaviour) -> dict[str, float]:
         """Return the ratio of each measure that has a floor, by its name; nan without samples."""
         found = self.distributions(simulated)

@@ -109,7 +109,12 @@ class Objective:
             simulated=simulated,
             near=site.near,
             hardness=(
-                simulated.acceleration / real.acceleration,
-                hardest(both, CHANGE) / hardest(recorded, CHANGE),
+                _quotient(simulated.acceleration, real.acceleration),
+                _quotient(hardest(both, CHANGE), hardest(recorded, CHANGE)),
             ),
         )
+
+
+def _quotient(simulated: float, recorded: float) -> float:
+    """Return the quotient, or 1 if recorded people near vehicles do not accelerate at all."""
+    return simulated / recorded if recorded > 0.0 else 1.0

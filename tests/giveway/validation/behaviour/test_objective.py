@@ -51,3 +51,11 @@ def test_speeds_in_corridors_count_beside_the_sites(walked_by_sim) -> None:
     """People of SIM walk too slowly in a corridor."""
     alone = Objective([walked_by_sim], corridors=False)(SIM)
     assert alone < Objective([walked_by_sim])(SIM) < FAILED
+
+
+def test_people_who_stand_do_not_stop_a_fit(recording) -> None:
+    standing = [np.full((100, 2), (x, 1.6 + 0.7 * x)) for x in (0.0, 1.0, 2.0, 3.0)]
+    objective = Objective([Yardstick([recording(*standing)])], corridors=False)
+    (likeness,) = objective.likenesses(SIM)
+    assert likeness.recorded.acceleration == 0.0
+    assert likeness.hardness == (1.0, 1.0)
