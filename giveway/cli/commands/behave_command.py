@@ -6,13 +6,13 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from giveway.cli.screen.printing import escape, numbers_of, print_place
-from giveway.cli.screen.progress_bars import counting
+from giveway.cli.screen.recordings import cite, counted, read
 from giveway.config import RunConfig
 from giveway.config.files.presets import parameters_of, require_steady_preset
 from giveway.config.plug_in_names import BUNDLED_MODELS
 from giveway.errors import ConfigError, retold, suggestion
 from giveway.precompile import compile_kernels_once
-from giveway.recordings import dataset_of, read_recordings
+from giveway.recordings import dataset_of
 from giveway.results.folder import check_folder
 from giveway.validation.behaviour import Comparison, compare
 from giveway.validation.behaviour.comparison import DRAWS, HALVES, RECORDED, SEED, SIMULATED
@@ -45,25 +45,17 @@ def behave_command(
     if out is not None:
         check_folder(out, force=force, ours=FILES, writer="giveway data behave")
     config = RunConfig.model_validate({"crowd": {"model": model, "preset": preset}})
-    with counting(console, "Reading") as reading:
-        recordings = read_recordings(
-            folder, described, lambda done, of, name: reading(done, of, escape(name))
-        )
+    recordings = read(console, folder, described)
     compile_kernels_once(console)
-    with counting(console, "Simulating") as count:
-        names: list[str] = []
-
-        def advance(name: str) -> None:
-            names.append(name)
-            count(len(names), len(recordings), escape(name))
-
-        with retold(PedestrianModelError, ConfigError):
-            found = compare(recordings, config, advance)
+    with (
+        counted(console, "Simulating", len(recordings)) as advance,
+        retold(PedestrianModelError, ConfigError),
+    ):
+        found = compare(recordings, config, advance)
     title = f"{described.name}, {model}" + (f", {preset}" if model == "vci" else "")
     console.print(_distributions(found, title))
     console.print(_counts(found))
-    if described.citation:
-        console.print(f"Please cite: {escape(described.citation)}", highlight=False)
+    cite(console, described)
     if out is not None:
         with console.status("Drawing ..."):
             write_behaviour(found, title, out)

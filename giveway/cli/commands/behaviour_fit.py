@@ -10,9 +10,10 @@ from giveway._version import __version__
 from giveway.cli.option_groups import FitSettings
 from giveway.cli.screen.printing import escape, numbers_of
 from giveway.cli.screen.progress_bars import counting
+from giveway.cli.screen.recordings import read
 from giveway.config.files.presets import parameters_of
 from giveway.precompile import compile_kernels_once
-from giveway.recordings import Dataset, read_recordings
+from giveway.recordings import Dataset
 from giveway.validation.behaviour.comparison import Yardstick
 from giveway.validation.behaviour.corridor import DENSITIES, weidmann
 from giveway.validation.behaviour.loss import lost
@@ -55,7 +56,7 @@ def fit_behaviour(
     start = parameters_of(fit.start)
     names = [name.strip() for name in fit.parameters.split(",")] if fit.parameters else [*DEFAULT]
     require_fittable(names)
-    sites = [Yardstick(read_recordings(*place)) for place in places]
+    sites = [Yardstick(read(console, *place)) for place in places]
     search = Search(
         Objective(sites),
         start,

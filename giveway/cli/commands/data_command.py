@@ -1,8 +1,6 @@
 """The commands ``giveway data describe`` and ``giveway data measure``."""
 
-import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +10,8 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from giveway.cli.screen.printing import escape, numbers_of, print_place, writing
-from giveway.cli.screen.progress_bars import counting
-from giveway.recordings import Dataset, Recording, dataset_of, read_recordings
+from giveway.cli.screen.recordings import cite, counted, read
+from giveway.recordings import Dataset, dataset_of
 from giveway.recordings.describing import TOTAL, Described, describe
 from giveway.recordings.measuring import Measured, Share, measure
 from giveway.results.folder import check_folder
@@ -34,13 +32,13 @@ def describe_command(
     console = Console(quiet=quiet)
     described = dataset_of(dataset)
     _check(out, _DESCRIBED, force=force)
-    recordings = _read(console, folder, described)
-    with _counted(console, "Describing", len(recordings)) as advance:
+    recordings = read(console, folder, described)
+    with counted(console, "Describing", len(recordings)) as advance:
         found = describe(recordings, advance)
     console.print(_description(found, described))
     if len(found.defects):
         console.print(_defects(found))
-    _cite(console, described)
+    cite(console, described)
     _write(console, out, dict(zip(_DESCRIBED, (found.table, found.defects), strict=True)))
 
 
@@ -61,14 +59,14 @@ def measure_command(
     console = Console(quiet=quiet)
     described = dataset_of(dataset)
     _check(out, _MEASURED, force=force)
-    recordings = _read(console, folder, described)
-    with _counted(console, "Measuring", len(recordings)) as advance:
+    recordings = read(console, folder, described)
+    with counted(console, "Measuring", len(recordings)) as advance:
         found = measure(recordings, vehicle, advance)
     console.print(_drives(found, described))
     if vehicle is not None and len(found.people):
         console.print(_people(found))
     console.print(_summary(found))
-    _cite(console, described)
+    cite(console, described)
     _write(
         console, out, dict(zip(_MEASURED, (found.drives, found.people, found.summary), strict=True))
     )
@@ -79,21 +77,6 @@ def _check(out: Path | None, names: Sequence[str], *, force: bool) -> None:
         check_folder(out, force=force, ours=frozenset(names), writer="giveway data")
 
 
-def _read(console: Console, folder: Path, dataset: Dataset) -> tuple[Recording, ...]:
-    with counting(console, "Reading") as count:
-        return read_recordings(
-            folder, dataset, lambda done, of, name: count(done, of, escape(name))
-        )
-
-
-@contextmanager
-def _counted(console: Console, what: str, of: int) -> Iterator[Callable[[str], None]]:
-    """Show a bar of how many recordings are done; the context takes each one's name."""
-    with counting(console, what) as count:
-        numbers = itertools.count(1)
-        yield lambda name: count(next(numbers), of, escape(name))
-
-
 def _write(console: Console, out: Path | None, tables: Mapping[str, pd.DataFrame]) -> None:
     if out is None:
         return
@@ -101,11 +84,6 @@ def _write(console: Console, out: Path | None, tables: Mapping[str, pd.DataFrame
         with writing(out / name, "name another folder with --out"):
             table.round(_DECIMALS).to_csv(out / name, index=False, lineterminator="\n")
     print_place(console, "Tables", out)
-
-
-def _cite(console: Console, dataset: Dataset) -> None:
-    if dataset.citation:
-        console.print(f"Please cite: {escape(dataset.citation)}", highlight=False)
 
 
 def _description(found: Described, dataset: Dataset) -> Table:
