@@ -26,13 +26,13 @@ from giveway.validation.drift import numbers_of
 from giveway.validation.prediction import predict_all, prediction_table, recent_velocity
 from giveway.validation.protocol import windows
 from pedestrian_model.drift.features import ALONG
-from pedestrian_model.drift.forest import HORIZONS, Forest, fill_corrections
+from pedestrian_model.drift.forest import HORIZONS, LEAVES, Forest, fill_corrections, masked
 from pedestrian_model.drift.trained import ARRAYS, EXACT, FILTERED, PROVENANCE, Fit
 
 STRIDE = 0.1  # [s] between the starts of two windows for training
 SMOOTHING = 1.0 / 6.0  # [s] before and after an instant, between which its velocity is exact
 NEAR = 6.0  # [m] of those whose errors give the deviations
-ROUNDS, RATE, LEAVES, LEAST = 60, 0.12, 8, 400  # trees; shrinkage; leaves; people in a leaf
+ROUNDS, RATE, LEAST = 60, 0.12, 400  # trees; shrinkage; people in a leaf
 SEED = 0
 CITATION = "D. Yang, L. Li, K. Redmill, Ü. Özgüner, IEEE IV 2019, arXiv 1902.00487"
 Array = NDArray[np.float64]
@@ -155,7 +155,7 @@ def _lay_out(tree: NDArray[np.void], nodes: list[tuple[int, float, int]]) -> int
 def answers(forest: Forest, samples: Samples) -> Array:
     """Return what the trees say (n, 3, 2) [m/s]."""
     out = np.empty((len(samples.speed), 3, 2))
-    fill_corrections(forest, samples.heading, samples.numbers, out)
+    fill_corrections(masked(forest), samples.heading, samples.numbers, out)
     return out
 
 

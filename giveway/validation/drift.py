@@ -34,13 +34,13 @@ class DriftTracks:
     """
 
     def __init__(self, fit: Fit, time_step: float, frames: int) -> None:
-        self._forest, self._time_step, self._frames = fit.forest, time_step, frames
+        self._trees, self._time_step, self._frames = fit.trees, time_step, frames
 
     def __call__(self, window: Window) -> Array:
         """Return the positions (H, n, 2) [m] at 1 ... H frames ahead."""
         heading, numbers = numbers_of(window, self._time_step)
         n = len(heading)
         corrections, out = np.empty((n, 3, 2)), np.empty((self._frames, n, 2))
-        fill_corrections(self._forest, heading, numbers, corrections)
+        fill_corrections(self._trees, heading, numbers, corrections)
         fill_positions(window.position, window.velocity, heading, corrections, self._time_step, out)
         return out

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from pedestrian_model._jit import kernel
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.drift.features import FEATURES, fill_features, steps_back
 
@@ -35,12 +36,11 @@ class Memory:
         self._reserve(int(person_ids.max(initial=-1)) + 1)
         self._newest = (self._newest - 1) % len(self._tracks)
         self._look += 1
-        now = self._tracks[self._newest]
-        now[person_ids, :2], now[person_ids, 2:] = people.position, people.velocity
-        before = self._seen[person_ids] == self._look - 1
-        self._known[person_ids] = np.where(before, self._known[person_ids] + 1, 0)
-        np.minimum(self._known, len(self._tracks) - 1, out=self._known)
-        self._seen[person_ids] = self._look
+        _keep(
+            (self._tracks, self._newest),
+            (self._known, self._seen, self._look),
+            (person_ids, people.position, people.velocity),
+        )
         self._everybody = person_ids
 
     def numbers(self, person_ids: Ids) -> tuple[Array, Array]:
@@ -68,3 +68,26 @@ class Memory:
         )
         self._known = np.concatenate([self._known, np.zeros(more, dtype=np.int64)])
         self._seen = np.concatenate([self._seen, np.full(more, -1)])
+
+
+@kernel
+def _keep(
+    ring: tuple[Array, int], counts: tuple[Ids, Ids, int], now: tuple[Ids, Array, Array]
+) -> None:
+    """Keep the states of an instant.
+
+    Args:
+        ring: Positions and velocities (K, m, 4) of the latest instants; row of this instant.
+        counts: Number (m,) of earlier states in a row that are known of each person; number (m,)
+            of the instant at which each was seen last; number of this instant.
+        now: Id (n,), position (n, 2) [m] and velocity (n, 2) [m/s] of each person.
+    """
+    (tracks, newest), (known, seen, look), (person_ids, position, velocity) = ring, counts, now
+    for i in range(person_ids.shape[0]):
+        person = person_ids[i]
+        again = seen[person] == look - 1
+        known[person] = min(known[person] + 1, tracks.shape[0] - 1) if again else 0
+        seen[person] = look
+        for axis in range(2):
+            tracks[newest, person, axis] = position[i, axis]
+            tracks[newest, person, 2 + axis] = velocity[i, axis]

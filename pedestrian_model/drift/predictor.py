@@ -65,7 +65,7 @@ class DriftPredictor(Predictor):
         if self._stale:
             heading, numbers = self._past.numbers(self._chosen)
             corrections = np.empty((len(crowd), 3, 2))
-            fill_corrections(self._fit.forest, heading, numbers, corrections)
+            fill_corrections(self._fit.trees, heading, numbers, corrections)
             self._ahead = np.empty((self.horizon, len(crowd), 2))
             fill_positions(
                 crowd.position, crowd.velocity, heading, corrections, self.time_step, self._ahead

@@ -9,13 +9,13 @@ on which they can be judged.
 import tomllib
 from collections.abc import Collection
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib import resources
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model.drift.forest import Forest
+from pedestrian_model.drift.forest import Forest, Trees, masked
 
 FILTERED, EXACT = "filtered", "exact"
 ARRAYS, PROVENANCE = "trained.npz", "trained.toml"
@@ -41,6 +41,11 @@ class Fit:
     forest: Forest
     deviation: NDArray[np.float64]
     baseline: NDArray[np.float64]
+
+    @cached_property
+    def trees(self) -> Trees:
+        """The trees as the compiled sum takes them."""
+        return masked(self.forest)
 
 
 @cache
