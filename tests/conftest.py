@@ -47,6 +47,7 @@ pytest_plugins = [
     "support.any_scenario",
     "support.browser",
     "support.clips",
+    "support.recorded_corridor",
     "support.recorded_crossing",
     "support.commands",
     "support.plug_ins",

@@ -1,17 +1,22 @@
 """Print docs/validation.md's tables: every bundled model and preset beside recorded people.
 
     python benchmarks/tuning/behaviour_tables.py CITR_FOLDER --dataset citr
+    python benchmarks/tuning/behaviour_tables.py HERMES_FOLDER --dataset hermes
+    python benchmarks/tuning/behaviour_tables.py HERMES_FOLDER --dataset hermes --speeds 1.48 0.19
     python benchmarks/tuning/behaviour_tables.py --corridors
 
-The first compares simulated with recorded people as ``giveway data behave`` does. The second lets
+The first compares simulated with recorded people as ``giveway data behave`` does, the next two as
+``giveway data corridor`` does, with desired speeds of this mean and deviation. The last one lets
 people walk in periodic corridors, one way and both ways: their speeds beside Weidmann's, and the
 order parameter of lanes. JuPedSim's models are left out if they are not installed (extra
-``jupedsim``), and of the corridors, whose people have images.
+``jupedsim``), and of the periodic corridors, whose people have images.
 """
 
 import argparse
 from importlib.util import find_spec
 from pathlib import Path
+
+import pandas as pd
 
 from giveway.config import RunConfig
 from giveway.config.plug_in_names import BUNDLED_MODELS
@@ -19,8 +24,9 @@ from giveway.crowd.models import model_of
 from giveway.crowd.roster import Roster
 from giveway.recordings import dataset_of, read_recordings
 from giveway.validation.behaviour.comparison import DRAWS, RECORDED, Yardstick, counts_of
-from giveway.validation.behaviour.corridor import DENSITIES, walk, weidmann
+from giveway.validation.behaviour.corridor import DENSITIES, FREE_SPEEDS, walk, weidmann
 from giveway.validation.behaviour.measures import ALL, MEASURES, together
+from giveway.validation.corridors.comparison import compare_in_corridors
 from pedestrian_model import JUPEDSIM_MODELS, PRESETS
 
 _STEP = 0.05  # Time step [s] in the corridors
@@ -55,6 +61,27 @@ def _counted(counts: object) -> str:
     return f"{share:.1%} | {contacts:g} | {counts.acceleration:.2f} |"
 
 
+def in_corridors(folder: Path, dataset: str, speeds: list[float]) -> None:
+    """Print a row of speeds and flows for each crowd; those outside of the bar are bold."""
+    recordings = read_recordings(folder, dataset_of(dataset))
+    drawn = dict(zip(("desired_speed_mean", "desired_speed_sd"), speeds, strict=True))
+    for number, (name, crowd) in enumerate(CROWDS.items()):
+        config = RunConfig.model_validate({"crowd": {**crowd, **drawn}})
+        table = compare_in_corridors(recordings, config).table
+        if not number:
+            print("| |", " | ".join(table["of"]), "| within |")
+            print("|---" * (len(table) + 2) + "|")
+            print("| recorded |", " | ".join(table["recorded"].map("{:.2f}".format)), "| |")
+        told = table["simulated"].map("{:.2f}".format).where(table["within_bar"], _bold)
+        told[table["simulated"].isna()] = "-"
+        within = f"{table['within_bar'].sum()} of {len(table)}"
+        print(f"| {name} |", " | ".join(told), f"| {within} |", flush=True)
+
+
+def _bold(values: pd.Series) -> pd.Series:
+    return "**" + values + "**"
+
+
 def corridors() -> None:
     """Print the speeds and lanes of each crowd."""
     print("| |", " | ".join(f"{density:g} /m^2" for density in DENSITIES), "| lanes |")
@@ -76,10 +103,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, nargs="?", help="folder of the recordings")
     parser.add_argument("--dataset", help="name or description of the data set")
+    parser.add_argument("--speeds", type=float, nargs=2, default=[*FREE_SPEEDS], help="desired")
     parser.add_argument("--corridors", action="store_true", help="people alone in corridors")
     chosen = parser.parse_args()
     if chosen.corridors:
         corridors()
+    elif chosen.folder and chosen.dataset and dataset_of(chosen.dataset).corridor:
+        in_corridors(chosen.folder, chosen.dataset, chosen.speeds)
     elif chosen.folder and chosen.dataset:
         compared(chosen.folder, chosen.dataset)
     else:

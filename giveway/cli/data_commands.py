@@ -15,6 +15,13 @@ _Dataset = Annotated[
         "its description (TOML); docs/recordings.md."
     ),
 ]
+_Model = Annotated[str, typer.Option(help="Pedestrian model: a bundled one, as in [crowd] model.")]
+_Preset = Annotated[
+    str, typer.Option(help="SIM, TABLE2, MIXED, CITR, DUT or a preset file (TOML).")
+]
+_Drawn = Annotated[
+    Path | None, typer.Option(help="Folder for tables and picture; without it, none.")
+]
 _Out = Annotated[Path | None, typer.Option(help="Folder for the tables (CSV); without it, none.")]
 _Force = Annotated[bool, typer.Option("--force", help="Replace the tables there.")]
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")]
@@ -26,6 +33,7 @@ def build_data() -> typer.Typer:
     app.add("describe", _describe)
     app.add("measure", _measure)
     app.add("behave", _behave)
+    app.add("corridor", _corridor)
     app.add("scenario", _scenario)
     app.add("compare", _compare)
     return app
@@ -63,15 +71,9 @@ def _measure(
 def _behave(
     folder: _Folder,
     dataset: _Dataset = None,
-    model: Annotated[
-        str, typer.Option(help="Pedestrian model: a bundled one, as in [crowd] model.")
-    ] = "vci",
-    preset: Annotated[
-        str, typer.Option(help="SIM, TABLE2, MIXED, CITR, DUT or a preset file (TOML).")
-    ] = "SIM",
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for tables and picture; without it, none.")
-    ] = None,
+    model: _Model = "vci",
+    preset: _Preset = "SIM",
+    out: _Drawn = None,
     force: _Force = False,
     quiet: _Quiet = False,
 ) -> None:
@@ -79,6 +81,26 @@ def _behave(
     from giveway.cli.commands.behave_command import behave_command
 
     behave_command(folder, dataset, model, preset, out, force=force, quiet=quiet)
+
+
+def _corridor(
+    folder: _Folder,
+    dataset: _Dataset = None,
+    model: _Model = "vci",
+    preset: _Preset = "MIXED",
+    crowd_desired_speed_mean: Annotated[
+        float, typer.Option(help="Mean desired speed [m/s] of people who are never free.")
+    ] = 1.34,
+    crowd_desired_speed_sd: Annotated[float, typer.Option(help="Its standard deviation.")] = 0.26,
+    out: _Drawn = None,
+    force: _Force = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Compare speed per density, and flow through the exit, of people in recorded corridors."""
+    from giveway.cli.commands.corridor_command import corridor_command
+
+    speeds = crowd_desired_speed_mean, crowd_desired_speed_sd
+    corridor_command(folder, dataset, model, preset, speeds, out, force=force, quiet=quiet)
 
 
 def _scenario(

@@ -11,7 +11,7 @@ from giveway.geometry.kernel import Array
 from giveway.recordings.dataset import Dataset
 from giveway.recordings.recording import GAP, RESTART, Defect, Tracks
 
-_LENGTH: Final = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+LENGTHS: Final = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 _SPEED: Final = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "km/h": 1.0 / 3.6}
 _AWAY = 2.0  # Time [s] without a row after which an id belongs to somebody else
 _LEAP = {"people": 12.0, "vehicles": 70.0}  # Speeds [m/s] that nobody has across a gap
@@ -38,7 +38,7 @@ def tracks_of(
         rate: Frame rate [1/s] of the files' numbers.
         defects: List to which gaps and ids that start again are added.
     """
-    length, speed_unit = _LENGTH[dataset.units.length], _SPEED[dataset.units.speed]
+    length, speed_unit = LENGTHS[dataset.units.length], _SPEED[dataset.units.speed]
     up = -1.0 if dataset.y_axis == "down" else 1.0
     count = len(rows)
 

@@ -84,6 +84,32 @@ class LightFile(Section):
     codes: tuple[int, ...] = option(..., None, "codes that are known", min_length=1)
 
 
+class Corridor(Section):
+    """The straight corridor in which people walk one way, for ``giveway data corridor``.
+
+    Places are in giveway's frame: metres, y up.
+    """
+
+    right: tuple[float, float, float, float] = option(
+        ..., "m", "wall on people's right: x and y of the entrance, x and y of the exit"
+    )
+    width: float | None = option(None, "m", "between the walls; or it is in the names", gt=0.0)
+    exit: float | None = option(None, "m", "width of the exit; or it is in the names", gt=0.0)
+    exit_from: float | None = option(
+        None, "m", "from the right wall to the exit, which else is in the middle", ge=0.0
+    )
+    names: str = option(
+        "", None, "pattern of names; {width} and {exit} are numbers in the unit of length"
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        for key in ("width", "exit"):
+            if getattr(self, key) is None and f"{{{key}}}" not in self.names:
+                raise ValueError(f"corridor.{key} is missing; give it, or {{{key}}} in names")
+        return self
+
+
 class TrackTable(Section):
     """One kind of file with tracks."""
 
@@ -118,6 +144,7 @@ class Dataset(Section):
     tables: tuple[TrackTable, ...] = ()
     rate_file: RateFile | None = None
     lights: LightFile | None = None
+    corridor: Corridor | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -189,7 +216,7 @@ def _read(file: Path, origin: str) -> Dataset:
 def _explain(error: Mapping[str, Any]) -> str:
     location = list(error["loc"])
     key = ".".join(str(part) for part in location)
-    if not location:  # one of the tables
+    if error["type"] == "value_error":  # of several keys
         return str(error["msg"]).removeprefix("Value error, ")
     model: type[BaseModel] = Dataset
     for part in location[:-1]:
@@ -217,4 +244,5 @@ _TABLES: dict[str, type[BaseModel]] = {
     "join": Join,
     "rate_file": RateFile,
     "lights": LightFile,
+    "corridor": Corridor,
 }

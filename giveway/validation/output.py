@@ -6,8 +6,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from giveway.errors import ResultsError
-from giveway.figures.style import save_figure
 from giveway.figures.validation_figures import (
     Body,
     Curve,
@@ -16,6 +14,7 @@ from giveway.figures.validation_figures import (
     tracks_figure,
 )
 from giveway.validation.evaluation import EVERYWHERE, NEAR
+from giveway.validation.files import names_of, write_files
 from giveway.validation.predictors import CV, NO_VEHICLE, OWN_PACE, VCI, predictors
 from giveway.validation.protocol import Window
 from giveway.validation.validating import Validation
@@ -23,10 +22,8 @@ from pedestrian_model import VciParameters
 
 TABLES = ("errors.csv", "contacts.csv", "prediction.csv")
 PICTURES = ("growth", "tracks", "places")
-_SUFFIXES = (".png", ".svg")
-FILES = frozenset({*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)})
+FILES = names_of(TABLES, PICTURES)
 """Names of all files that ``giveway validate`` writes into its folder."""
-_DECIMALS = 6
 
 
 def write_validation(found: Validation, parameters: VciParameters, folder: Path) -> None:
@@ -36,18 +33,12 @@ def write_validation(found: Validation, parameters: VciParameters, folder: Path)
         ResultsError: a file cannot be written.
     """
     tables = found.errors, found.contacts, found.prediction
-    pictures = dict(zip(PICTURES, _pictures(found, parameters), strict=True))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, table in zip(TABLES, tables, strict=True):
-            table.round(_DECIMALS).to_csv(folder / name, index=False, lineterminator="\n")
-        for name, figure in pictures.items():
-            for suffix in _SUFFIXES:
-                save_figure(figure, folder / f"{name}{suffix}")
-    except OSError as error:
-        raise ResultsError(
-            f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
-        ) from error
+    pictures = _pictures(found, parameters)
+    write_files(
+        folder,
+        dict(zip(TABLES, tables, strict=True)),
+        dict(zip(PICTURES, pictures, strict=True)),
+    )
 
 
 def _pictures(found: Validation, parameters: VciParameters) -> tuple[Figure, Figure, Figure]:

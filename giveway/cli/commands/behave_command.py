@@ -8,6 +8,7 @@ from rich.table import Column, Table
 from giveway.cli.screen.printing import escape, numbers_of, print_place
 from giveway.cli.screen.recordings import cite, counted, read
 from giveway.config import RunConfig
+from giveway.config.files.layers import Layer, build_config
 from giveway.config.files.presets import parameters_of, require_steady_preset
 from giveway.config.plug_in_names import BUNDLED_MODELS
 from giveway.errors import ConfigError, retold, suggestion
@@ -38,13 +39,9 @@ def behave_command(
     """
     console = Console(quiet=quiet)
     described = dataset_of(dataset)
-    if model not in BUNDLED_MODELS:
-        raise ConfigError(f"--model {model}: unknown model; {suggestion(model, BUNDLED_MODELS)}")
-    parameters_of(preset)
-    require_steady_preset(preset, LONGEST_STEP, "--preset")
+    config = config_of(model, preset)
     if out is not None:
         check_folder(out, force=force, ours=FILES, writer="giveway data behave")
-    config = RunConfig.model_validate({"crowd": {"model": model, "preset": preset}})
     recordings = read(console, folder, described)
     compile_kernels_once(console)
     with (
@@ -52,7 +49,7 @@ def behave_command(
         retold(PedestrianModelError, ConfigError),
     ):
         found = compare(recordings, config, advance)
-    title = f"{described.name}, {model}" + (f", {preset}" if model == "vci" else "")
+    title = f"{described.name}, {called(model, preset)}"
     console.print(_distributions(found, title))
     console.print(_counts(found))
     cite(console, described)
@@ -60,6 +57,30 @@ def behave_command(
         with console.status("Drawing ..."):
             write_behaviour(found, title, out)
         print_place(console, "Tables and picture", out)
+
+
+def config_of(model: str, preset: str, **crowd: float) -> RunConfig:
+    """Return the configuration of a crowd that ``--model`` and ``--preset`` name.
+
+    Args:
+        model: Name of a bundled pedestrian model.
+        preset: Preset of VCI.
+        crowd: Other keys of [crowd], by flags of their names.
+
+    Raises:
+        ConfigError: a value cannot be used, or people tremble with the preset.
+    """
+    if model not in BUNDLED_MODELS:
+        raise ConfigError(f"--model {model}: unknown model; {suggestion(model, BUNDLED_MODELS)}")
+    parameters_of(preset)
+    require_steady_preset(preset, LONGEST_STEP, "--preset")
+    values = {"crowd": {"model": model, "preset": preset, **crowd}}
+    return build_config([Layer("command line", values, from_flags=True)])
+
+
+def called(model: str, preset: str) -> str:
+    """Return how titles call a crowd."""
+    return f"{model}, {preset}" if model == "vci" else model
 
 
 def _distributions(found: Comparison, title: str) -> Table:

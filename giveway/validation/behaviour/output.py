@@ -2,15 +2,12 @@
 
 from pathlib import Path
 
-from giveway.errors import ResultsError
 from giveway.figures.behaviour_figure import Panel, behaviour_figure
-from giveway.figures.style import save_figure
 from giveway.validation.behaviour.comparison import LEVELS, Comparison
+from giveway.validation.files import names_of, write_files
 
-_PICTURES = ("behaviour.png", "behaviour.svg")
-FILES = frozenset({"behaviour.csv", "people.csv", *_PICTURES})
+FILES = names_of(("behaviour.csv", "people.csv"), ("behaviour",))
 """Names of all files that ``giveway data behave`` writes into its folder."""
-_DECIMALS = 6
 
 
 def write_behaviour(found: Comparison, title: str, folder: Path) -> None:
@@ -36,14 +33,5 @@ def write_behaviour(found: Comparison, title: str, folder: Path) -> None:
         )
         for each in found.distributions
     ]
-    figure = behaviour_figure(panels, title)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, table in (("behaviour.csv", found.summary), ("people.csv", found.table)):
-            table.round(_DECIMALS).to_csv(folder / name, index=False, lineterminator="\n")
-        for name in _PICTURES:
-            save_figure(figure, folder / name)
-    except OSError as error:
-        raise ResultsError(
-            f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
-        ) from error
+    tables = {"behaviour.csv": found.summary, "people.csv": found.table}
+    write_files(folder, tables, {"behaviour": behaviour_figure(panels, title)})

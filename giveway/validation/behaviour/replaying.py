@@ -1,7 +1,8 @@
 """Replays of recordings: the vehicles as recorded, and people moved by a pedestrian model."""
 
 import zlib
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from pedestrian_model import (
     Crowd,
     CrowdModel,
     PedestrianModel,
+    Surroundings,
     VciParameters,
     Vehicles,
 )
@@ -67,46 +69,130 @@ def replayed(
         GivewayError: the model cannot be made.
         PedestrianModelError: a person's state is not finite.
     """
+    people = recording.people
+    seed, random = random_of(recording, config, draw)
+    drawn = desired_speeds(config.crowd, ("",) * len(people.ids), random)
+    begun = _begun(people, round(_SHORTEST * recording.frame_rate))
+    desired_speed = np.where(begun > _HARDLY, begun.clip(*DESIRED_SPEEDS), drawn)
+    walks = Walks(desired_speed, _routes(people), _last(people))
+    return walked(recording, config, walks, seed, parameters)
+
+
+@dataclass(frozen=True, eq=False)
+class Walks:
+    """The walks that n people have before them.
+
+    Attributes:
+        desired_speed: Desired speed (n,) [m/s] of each person.
+        routes: Way-points (n, k, 2) [m].
+        last: Last instant (n,) of each person.
+        passages: Passages (k, 3) of all routes, see ``Crowd.create``; None if there are none.
+        surroundings: Walls.
+        left: Function that returns who (m,) has left by their places (m, 2), or None if everybody
+            stays until the last instant.
+        room: Distance [m] from others that a place must have to be entered; others wait for it.
+    """
+
+    desired_speed: Array
+    routes: Array
+    last: NDArray[np.int64]
+    passages: Array | None = None
+    surroundings: Surroundings = OPEN_GROUND
+    left: Callable[[Array], NDArray[np.bool_]] | None = None
+    room: float = 0.0
+
+
+def walked(
+    recording: Recording,
+    config: RunConfig,
+    walks: Walks,
+    seed: int,
+    parameters: VciParameters | None = None,
+) -> Recording:
+    """Return the recording with its people simulated, who enter where, when and as fast as it says.
+
+    Args:
+        recording: Recording, see :func:`settled`.
+        config: Configuration that names the pedestrian model, its preset, and the seed.
+        walks: Walks of the people.
+        seed: Seed of the sway.
+        parameters: Parameters of VCI in place of the preset's, or None.
+
+    Raises:
+        GivewayError: the model cannot be made.
+        PedestrianModelError: a person's state is not finite.
+    """
     people, bounds = recording.people, recording.people.bounds
-    first, last = _first(people), _last(people)
+    first, last = _first(people).copy(), walks.last.copy()
     start = np.concatenate([[0], np.cumsum(last - first + 1)])
     position, velocity = np.empty((start[-1], 2)), np.empty((start[-1], 2))
     position[start[:-1]] = people.position[bounds[:-1]]
     velocity[start[:-1]] = people.velocity[bounds[:-1]]
-    routes, passed = _routes(people), np.zeros(len(people.ids), dtype=np.int64)
+    passed = np.zeros(len(people.ids), dtype=np.int64)
     parts = substeps(1.0 / recording.frame_rate)
     step = 1.0 / recording.frame_rate / parts
     roster = Roster(people.ids)
     model: PedestrianModel = (
         CrowdModel(parameters, step) if parameters else model_of(config, step, roster)
     )
-    seed = zlib.crc32(f"{recording.name} {config.seed} {draw}".encode())
-    random = np.random.default_rng((seed, _STREAM))
-    drawn = desired_speeds(config.crowd, ("",) * len(people.ids), random)
-    begun = _begun(people, round(_SHORTEST * recording.frame_rate))
-    desired_speed = np.where(begun > _HARDLY, begun.clip(*DESIRED_SPEEDS), drawn)
     sway = sway_of(config, model, seed)
     vehicles = _Vehicles(recording.vehicles)
     now = np.empty(0, dtype=np.int64)
     crowd = None
     for k in range(int(first.min(initial=recording.frames)), int(last.max(initial=0))):
         there = np.flatnonzero((first <= k) & (k < last))
+        if walks.room:
+            there = _with_room(there, position[start[there] + k - first[there]], first, k, walks)
         rows = start[there] + k - first[there]
         if crowd is None or not np.array_equal(there, now):
             now = roster.person_ids = there
             crowd = Crowd.create(
-                position[rows], velocity[rows], desired_speed[there], list(routes[there])
+                position[rows],
+                velocity[rows],
+                walks.desired_speed[there],
+                list(walks.routes[there]),
+                passages=None if walks.passages is None else [walks.passages] * len(there),
             )
             crowd.waypoint_index[:] = passed[there]
         for part in range(parts):
             now_there = Vehicles(vehicles.at(k, part * step))
             if sway is None:
-                model.advance(crowd, now_there)
+                model.advance(crowd, now_there, walks.surroundings)
             else:
-                sway.advance(crowd, now_there, OPEN_GROUND, there, len(people.ids))
+                sway.advance(crowd, now_there, walks.surroundings, there, len(people.ids))
         position[rows + 1], velocity[rows + 1] = crowd.position, crowd.velocity
         passed[there] = crowd.waypoint_index
-    return replace(recording, people=_walked(people, first, start, position, velocity))
+        if walks.left is not None:
+            last[there[walks.left(crowd.position)]] = k + 1
+    return replace(recording, people=_walked(people, (first, last), start, position, velocity))
+
+
+def _with_room(
+    there: NDArray[np.int64], place: Array, first: NDArray[np.int64], k: int, walks: Walks
+) -> NDArray[np.int64]:
+    """Return the people who are there; who has no room to enter waits for the next instant.
+
+    Args:
+        there: People (m,), with those who want to enter.
+        place: Places (m, 2) [m].
+        first: First instant (n,) of each person, changed for those who wait.
+        k: Instant.
+        walks: Walks of the people.
+    """
+    inside = first[there] < k
+    for i in np.flatnonzero(~inside):
+        apart = np.hypot(*(place[inside] - place[i]).T)
+        inside[i] = apart.min(initial=np.inf) >= walks.room
+    first[there[~inside]] += 1
+    return there[inside]
+
+
+def random_of(
+    recording: Recording, config: RunConfig, draw: int
+) -> tuple[int, np.random.Generator]:
+    """Return the seed of a draw's sway, and its generator of desired speeds."""
+    seed = zlib.crc32(f"{recording.name} {config.seed} {draw}".encode())
+    return seed, np.random.default_rng((seed, _STREAM))
 
 
 def _routes(people: Tracks) -> Array:
@@ -151,18 +237,21 @@ class _Vehicles:
 
 def _walked(
     people: Tracks,
-    first: NDArray[np.int64],
+    seen: tuple[NDArray[np.int64], NDArray[np.int64]],
     start: NDArray[np.int64],
     place: Array,
     velocity: Array,
 ) -> Tracks:
-    """Return the tracks of simulated people, with a row at every instant."""
+    """Return the tracks of simulated people, with a row at every instant of ``seen``."""
+    first, last = seen
     track = np.repeat(np.arange(len(people.ids)), np.diff(start))
     frame = first[track] + np.arange(start[-1]) - start[track]
+    rows = frame <= last[track]
+    place, velocity = place[rows], velocity[rows]
     return replace(
         people,
-        track=track,
-        frame=frame,
+        track=track[rows],
+        frame=frame[rows],
         position=place,
         velocity=velocity,
         heading=np.arctan2(velocity[:, 1], velocity[:, 0]),
