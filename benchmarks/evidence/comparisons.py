@@ -16,16 +16,22 @@ MARGINS = {
     "completion_time": ("time [s]", 0.3),
     "longest_wait": ("longest wait [s]", 0.3),
     "rms_jerk": ("RMS jerk [m/s³]", 0.2),
-    "conflicts": ("conflicts", 0.2),
+    "people_below_ttc": ("people below 1.5 s", 0.2),
     "share_below_ttc": ("TTC < 1.5 s", 0.03),
     "share_below_pet": ("PET < 1 s", 0.02),
     "share_below_pet_person_first": ("of these, the ego after the person", 0.02),
     "mean_people_delay": ("people's mean delay [s]", 0.2),
 }
 """How much worse the default may be: title and margin [unit of the metric]."""
-STREET_CONFLICTS = 0.4
-"""Margin for conflicts on the street."""
-DIFFERENCES = ("completion_time", "longest_wait", "rms_jerk", "conflicts", "mean_people_delay")
+STREET_BELOW_TTC = 0.4
+"""Margin for people below the TTC limit on the street."""
+DIFFERENCES = (
+    "completion_time",
+    "longest_wait",
+    "rms_jerk",
+    "people_below_ttc",
+    "mean_people_delay",
+)
 RESAMPLES = 10_000
 SITUATIONS = {
     "general": ("General: completion time", "completion_time"),
@@ -64,9 +70,9 @@ def margins(folder: Path) -> list[str]:
     for scene in scenes:
         texts = [scene]
         for metric, (_, margin) in MARGINS.items():
-            street = metric == "conflicts" and scene.startswith("street")
+            street = metric == "people_below_ttc" and scene.startswith("street")
             key = (scene, metric)
-            texts.append(_verdict(by.loc[key], STREET_CONFLICTS if street else margin)
+            texts.append(_verdict(by.loc[key], STREET_BELOW_TTC if street else margin)
                          if key in by.index else "-")  # fmt: skip
         lines.append(row(texts))
     return lines
@@ -89,18 +95,19 @@ def saved(folder: Path) -> list[str]:
     everything of one seed is one sample.
     """
     by = Tables(folder).runs.set_index(["scene", "controller", "seed"]).sort_index()
-    delays, savings, conflicts = {}, {}, {}
+    delays, savings, critical = {}, {}, {}
     for scene in SAVING:
         theirs, ours = by.loc[(scene, RIVAL)], by.loc[(scene, DEFAULT)]
         delays[scene] = theirs.completion_time - free(SCENES[scene])
         savings[scene] = theirs.completion_time - ours.completion_time
-        conflicts[scene] = ours.conflicts - theirs.conflicts
-    titles = ["scene", "crowds", f"delay of `{RIVAL}` [s]", "of it saved", "conflicts, `mpc` more"]
+        critical[scene] = ours.people_below_ttc - theirs.people_below_ttc
+    titles = ["scene", "crowds", f"delay of `{RIVAL}` [s]", "of it saved"]
+    titles += ["people below 1.5 s, `mpc` more"]
     lines = header(titles)
     for name, scenes in [(scene, [scene]) for scene in SAVING] + [("all five", list(SAVING))]:
         delay, saving, more = (
             pd.concat([of[scene] for scene in scenes], axis=1).dropna().to_numpy().sum(axis=1)
-            for of in (delays, savings, conflicts)
+            for of in (delays, savings, critical)
         )
         g = np.random.default_rng(seed_of([name, "saved"]))
         drawn = g.integers(0, len(delay), (RESAMPLES, len(delay)))

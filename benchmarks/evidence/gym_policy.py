@@ -21,7 +21,7 @@ SHOWN = {
     "completion_time": "time [s]",
     "longest_wait": "longest wait [s]",
     "rms_jerk": "RMS jerk [m/s^3]",
-    "conflicts": "conflicts",
+    "people_below_ttc": "people below 1.5 s",
     "frontal_contacts": "frontal contacts",
 }
 

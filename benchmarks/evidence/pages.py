@@ -54,7 +54,8 @@ class Page(NamedTuple):
 TIME = Column("completion_time", "time [s]", 1)
 WAIT = Column("longest_wait", "longest wait [s]", 1)
 JERK = Column("rms_jerk", "RMS jerk [m/s³]", 1)
-CONFLICTS = Column("conflicts", "conflicts", 1)
+BELOW_TTC = Column("people_below_ttc", "people below 1.5 s", 1)
+CLOSE = Column("close_passes", "close passes", 2)
 TTC = Column("share_below_ttc", "TTC < 1.5 s", 2)
 DELAY = Column("mean_people_delay", "people's mean delay [s]", 2)
 LAYER = Column("safety_share", "layer acts [%]", 2, scale=100.0)
@@ -112,22 +113,22 @@ def _shell(name: str, words: str, quick: str = "") -> Block:
 def drives_told(folder: Path) -> list[str]:
     """The README's sentence about drives that succeed and drives that do not."""
     runs = Tables(folder).runs
-    calm, free = runs[runs.conflicts == 0], runs[runs.stops == 0]
-    worst = runs.loc[runs.conflicts.idxmax()]
+    calm, free = runs[runs.people_below_ttc == 0], runs[runs.stops == 0]
+    worst = runs.loc[runs.people_below_ttc.idxmax()]
     return [
         f"Of {len(runs)} drives (seeds {runs.seed.min()} to {runs.seed.max()}) {len(free)} pass "
-        f"without a stop, and {len(calm)} without anybody in conflict (less than 1.5 s from a "
-        f"collision). The worst has {int(worst.conflicts)} people in conflict (`--seed "
+        f"without a stop, and {len(calm)} without anybody less than 1.5 s from a "
+        f"collision. The worst has {int(worst.people_below_ttc)} such people (`--seed "
         f"{int(worst.seed)}`)."
     ]
 
 
 CONTROLLER_COLUMNS = (
-    *_with_interval(TIME, WAIT, JERK), BRAKING, *_with_interval(CONFLICTS), TTC, DELAY, LAYER,
-    FRONTAL, SIDE,
+    *_with_interval(TIME, WAIT, JERK), BRAKING, *_with_interval(CLOSE, BELOW_TTC), TTC, DELAY,
+    LAYER, FRONTAL, SIDE,
 )  # fmt: skip
 ROAD_COLUMNS = tuple(column for column in CONTROLLER_COLUMNS if column is not DELAY)
-BRIEF = (*_with_interval(TIME, WAIT, JERK, CONFLICTS), TTC, DELAY, FRONTAL, SIDE)
+BRIEF = (*_with_interval(TIME, WAIT, JERK, CLOSE, BELOW_TTC), TTC, DELAY, FRONTAL, SIDE)
 LAW_COLUMNS = (
     Column("encounters", "encounters per run"),
     *(
@@ -149,7 +150,7 @@ LAW_COLUMNS = (
 )
 LIGHT_COLUMNS = _less(
     WAIT, Column("total_wait", "all waits [s]"), Column("stops", "stops", 2), TIME,
-    JERK._replace(digits=2), CONFLICTS._replace(digits=2),
+    JERK._replace(digits=2), BELOW_TTC._replace(digits=2),
 )  # fmt: skip
 SPEED = (
     _shell("bench_loop.py", "bench_loop.py", "--pairs 1"),
@@ -198,10 +199,10 @@ PAGES: dict[str, Page] = {
                         TIME,
                         WAIT,
                         JERK,
-                        CONFLICTS,
+                        BELOW_TTC,
                         FRONTAL,
                         LAYER,
-                        *_less(TIME, WAIT, JERK, CONFLICTS),
+                        *_less(TIME, WAIT, JERK, BELOW_TTC),
                     ),
                 ),
             ),
@@ -213,12 +214,12 @@ PAGES: dict[str, Page] = {
                 Block(
                     "drivers",
                     samples.MODELS,
-                    means(TIME, WAIT, JERK, CONFLICTS, DELAY, FRONTAL, SIDE),
+                    means(TIME, WAIT, JERK, BELOW_TTC, DELAY, FRONTAL, SIDE),
                 ),
                 Block(
                     "beliefs",
                     samples.BELIEFS,
-                    means(TIME, WAIT, JERK, CONFLICTS, DELAY, FRONTAL, SIDE),
+                    means(TIME, WAIT, JERK, BELOW_TTC, DELAY, FRONTAL, SIDE),
                 ),
             ),
         ),
@@ -233,14 +234,14 @@ PAGES: dict[str, Page] = {
                         TIME,
                         *_less(TIME),
                         WAIT,
-                        CONFLICTS,
+                        BELOW_TTC,
                         LAYER,
                         FRONTAL,
                         Column("beyond_assumption", "beyond", 0, "sum"),
                         Column("contacts_beyond", "of these hit", 0, "sum"),
                     ),
                 ),
-                Block("noise", samples.NOISE, means(TIME, JERK, CONFLICTS, LAYER, FRONTAL)),
+                Block("noise", samples.NOISE, means(TIME, JERK, BELOW_TTC, LAYER, FRONTAL)),
                 Block("layer", samples.LAYER, means(TIME, WAIT, JERK, FRONTAL, SIDE, LAYER)),
             ),
         ),

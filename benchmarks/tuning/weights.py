@@ -5,9 +5,9 @@ Run: python benchmarks/tuning/weights.py FILE [--draws 40]
 Draws the planner's weights, distance and horizon at random, drives the same crowds (seeds of
 tuning) with each, and with pid-tuned and the default, and keeps what came out in FILE, one line
 each: it can be ended at any time and goes on where it was. The table has, best saving first, how
-much of pid-tuned's delay is saved (the scenes of SAVING pooled), and by how much conflicts, the
-share of steps below 1.5 s to a collision and that of people with a post-encroachment time below 1 s
-exceed pid-tuned's, at most and scene by scene; docs/controllers.md.
+much of pid-tuned's delay is saved (the scenes of SAVING pooled), and by how much the people less
+than 1.5 s from a collision, the share of steps with one and that of people with a post-encroachment
+time below 1 s exceed pid-tuned's, at most and scene by scene; docs/controllers.md.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ RANGES = {
     "later_weight": (0.7, 1.3),
     "horizon": (2.0, 3.0),
 }
-NUMBERS = ("completion_time", "conflicts", "share_below_ttc", "share_below_pet")
+NUMBERS = ("completion_time", "people_below_ttc", "share_below_ttc", "share_below_pet")
 
 
 def drive(task: tuple[dict[str, float] | None, int]) -> dict[str, list[float]]:
@@ -86,7 +86,7 @@ def show(rows: list[dict[str, Any]]) -> None:
         weights = ", ".join(f"{name} {value}" for name, value in row["planner"].items())
         lines.append((saved, "| " + " | ".join([*told, weights or "the default"]) + " |"))
     print("In turn: " + ", ".join(SCENES))
-    print("| saved | most conflicts more | TTC | PET | weights |\n|---|---|---|---|---|")
+    print("| saved | most below 1.5 s more | TTC | PET | weights |\n|---|---|---|---|---|")
     print("\n".join(line for _, line in sorted(lines, reverse=True)))
 
 

@@ -1,4 +1,4 @@
-"""Conflicts as points on a map: colour, lightness and shape show the severity."""
+"""Encounters as points on a map: colour, lightness and shape show the severity."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from giveway.figures.style import BLACK, ORANGE, VERMILION
 from giveway.metrics import SEVERITIES
 
 Conflict = tuple[str, float, float]
-"""Severity of a conflict, and its place x and y [m] in the network."""
+"""Severity of an encounter, and its place x and y [m] in the network."""
 
 _MARKS = dict(
     zip(SEVERITIES, (("o", ORANGE, 26), ("^", VERMILION, 40), ("X", BLACK, 60)), strict=True)
@@ -16,7 +16,7 @@ _MARKS = dict(
 
 
 def mark_conflicts(axes: Axes, conflicts: Sequence[Conflict]) -> None:
-    """Mark conflicts, the worst on top, and explain the marks that occur."""
+    """Mark encounters, the worst on top, and explain the marks that occur."""
     for order, (severity, (marker, colour, size)) in enumerate(_MARKS.items()):
         places = [(x, y) for kind, x, y in conflicts if kind == severity]
         if places:
@@ -28,5 +28,9 @@ def mark_conflicts(axes: Axes, conflicts: Sequence[Conflict]) -> None:
     if conflicts:
         marks = [mark for mark in axes.collections if str(mark.get_label()).split(" ")[0] in _MARKS]
         axes.legend(
-            handles=marks, title="Conflicts by TTC or PET", loc="best", frameon=True, framealpha=0.9
+            handles=marks,
+            title="By TTC or PET",
+            loc="best",
+            frameon=True,
+            framealpha=0.9,
         )

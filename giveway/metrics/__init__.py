@@ -1,7 +1,13 @@
 """The interactions of ego and pedestrians, in the numbers that traffic engineers use."""
 
 from giveway.metrics.anticipation import Anticipation, anticipation
-from giveway.metrics.conflicts import CRITICAL_TTC, Critical, Proximity, conflicts, proximity
+from giveway.metrics.conflicts import (
+    CRITICAL_TTC,
+    Critical,
+    Proximity,
+    critical_encounters,
+    proximity,
+)
 from giveway.metrics.contacts import FRONTAL, NO_CONTACT, SIDE, contacts
 from giveway.metrics.delays import (
     DELAY_FIELDS,
@@ -49,8 +55,8 @@ __all__ = [
     "VehicleContact",
     "WalkSummary",
     "anticipation",
-    "conflicts",
     "contacts",
+    "critical_encounters",
     "delays",
     "encroachment",
     "gave_way",

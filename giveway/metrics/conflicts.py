@@ -1,4 +1,4 @@
-"""The proximity of each pedestrian and the ego, and the number of conflicts.
+"""The proximity of each pedestrian and the ego, and the number of those below the TTC limit.
 
 The ego is its true rectangle, a pedestrian a circle of ``body_radius``. Both are exact at the
 control instants. Lengths are in m, times in s.
@@ -17,7 +17,7 @@ from giveway.geometry.kernel import kernel
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 CRITICAL_TTC = 1.5
-"""Time to collision [s] below which an encounter is a conflict: the threshold of SSAM (Gettman &
+"""Time to collision [s] below which an encounter is critical: the threshold of SSAM (Gettman &
 Head 2003, FHWA), in the range that observers of Hayward's (1972) near misses found."""
 
 
@@ -91,11 +91,11 @@ def records_of(crowd: CrowdTrack, order: NDArray[np.intp] | slice) -> Records:
 
 @dataclass(frozen=True)
 class Critical:
-    """The conflicts of a drive.
+    """The critical encounters of a drive.
 
     Attributes:
-        pedestrians: Number of pedestrians who had a conflict.
-        share: Share of the control instants with a conflict.
+        pedestrians: Number of pedestrians below ``CRITICAL_TTC``.
+        share: Share of the control instants with such a pedestrian.
         minimum_ttc: Smallest time to collision [s] with the moving ego; nan without any.
     """
 
@@ -104,7 +104,7 @@ class Critical:
     minimum_ttc: float = nan
 
 
-def conflicts(
+def critical_encounters(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float, stop_speed: float
 ) -> Critical:
     """Count the pedestrians with a time to collision below ``CRITICAL_TTC`` while the ego moves.

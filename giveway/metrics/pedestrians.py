@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
+from giveway.metrics.close_passes import clearances
 from giveway.metrics.conflicts import proximity
 from giveway.metrics.contacts import contacts
 from giveway.metrics.encroachment import encroachment
 from giveway.metrics.groups import PedestrianGroups
+from giveway.metrics.serious_conflicts import serious_conflicts
 from giveway.run_data.columns import Quantity, columns_of
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
@@ -72,6 +74,25 @@ class PedestrianRow:
         str,
         Quantity(None, "who was first where both came: person, ego, contact; empty: nowhere"),
     ]
+    clearance_moving: Annotated[
+        float, Quantity("m", "smallest clearance while the ego was faster than 0.5 m/s; or empty")
+    ]
+    clearance_above_1: Annotated[
+        float, Quantity("m", "smallest clearance while the ego was faster than 1 m/s; or empty")
+    ]
+    clearance_above_2: Annotated[
+        float, Quantity("m", "smallest clearance while the ego was faster than 2 m/s; or empty")
+    ]
+    clearance_above_3: Annotated[
+        float, Quantity("m", "smallest clearance while the ego was faster than 3 m/s; or empty")
+    ]
+    time_to_accident: Annotated[
+        float,
+        Quantity("s", "TTC when its conflict was most severe, before the ego evaded; empty: none"),
+    ]
+    conflicting_speed: Annotated[
+        float, Quantity("m/s", "speed then of the ego, or of a pedestrian who came from beside")
+    ]
 
 
 PEDESTRIAN_FIELDS = columns_of(PedestrianRow)
@@ -119,13 +140,15 @@ def pedestrian_columns(
     Raises:
         ValueError: a record points outside the ego's track.
     """
-    clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
+    near = clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
     time = ego.time[crowd.step]
     missed = encroachment(ego, crowd, shape, body_radius)
     closest, soonest = groups.first_minimum(clear), groups.first_minimum(ttc)
     minimum_ttc = groups.at(ttc, soonest)
     on_course = np.isfinite(minimum_ttc)
+    passed = clearances(crowd.pedestrian, ego.speed[crowd.step], clear, len(crowd.ids))
+    conflict = serious_conflicts(ego, crowd, groups, near)
     return {
         **_walks(crowd, groups, time),
         "minimum_clearance": groups.at(clear, closest),
@@ -137,7 +160,18 @@ def pedestrian_columns(
         "post_encroachment_time": missed.time,
         "maximum_drac": -groups.at(-drac, groups.first_minimum(-drac)),
         "passed_first": missed.first,
+        "clearance_moving": _finite(passed.moving),
+        "clearance_above_1": _finite(passed.above_1),
+        "clearance_above_2": _finite(passed.above_2),
+        "clearance_above_3": _finite(passed.above_3),
+        "time_to_accident": conflict.time_to_accident,
+        "conflicting_speed": conflict.conflicting_speed,
     }
+
+
+def _finite(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the values with nan in place of infinity."""
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":

@@ -1,6 +1,6 @@
-"""The severity, the time and the place of each pedestrian's conflict with the ego.
+"""The severity, the time and the place of each pedestrian's encounter with the ego.
 
-The time to a collision ranks conflicts, while the speed ranks collisions. No single number does
+The time to a collision ranks encounters, while the speed ranks collisions. No single number does
 both (Laureshyn, Svensson & Hydén 2010). Therefore class and speed have columns of their own.
 """
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SERIOUS_TTC = 1.0
-"""Time to collision [s] below which a conflict is serious: the highest of the three classes of
+"""Time to collision [s] below which an encounter is serious: the highest of the three classes of
 Sayed, Brown & Navin (1994) and Sayed & Zein (1999). From here to ``CRITICAL_TTC`` it is in their
 middle class."""
 
@@ -34,17 +34,17 @@ SEVERITIES = ("slight", "serious", "collision")
 
 
 class SeverityRow:
-    """The columns of a pedestrian's conflict; empty cells without one."""
+    """The columns of a pedestrian's encounter; empty cells without one."""
 
     severity: Annotated[
         str,
         Quantity(
             None,
-            "of its conflict with the moving ego. slight: TTC below 1.5 s or PET up to 1 s; "
-            "serious: TTC below 1 s; collision: frontal contact; empty: no conflict",
+            "of its encounter with the moving ego. slight: TTC below 1.5 s or PET up to 1 s; "
+            "serious: TTC below 1 s; collision: frontal contact; empty: none",
         ),
     ]
-    conflict_time: Annotated[float, Quantity("s", "when the conflict was closest to a collision")]
+    conflict_time: Annotated[float, Quantity("s", "when this encounter was closest to a collision")]
     conflict_ttc: Annotated[
         float, Quantity("s", "smallest time to collision while the ego moved; empty: PET alone")
     ]
@@ -66,10 +66,10 @@ def severities(
     stop_speed: float,
     per_pedestrian: "pd.DataFrame",
 ) -> "pd.DataFrame":
-    """Return class, instant, relative speed and place of each pedestrian's conflict.
+    """Return class, instant, relative speed and place of each pedestrian's encounter.
 
-    The instant of a conflict is the one with the smallest time to collision with the moving ego.
-    For a conflict by PET alone, it is the one with the smallest clearance.
+    The instant of an encounter is the one with the smallest time to collision with the moving ego.
+    For an encounter by PET alone, it is the one with the smallest clearance.
 
     Args:
         ego: Track of the ego, T instants.
@@ -113,7 +113,7 @@ def severities(
 
 
 def _classes(ttc: NDArray[np.float64], per_pedestrian: "pd.DataFrame") -> NDArray[np.object_]:
-    """Return the class (n,) of each pedestrian's conflict, or an empty text without one."""
+    """Return the class (n,) of each pedestrian's encounter, or an empty text without one."""
     pet = per_pedestrian["post_encroachment_time"].to_numpy(dtype=np.float64)
     frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy(dtype=np.bool_)
     slight, serious, collision = SEVERITIES

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from controller import DECLARED, Defaults, WorstMotion
 from controller.driving_constants import STANDING
 from giveway.metrics.anticipation import Anticipation
+from giveway.metrics.close_passes import Clearances, passes
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
 from giveway.metrics.encroachment import PERSON
+from giveway.metrics.serious_conflicts import SeriousConflicts, serious
 from giveway.metrics.severity import CRITICAL_PET
 from giveway.metrics.slowing import slowed
 from giveway.metrics.standing import waiting_times
@@ -29,6 +31,7 @@ HARD = 4.0
 # Distance [m] ahead within which a person, vehicle or stop is the cause of a hard brake
 _CAUSE = 15.0
 _ROUNDING = 1.0 + 1e-6  # Relative tolerance for the rounding of velocities in a table
+_FAST = Clearances._fields[1:]  # Names of the clearances above a speed
 _NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 _AROUND = 0.5  # Time [s] before and after the beginning of braking in which the cause is searched
 
@@ -78,10 +81,14 @@ class Summary:
         float, Quantity("s", "smallest time to collision; empty: never on a collision course")
     ]
     conflicts: Annotated[
-        int, Quantity(None, "pedestrians less than 1.5 s from a collision with the moving ego")
+        int,
+        Quantity(
+            None, "serious conflicts: pedestrians with less time to accident than the speed needs"
+        ),
     ]
     share_below_ttc: Annotated[
-        float, Quantity(None, "share of steps at which somebody was that close")
+        float,
+        Quantity(None, "share of steps at which somebody was less than 1.5 s from one"),
     ]
     minimum_pet: Annotated[
         float, Quantity("s", "smallest post-encroachment time; empty: no paths crossed")
@@ -125,6 +132,28 @@ class Summary:
     time_among_people: Annotated[
         float, Quantity("s", "that it stood while people passed in front of and behind it")
     ]
+    close_passes: Annotated[
+        int, Quantity(None, "people closer than 0.5 m while the ego was faster than 2 m/s")
+    ]
+    close_pass_share: Annotated[
+        float, Quantity(None, "close passes over people near; empty: nobody was near")
+    ]
+    close_pass_share_moving: Annotated[
+        float, Quantity(None, "close passes over people near the moving ego; empty: nobody was")
+    ]
+    tight_passes: Annotated[
+        int, Quantity(None, "people closer than 0.3 m while the ego was faster than 3 m/s")
+    ]
+    narrow_passes: Annotated[
+        int, Quantity(None, "people closer than 0.3 m while the ego was faster than 1 m/s")
+    ]
+    people_near: Annotated[int, Quantity(None, "people within 4 m of the ego's rectangle")]
+    people_near_moving: Annotated[
+        int, Quantity(None, "people within 4 m while the ego was faster than 0.5 m/s")
+    ]
+    people_below_ttc: Annotated[
+        int, Quantity(None, "people less than 1.5 s from a collision with the moving ego")
+    ]
 
 
 SUMMARY_FIELDS = columns_of(Summary)
@@ -161,7 +190,7 @@ def summarise(
     Args:
         ego: Track of the ego, at least one instant.
         per_pedestrian: Table of ``pedestrian_metrics``, or its columns.
-        critical: Conflicts of the drive.
+        critical: Time to collision with the moving ego.
         met: Anticipation of the drive.
         setting: Settings of the drive. The time at which the goal is reached is interpolated
             between control instants.
@@ -184,6 +213,9 @@ def summarise(
         return np.asarray(per_pedestrian[name])
 
     clearances, encroached = column("minimum_clearance"), column("post_encroachment_time")
+    conflict = SeriousConflicts(column("time_to_accident"), column("conflicting_speed"))
+    passed = passes(Clearances(clearances, *(column(f"clearance_{name}") for name in _FAST)))
+    near, near_moving, close, tight, narrow = (int(np.count_nonzero(of)) for of in passed)
     brakes = hard_brakes(ego)
     frontal = column("contact") == FRONTAL
     beyond = np.zeros(len(frontal), dtype=np.bool_)
@@ -217,7 +249,7 @@ def summarise(
         side_contacts=int(np.count_nonzero(column("contact") == SIDE)),
         overlap_time=float(np.nansum(column("overlap_time"))),
         minimum_ttc=_extreme(column("minimum_ttc"), np.min),
-        conflicts=critical.pedestrians,
+        conflicts=int(np.count_nonzero(serious(conflict))),
         share_below_ttc=critical.share,
         minimum_pet=_extreme(encroached, np.min),
         share_below_pet=_share(encroached < CRITICAL_PET),
@@ -235,6 +267,14 @@ def summarise(
         contacts_beyond=float(np.count_nonzero(beyond & frontal)) if people else np.nan,
         ttc_at_slowing=met.ttc_at_slowing,
         time_among_people=met.time_among_people,
+        close_passes=close,
+        close_pass_share=close / near if near else np.nan,
+        close_pass_share_moving=close / near_moving if near_moving else np.nan,
+        tight_passes=tight,
+        narrow_passes=narrow,
+        people_near=near,
+        people_near_moving=near_moving,
+        people_below_ttc=critical.pedestrians,
     )
 
 

@@ -9,7 +9,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
-from giveway.recordings.drives import MOVING, NEAR, drive_of, nearness
+from giveway.metrics.close_passes import NEAR
+from giveway.recordings.drives import MOVING, drive_of, nearness
 from giveway.recordings.recording import OVERLAP, Defect, Recording, Tracks
 from giveway.run_data.columns import Quantity, columns_of
 

@@ -7,14 +7,13 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
+from giveway.metrics.close_passes import Clearances, clearances
 from giveway.metrics.conflicts import proximity
 from giveway.metrics.encroachment import Encroachment, encroachment
 from giveway.recordings.recording import Recording
 from giveway.run_data.tracks import CrowdTrack, EgoTrack
 from pedestrian_model import SIM
 
-NEAR = 4.0
-"""Clearance [m] up to which a person is near a vehicle."""
 MOVING = 1.0
 """Speed [m/s] that a vehicle reaches if it is not parked."""
 RADIUS = SIM.body_radius
@@ -67,6 +66,10 @@ class Nearness(NamedTuple):
         smallest = np.full(people, np.inf)
         np.minimum.at(smallest, self.person, values)
         return smallest
+
+    def clearances(self, people: int) -> Clearances:
+        """Return the smallest clearances of each person (n,), by the vehicle's speed."""
+        return clearances(self.person, self.speed, self.clearance, people)
 
 
 def drive_of(recording: Recording, number: int) -> Drive:

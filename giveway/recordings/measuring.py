@@ -6,23 +6,27 @@ from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from controller.driving_constants import STANDING
 from giveway.errors import DatasetError, suggestion
+from giveway.metrics.close_passes import (
+    CLOSE,
+    CLOSE_SPEED,
+    NEAR,
+    TIGHT,
+    TIGHT_SPEED,
+    Passes,
+    passes,
+)
 from giveway.metrics.conflicts import CRITICAL_TTC
 from giveway.metrics.encroachment import EGO, PERSON
 from giveway.recordings.describing import parked
-from giveway.recordings.drives import NEAR, Drive, drive_of, encroachments, nearness
+from giveway.recordings.drives import Drive, drive_of, encroachments, nearness
 from giveway.recordings.intervals import ClipBootstrap
 from giveway.recordings.recording import Recording
 from giveway.run_data.columns import Quantity, columns_of
 from giveway.run_data.tracks import EgoTrack
 
-CLOSE, CLOSE_SPEED = 0.5, 2.0
-"""Clearance [m] below which, at more than this speed [m/s], a vehicle passes a person closely."""
-TIGHT, TIGHT_SPEED = 0.3, 3.0
-"""Clearance [m] and speed [m/s] of a pass that is closer and faster still."""
 SHORT_PET = 1.0
 """Post-encroachment time [s] below which it is short."""
 VEHICLE = "vehicle"
@@ -45,6 +49,9 @@ class DriveRow:
     rms_jerk: Annotated[float, Quantity("m/s^3", "root mean square of the jerk, by differences")]
     peak_deceleration: Annotated[float, Quantity("m/s^2", "hardest braking, by differences")]
     near: Annotated[int, Quantity("persons", "people within 4 m of it, outline to outline")]
+    near_moving: Annotated[
+        int, Quantity("persons", "people within 4 m while it was faster than 0.5 m/s")
+    ]
     close: Annotated[int, Quantity("persons", "people closer than 0.5 m at more than 2 m/s")]
     tight: Annotated[int, Quantity("persons", "people closer than 0.3 m at more than 3 m/s")]
 
@@ -58,6 +65,9 @@ class PersonRow:
     person: Annotated[str, Quantity(None, "id of the person")]
     clearance: Annotated[
         float, Quantity("m", "smallest clearance at one instant; negative: overlap")
+    ]
+    clearance_moving: Annotated[
+        float, Quantity("m", "smallest clearance at more than 0.5 m/s; empty: never as fast")
     ]
     clearance_above_2: Annotated[
         float, Quantity("m", "smallest clearance at more than 2 m/s; empty: never as fast")
@@ -84,6 +94,8 @@ class Share:
         count: Number of people.
         share: Share of all people near a vehicle; nan without any.
         low, high: 95 % interval, whole vehicles resampled; nan with fewer than two vehicles.
+        share_moving: Share of the people near a vehicle that moves, of whom it holds.
+        low_moving, high_moving: Its interval.
     """
 
     name: str
@@ -91,6 +103,9 @@ class Share:
     share: float
     low: float
     high: float
+    share_moving: float
+    low_moving: float
+    high_moving: float
 
 
 DRIVE_FIELDS = columns_of(DriveRow)
@@ -181,14 +196,11 @@ def _measured(drive: Drive) -> tuple[DriveRow, list[PersonRow]]:
     track, ids = drive.track, drive.recording.people.ids
     found = nearness(drive)
     count = len(ids)
-    clearance = found.smallest(found.clearance, count)
-    above = {
-        speed: found.smallest(np.where(found.speed > speed, found.clearance, np.inf), count)
-        for speed in (CLOSE_SPEED, TIGHT_SPEED)
-    }
+    clearance = found.clearances(count)
     moving = np.where(found.speed > STANDING, found.time_to_collision, np.inf)
     collision = found.smallest(moving, count)
-    near = clearance <= NEAR
+    passed = passes(clearance)
+    near = passed.near
     time, first = encroachments(drive, near)
     signed = np.where(first == PERSON, time, -time)
     people = [
@@ -196,21 +208,20 @@ def _measured(drive: Drive) -> tuple[DriveRow, list[PersonRow]]:
             recording=drive.recording.name,
             vehicle=drive.id,
             person=ids[who],
-            clearance=float(clearance[who]),
-            clearance_above_2=_finite(above[CLOSE_SPEED][who]),
-            clearance_above_3=_finite(above[TIGHT_SPEED][who]),
+            clearance=float(clearance.least[who]),
+            clearance_moving=_finite(clearance.moving[who]),
+            clearance_above_2=_finite(clearance.above_2[who]),
+            clearance_above_3=_finite(clearance.above_3[who]),
             time_to_collision=_finite(collision[who]),
             post_encroachment_time=float(signed[who]) + 0.0,
             first=VEHICLE if first[who] == EGO else str(first[who]),
         )
         for who in np.flatnonzero(near).tolist()
     ]
-    return _drive_row(drive, track, near, above), people
+    return _drive_row(drive, track, passed), people
 
 
-def _drive_row(
-    drive: Drive, track: EgoTrack, near: NDArray[np.bool_], above: dict[float, Any]
-) -> DriveRow:
+def _drive_row(drive: Drive, track: EgoTrack, passed: Passes) -> DriveRow:
     jerk = np.gradient(track.acceleration, track.time)
     return DriveRow(
         recording=drive.recording.name,
@@ -221,9 +232,10 @@ def _drive_row(
         standing=float((track.speed < STANDING).mean()),
         rms_jerk=float(np.sqrt(np.mean(jerk**2))),
         peak_deceleration=max(0.0, -float(track.acceleration.min())),
-        near=int(near.sum()),
-        close=int((near & (above[CLOSE_SPEED] < CLOSE)).sum()),
-        tight=int((near & (above[TIGHT_SPEED] < TIGHT)).sum()),
+        near=int(passed.near.sum()),
+        near_moving=int(passed.near_moving.sum()),
+        close=int(passed.close.sum()),
+        tight=int(passed.tight.sum()),
     )
 
 
@@ -250,12 +262,16 @@ def _shares(drives: pd.DataFrame, people: pd.DataFrame) -> tuple[Share, ...]:
     places = {key: place for place, key in enumerate(keys)}
     of = [places[key] for key in zip(people["recording"], people["vehicle"], strict=True)]
     drive = np.array(of, dtype=np.int64)
-    count = np.bincount(drive, minlength=len(keys)).astype(float)
     draws = ClipBootstrap.of(len(keys), SEED)
+    everybody = np.ones(len(people), dtype=bool)
+    moving = people["clearance_moving"].to_numpy(dtype=np.float64) <= NEAR
     shares = []
     for name, mask in zip(SHARES, held, strict=True):
-        total = np.bincount(drive, mask, minlength=len(keys)).astype(float)
-        low, high = draws.interval(total, count)
-        share = float(mask.mean()) if len(mask) else np.nan
-        shares.append(Share(name, int(mask.sum()), share, low, high))
+        parts = []
+        for among in (everybody, moving):
+            count = np.bincount(drive, among, len(keys)).astype(np.float64)
+            total = np.bincount(drive, mask & among, len(keys)).astype(np.float64)
+            part = float(mask[among].mean()) if among.any() else np.nan
+            parts += [part, *draws.interval(total, count)]
+        shares.append(Share(name, int(mask.sum()), *parts))
     return tuple(shares)

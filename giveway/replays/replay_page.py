@@ -36,7 +36,8 @@ _SCRIPTS = ("data.js", "motion.js", "view.js", "scene.js", "charts.js", "panels.
 _NUMBERS = ("speed", "reference_speed", "force", "gap", "vehicle_gap", "stop_gap")
 _SHOWN = (
     "completion_time", "mean_speed", "stops", "longest_wait", "mpc_feasibility_rate",
-    "minimum_gap", "minimum_clearance", "overlaps", "minimum_ttc", "minimum_pet",
+    "close_passes", "minimum_gap", "minimum_clearance", "overlaps", "conflicts", "minimum_ttc",
+    "minimum_pet",
     "peak_deceleration", "rms_jerk",
 )  # fmt: skip
 _SPELT = ("mpc", "ttc", "pet", "rms")

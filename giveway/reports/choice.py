@@ -69,6 +69,7 @@ class WorstRun:
     unit: str
 
 
+CLOSE_PASSES = "Most close passes"
 CLOSEST = "Smallest clearance to a pedestrian"
 OVERLAPS = "Longest overlap with pedestrians"
 WAITS = "Longest wait"
@@ -84,6 +85,7 @@ def worst_runs(study: StudyFolder, count: int = 5) -> list[WorstRun]:
         count: Largest number of runs for each reason.
     """
     return [
+        *_extreme(study, CLOSE_PASSES, "close_passes", count, sign=-1.0),
         *_extreme(study, CLOSEST, "minimum_clearance", count, sign=1.0),
         *_extreme(study, OVERLAPS, "overlap_time", count, sign=-1.0),
         *_extreme(study, WAITS, "longest_wait", count, sign=-1.0),

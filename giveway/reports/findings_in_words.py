@@ -30,7 +30,13 @@ from giveway.reports.wording import (
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.statistics import confirmatory, metric
 
-METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
+METRICS_IN_WORDS = (
+    "completion_time",
+    "longest_wait",
+    "rms_jerk",
+    "close_passes",
+    "minimum_clearance",
+)
 # Largest number of sentences on a metric; further groups are counted in one
 MOST_SENTENCES = 4
 

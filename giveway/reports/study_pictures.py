@@ -40,10 +40,10 @@ ROWS_PER_PICTURE = 8
 PANELS_PER_PICTURE = 16
 FEWEST_SPREAD = 10
 """Smallest number of runs in a cell for a 5th and 95th percentile."""
-FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
+FOREST = ("completion_time", "longest_wait", "rms_jerk", "close_passes", "minimum_clearance")
 SPREADS = {
     "time and comfort": ("completion_time", "longest_wait", "rms_jerk"),
-    "safety": ("minimum_clearance", "minimum_ttc", "maximum_drac"),
+    "safety": ("close_passes", "minimum_clearance", "minimum_ttc", "maximum_drac"),
 }
 
 _Key = tuple[tuple[str, ...], str, str, str, str]

@@ -21,7 +21,7 @@ from giveway.metrics import (
     DriveSetting,
     VehicleContact,
     anticipation,
-    conflicts,
+    critical_encounters,
     severities,
     summarise,
     vehicle_contacts,
@@ -104,7 +104,7 @@ class EgoResult:
 
     @cached_property
     def conflicts(self) -> "pd.DataFrame":
-        """The table with one row per pedestrian: severity, time, speed and place of conflict."""
+        """The table with one row per pedestrian: severity, time, speed and place by TTC and PET."""
         body = self.shape, self.body_radius, self.config.record.stop_speed
         return severities(self.track, self.crowd, *body, self.pedestrians)
 
@@ -164,7 +164,7 @@ class EgoResult:
         figures = summarise(
             self.track,
             self._columns,
-            conflicts(self.track, self.crowd, *body, config.record.stop_speed),
+            critical_encounters(self.track, self.crowd, *body, config.record.stop_speed),
             anticipation(
                 self.track,
                 self.crowd,

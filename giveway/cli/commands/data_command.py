@@ -1,5 +1,6 @@
 """The commands ``giveway data describe`` and ``giveway data measure``."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from giveway.cli.screen.printing import escape, numbers_of, print_place, writing
 from giveway.cli.screen.recordings import cite, counted, read
 from giveway.recordings import Dataset, dataset_of
 from giveway.recordings.describing import TOTAL, Described, describe
-from giveway.recordings.measuring import Measured, Share, measure
+from giveway.recordings.measuring import Measured, measure
 from giveway.results.folder import check_folder
 
 _DESCRIBED = ("recordings.csv", "defects.csv")
@@ -166,19 +167,22 @@ def _people(found: Measured) -> Table:
 def _summary(found: Measured) -> Table:
     drives = int((found.drives["near"] > 0).sum())
     title = f"Of {len(found.people)} people near {drives} of {len(found.drives)} vehicles"
-    caption = "95 % interval: vehicles resampled"
-    table = Table(*numbers_of("people", "share"), title=title, caption=escape(caption))
-    for share in found.shares:
-        table.add_row(share.name, str(share.count), _share(share))
+    caption = (
+        "near a moving one: within 4 m while faster than 0.5 m/s; 95 % interval: vehicles resampled"
+    )
+    columns = numbers_of("people", "share", "near a moving one")
+    table = Table(*columns, title=title, caption=escape(caption))
+    for of in found.shares:
+        moving = _share(of.share_moving, of.low_moving, of.high_moving)
+        table.add_row(of.name, str(of.count), _share(of.share, of.low, of.high), moving)
     return table
 
 
-def _share(share: Share) -> str:
-    if share.share != share.share:  # nan: nobody was near
-        return "-"
-    known = share.low == share.low
-    interval = f" [{share.low:.1%}, {share.high:.1%}]" if known else ""
-    return escape(f"{share.share:.1%}{interval}")
+def _share(share: float, low: float, high: float) -> str:
+    if math.isnan(share):
+        return "-"  # nobody was near
+    interval = "" if math.isnan(low) else f" [{low:.1%}, {high:.1%}]"
+    return escape(f"{share:.1%}{interval}")
 
 
 def _rows(table: pd.DataFrame) -> list[Any]:

@@ -30,6 +30,7 @@ _SHOWN = (
     ("longest_wait", "stop-and-wait"),
     ("completion_time", "non-stop"),
     ("rms_jerk", "general"),
+    ("close_passes", "general"),
     ("minimum_clearance", "general"),
     ("overlaps", "general"),
     ("mean_people_delay", "general"),

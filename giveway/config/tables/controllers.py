@@ -206,8 +206,8 @@ class PlannerOptions(Section):
     conflict_weight: float | None = option(
         None,
         None,
-        "Weight of conflicts: seconds of delay for one person-second at v_r with less than 1.5 s "
-        "to a collision. By default the style sets it: 1.6, 0.8 or 0.4",
+        "Weight of people less than 1.5 s from a collision: seconds of delay for one such "
+        "person-second at v_r. By default the style sets it: 1.6, 0.8 or 0.4",
         ge=0,
         le=1e3,
         because="with a larger weight, a plan depends on this term alone",

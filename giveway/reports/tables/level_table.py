@@ -26,6 +26,7 @@ _SHOWN = {
     "stops": "stops",
     "rms_jerk": "RMS jerk",
     "peak_jerk": "peak jerk",
+    "close_passes": "close passes",
     "overlaps": "overlaps",
     "frontal_contacts": "frontal",
     "side_contacts": "side",
@@ -33,7 +34,7 @@ _SHOWN = {
     "minimum_ttc": "min. TTC",
     "minimum_pet": "min. PET",
     "share_below_safe_distance": "below d_safe",
-    "conflicts": "conflicts",
+    "conflicts": "serious conflicts",
     "safety_share": "safety acts",
 }
 _OF_TWINS = {  # metrics that are shown if runs have a counterfactual run

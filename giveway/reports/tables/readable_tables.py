@@ -27,6 +27,7 @@ SHOWN_IN_CELLS = (
     "completion_time",
     "longest_wait",
     "rms_jerk",
+    "close_passes",
     "minimum_clearance",
     "minimum_ttc",
     "mpc_feasibility_rate",

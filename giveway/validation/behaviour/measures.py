@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from giveway.geometry.kernel import Array
+from giveway.metrics.close_passes import CLOSE, CLOSE_SPEED, NEAR
 from giveway.metrics.encroachment import PERSON
 from giveway.recordings import Recording, Tracks
-from giveway.recordings.drives import NEAR, drive_of, encroachments, nearness
-from giveway.recordings.measuring import CLOSE, CLOSE_SPEED
+from giveway.recordings.drives import drive_of, encroachments, nearness
 
 MOVING = 0.5
 """Speed [m/s] above which a vehicle moves."""

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.metrics import conflicts, contacts, pedestrian_metrics, proximity
+from giveway.metrics import contacts, critical_encounters, pedestrian_metrics, proximity
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
@@ -149,7 +149,7 @@ def test_a_conflict_is_a_time_to_collision_below_1_5_seconds(driving, crowd, wal
     ego = driving(TIME, 4.0)  # it has driven 16 m at the end
     ahead = walking(TIME, (20.0, 0.0), (0.0, 0.0))
     beside = walking(TIME, (8.0, 4.0), (0.0, 0.0))
-    found = conflicts(ego, crowd(ahead, beside), CAR, R, 0.2)
+    found = critical_encounters(ego, crowd(ahead, beside), CAR, R, 0.2)
     assert found.pedestrians == 1
     after = np.count_nonzero((20.0 - R - 4.0 * TIME) / 4.0 < 1.5)
     assert found.share == pytest.approx(after / TIME.size)
@@ -157,8 +157,8 @@ def test_a_conflict_is_a_time_to_collision_below_1_5_seconds(driving, crowd, wal
 
 def test_who_walks_up_to_a_standing_car_is_no_conflict(ego, crowd, walking):
     track = crowd(walking(TIME, (2.0, 0.0), (-1.4, 0.0)))
-    assert conflicts(ego(TIME, speed=0.2), track, CAR, R, 0.2).pedestrians == 0
-    assert conflicts(ego(TIME, speed=0.21), track, CAR, R, 0.2).pedestrians == 1
+    assert critical_encounters(ego(TIME, speed=0.2), track, CAR, R, 0.2).pedestrians == 0
+    assert critical_encounters(ego(TIME, speed=0.21), track, CAR, R, 0.2).pedestrians == 1
 
 
 def test_the_least_time_to_collision_tells_the_two_apart(ego, crowd, walking):
@@ -166,14 +166,14 @@ def test_the_least_time_to_collision_tells_the_two_apart(ego, crowd, walking):
     speed = np.where(np.arange(TIME.size) < TIME.size // 2, 0.2, 2.0)
     up_to = walking(TIME, (2.0, 0.0), (-1.4, 0.0))
     far = walking(TIME, (30.0, 0.0), (0.0, 0.0))
-    standing = conflicts(ego(TIME, speed=0.2), crowd(up_to), CAR, R, 0.2)
+    standing = critical_encounters(ego(TIME, speed=0.2), crowd(up_to), CAR, R, 0.2)
     assert np.isnan(standing.minimum_ttc)
     drives = ego(TIME, speed=speed)
-    found = conflicts(drives, crowd(far), CAR, R, 0.2)
+    found = critical_encounters(drives, crowd(far), CAR, R, 0.2)
     ttc = proximity(drives, crowd(far), CAR, R).time_to_collision
     assert found.minimum_ttc == ttc[TIME.size // 2 :].min() > 1.5
     assert found.pedestrians == 0
-    both = conflicts(ego(TIME, speed=2.0), crowd(up_to, far), CAR, R, 0.2)
+    both = critical_encounters(ego(TIME, speed=2.0), crowd(up_to, far), CAR, R, 0.2)
     assert both.minimum_ttc < 1.5
     assert both.pedestrians == 1
 
@@ -181,14 +181,14 @@ def test_the_least_time_to_collision_tells_the_two_apart(ego, crowd, walking):
 def test_two_at_once_are_two_persons_but_one_share(driving, crowd, walking):
     ego = driving(TIME, 4.0)
     one = walking(TIME, (5.0, 0.0), (0.0, 0.0))
-    alone = conflicts(ego, crowd(one), CAR, R, 0.2)
-    both = conflicts(ego, crowd(one, one), CAR, R, 0.2)
+    alone = critical_encounters(ego, crowd(one), CAR, R, 0.2)
+    both = critical_encounters(ego, crowd(one, one), CAR, R, 0.2)
     assert (alone.pedestrians, both.pedestrians) == (1, 2)
     assert alone.share == both.share > 0.0
 
 
 def test_a_drive_without_anybody_has_no_conflicts(driving, crowd):
-    found = conflicts(driving(TIME, 4.0), crowd(), CAR, R, 0.2)
+    found = critical_encounters(driving(TIME, 4.0), crowd(), CAR, R, 0.2)
     assert (found.pedestrians, found.share) == (0, 0.0)
 
 

@@ -103,6 +103,8 @@ def test_what_never_occurred_is_empty(ego):
         "share_below_pet_person_first",
         "maximum_drac",
         "ttc_at_slowing",
+        "close_pass_share",
+        "close_pass_share_moving",
     }
     assert (summary.overlaps, summary.overlap_time) == (0, 0.0)
 
@@ -117,12 +119,22 @@ def test_the_summary_of_the_crowd(ego):
             "post_encroachment_time": [nan, 0.0, 0.8, nan],
             "passed_first": ["", "contact", "person", ""],
             "maximum_drac": [2.0, 3.5, 0.0, nan],
+            "clearance_moving": [0.4, -0.1, 4.1, nan],
+            "clearance_above_1": [0.4, 0.2, nan, nan],
+            "clearance_above_2": [0.45, 0.2, nan, nan],
+            "clearance_above_3": [0.6, 0.29, nan, nan],
+            "time_to_accident": [0.5, 0.3, 0.0, nan],
+            "conflicting_speed": [4.0, 4.0, 0.4, nan],
         }
     )
     summary = summary_of(ego(TIME), table, Critical(3, 0.25))
     assert summary.minimum_clearance == -0.2
     assert (summary.frontal_contacts, summary.side_contacts) == (1, 1)
-    assert (summary.conflicts, summary.share_below_ttc) == (3, 0.25)
+    assert (summary.people_below_ttc, summary.share_below_ttc) == (3, 0.25)
+    assert summary.conflicts == 2
+    assert (summary.people_near, summary.people_near_moving) == (3, 2)
+    assert (summary.close_passes, summary.tight_passes, summary.narrow_passes) == (2, 1, 1)
+    assert (summary.close_pass_share, summary.close_pass_share_moving) == (2 / 3, 1.0)
     assert (summary.overlaps, summary.overlap_time) == (2, pytest.approx(0.4))
     assert (summary.minimum_ttc, summary.minimum_pet, summary.maximum_drac) == (0.0, 0.0, 3.5)
     assert summary.share_below_pet == 0.5  # of all four, met or not

@@ -13,11 +13,13 @@ from giveway.reports.choice import example_pairs, worst_runs
 class TestChoice:
     """Which runs are shown, from the frames alone."""
 
-    def test_the_closest_run_comes_first(self, study):
-        first = worst_runs(study, 3)[0]
-        closest = study.runs["minimum_clearance"].min()
-        assert first.value == closest
-        assert first.run == study.runs.loc[study.runs["minimum_clearance"].idxmin(), "run"]
+    def test_the_run_with_most_close_passes_comes_first(self, study):
+        first, *others = worst_runs(study, 3)
+        assert first.value == study.runs["close_passes"].max() > 0
+        assert first.run == study.runs.loc[study.runs["close_passes"].idxmax(), "run"]
+        closest = next(run for run in others if run.metric == "minimum_clearance")
+        assert closest.value == study.runs["minimum_clearance"].min()
+        assert closest.run == study.runs.loc[study.runs["minimum_clearance"].idxmin(), "run"]
 
     def test_never_more_than_asked_for(self, study):
         reasons = pd.Series([run.reason for run in worst_runs(study, 2)])

@@ -47,6 +47,23 @@ def test_a_run_is_measured_as_its_own_tables_say(folder: Path) -> None:
         assert row.clearance == pytest.approx(own[row.person], abs=2e-6)
 
 
+def test_close_passes_of_a_run_are_those_of_a_recorded_drive(tmp_path: Path) -> None:
+    """`giveway data measure` finds in the run's tables what the run's summary says."""
+    settings = {"controller": "pid-tuned", "crowd": {"pedestrians": 24}, "seed": 4}
+    giveway.run({"scenario": "encounter", **settings}, results=tmp_path / "run", pictures=False)
+    run = RunFolder.read(tmp_path / "run")
+    (drive,) = measure([recording_of_run(run)]).drives.to_dict("records")
+    names = ("people_near", "people_near_moving", "close_passes", "tight_passes")
+    counts = [run.summary[name] for name in names]
+    assert counts == [drive[name] for name in ("near", "near_moving", "close", "tight")]
+    near, moving, close, _ = counts
+    assert near >= moving > close > 0
+    assert run.summary["close_pass_share"] == close / near
+    people = run.pedestrians
+    assert (people["clearance_above_2"] < 0.5).sum() == close
+    assert run.summary["conflicts"] <= people["time_to_accident"].notna().sum()
+
+
 def test_a_recorded_driver_has_one_row_for_all_runs(folder: Path) -> None:
     table = compared([folder, folder])
     assert table["driver"].tolist() == [RECORDED_DRIVER, "mpc"]

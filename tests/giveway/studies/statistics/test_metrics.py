@@ -24,6 +24,7 @@ def test_what_is_left_out_says_nothing_about_a_controller() -> None:
     said = {"completed", "simulated_time", "travelled_distance", "maximum_speed"}
     said |= {"vehicle_contacts", "vehicle_contact_time"}  # SUMO drives those into it
     said |= {"encounters", "people_delayed"}  # how many people come is not up to it
+    said |= {"people_near", "people_near_moving"}  # nor this
     said |= {"twin_differs"}  # says how much the delays mean
     said |= {"beyond_assumption", "contacts_beyond"}  # what the simulated people do
     said |= {"slowed"}  # people do; which runs count, see the situations
