@@ -7,8 +7,9 @@ from typing import Final
 from controller.defaults import REFERENCE_SPEED
 from controller.plug_in import Defaults
 
-# Yang & Özgüner 2019: one speed, an open space without rules, exact positions, no safety layer.
-_PAPER: Final = Defaults(REFERENCE_SPEED, False, False, False, buffered=True)
+# Yang & Özgüner 2019: one speed, an open space without rules, exact positions, no safety layer,
+# people who walk by their own parameters.
+_PAPER: Final = Defaults(REFERENCE_SPEED, False, False, False, buffered=True, crowd_preset="SIM")
 
 DECLARED: Final[Mapping[str, Defaults]] = MappingProxyType(
     {

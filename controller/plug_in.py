@@ -24,7 +24,7 @@ class Setup(NamedTuple):
 class Defaults(NamedTuple):
     """The declaration of a controller: values of settings that the user leaves out.
 
-    A plug-in has them as the attribute ``defaults`` of its class. The last three concern giveway's
+    A plug-in has them as the attribute ``defaults`` of its class. The last four concern giveway's
     own controllers only.
     """
 
@@ -35,6 +35,7 @@ class Defaults(NamedTuple):
     optimises: bool = False  # whether it has a model and a horizon; plans may be infeasible
     smooths: bool = False  # whether it follows a smooth reference speed and brakes late
     buffered: bool = False  # whether its reference speed rises linearly over d_buffer beyond d_safe
+    crowd_preset: str = ""  # parameters of the people whom it meets, or "" for giveway's default
 
 
 class Force(NamedTuple):

@@ -24,7 +24,7 @@ def crowded(people: int, *, sides: int = 1, **crowd: Any) -> dict[str, Any]:
 ROADS = ["junction", "crossings"]
 SCENES = ["one-sided, 30", "one-sided, 60", "two-sided, 10", "two-sided, 30", "two-sided, 60",
           "stream, 30", "stream, 60", "street, 30", "encounter, medium", "encounter, dense",
-          "encounter, unknown goals", "unseen speeds, 30", "MIXED crowd, 30", "TABLE2 crowd, 30",
+          "encounter, unknown goals", "unseen speeds, 30", "SIM crowd, 30", "TABLE2 crowd, 30",
           "position noise, 30"]  # fmt: skip
 RIVALS = ["mpc", "pid-tuned"]
 

@@ -17,7 +17,7 @@ _Dataset = Annotated[
 ]
 _Model = Annotated[str, typer.Option(help="Pedestrian model: a bundled one, as in [crowd] model.")]
 _Preset = Annotated[
-    str, typer.Option(help="SIM, TABLE2, MIXED, CITR, DUT or a preset file (TOML).")
+    str, typer.Option(help="MIXED, CITR, DUT, SIM, TABLE2 or a preset file (TOML).")
 ]
 _Drawn = Annotated[
     Path | None, typer.Option(help="Folder for tables and picture; without it, none.")
@@ -72,7 +72,7 @@ def _behave(
     folder: _Folder,
     dataset: _Dataset = None,
     model: _Model = "vci",
-    preset: _Preset = "SIM",
+    preset: _Preset = "MIXED",
     out: _Drawn = None,
     force: _Force = False,
     quiet: _Quiet = False,

@@ -28,8 +28,8 @@ def _validate(
     clips: _Clips,
     dataset: _Dataset = None,
     preset: Annotated[
-        str, typer.Option(help="SIM, TABLE2, MIXED, CITR, DUT or a preset file (TOML).")
-    ] = "SIM",
+        str, typer.Option(help="MIXED, CITR, DUT, SIM, TABLE2 or a preset file (TOML).")
+    ] = "MIXED",
     out: Annotated[
         Path | None, typer.Option(help="Folder (default results/validation_PRESET).")
     ] = None,

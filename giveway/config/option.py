@@ -112,6 +112,9 @@ def _text(value: Any) -> Any:
 PRESET_NAMES: Final = ("SIM", "TABLE2", "MIXED", "CITR", "DUT")
 """The presets of the VCI model, named here since to import the model takes time."""
 
+DEFAULT_PRESET: Final = "MIXED"
+"""The preset of people unless the user or the controller names another one."""
+
 
 def _preset(value: str) -> str:
     """Return a name or file of the model's parameters; the file is read when it is needed."""

@@ -165,8 +165,10 @@ class RunConfig(Section):
 
     @model_validator(mode="after")
     def _check_egos(self) -> RunConfig:
-        for ego in self.each_ego():
+        egos = self.each_ego()
+        for ego in egos:
             ego.require_sound()
+        self._meet_people({ego.defaults.crowd_preset for ego in egos or (self,)})
         # they are read, and refused if they cannot be used
         self.vci_options, self.recorded_options  # noqa: B018
         has_options = self.crowd.plugged_in or self.crowd.model in {VCI, RECORDED}
@@ -177,6 +179,19 @@ class RunConfig(Section):
                 "parameters of people are a preset (docs/pedestrian_model.md)"
             )
         return self
+
+    def _meet_people(self, declared: set[str]) -> None:
+        """Take the crowd's preset that all controllers declare, unless the user has set one.
+
+        Args:
+            declared: Preset that each controller declares, or "" for giveway's default.
+        """
+        (preset, *others) = declared
+        if not preset or others or "preset" in self.crowd.model_fields_set:
+            return
+        values = {**dict(self.crowd), "preset": preset}
+        own = CrowdConfig.model_construct(_fields_set=self.crowd.model_fields_set, **values)
+        object.__setattr__(self, "crowd", own)  # the key does not count as set by the user
 
     def each_ego(self) -> tuple[EgoRunConfig, ...]:
         """Return the configuration of each ego, complete and without ``egos``.
@@ -314,6 +329,7 @@ class EgoRunConfig(RunConfig):
     @model_validator(mode="after")
     def _check_egos(self) -> EgoRunConfig:
         self.require_sound()
+        self._meet_people({self.defaults.crowd_preset})
         return self
 
     def require_sound(self) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.files.presets import parameters_of
+from giveway.config.files.presets import crowd_of
 from giveway.config.tables.recorded import RECORDED
 from giveway.crowd.motion.as_recorded import AsRecorded
 from giveway.crowd.motion.attention import Inattentive
@@ -79,7 +79,7 @@ def _plain_model_of(
 ) -> PedestrianModel:
     """Return the model without distracted people and groups."""
     crowd = config.crowd
-    parameters = parameters_of(crowd.preset)
+    parameters = crowd_of(config)
     if crowd.plugged_in or crowd.model in JUPEDSIM_MODELS:
         return _hosted(crowd.model, config, time_step, parameters, lambda: roster.keys)
     if crowd.model == "vci":
@@ -115,7 +115,7 @@ def _hosted(
     parameters: VciParameters,
     person_keys: Callable[[], NDArray[np.int64]] | None = None,
 ) -> PluggedInModel:
-    make, setup = maker(name, config), setup_of(config, time_step)
+    make, setup = maker(name, config), setup_of(config, time_step, parameters)
     with retold(PlugInError, CrowdError):
         return PluggedInModel(f"'{name}'", lambda: make(setup), setup, parameters, person_keys)
 
@@ -151,14 +151,14 @@ def require_jupedsim(name: str) -> None:
         )
 
 
-def setup_of(config: RunConfig, time_step: float) -> ModelSetup:
+def setup_of(config: RunConfig, time_step: float, parameters: VciParameters) -> ModelSetup:
     """Return the facts about the run that a model is given.
 
     Args:
         config: Configuration of the run.
         time_step: Time step of the co-simulation [s].
+        parameters: Bodies and limits of people.
     """
-    parameters = parameters_of(config.crowd.preset)
     return ModelSetup(
         time_step=time_step,
         body_radius=parameters.body_radius,

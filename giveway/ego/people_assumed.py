@@ -1,18 +1,20 @@
 """The worst motion of people that the safety layer assumes, by the name in ``[safety] people``."""
 
-from controller import PeopleName, WorstMotion, worst_motion
-from giveway.config.files.presets import parameters_of
+from controller import WorstMotion, worst_motion
+from giveway.config import EgoRunConfig
+from giveway.config.files.presets import crowd_of
 
 
-def people_at_worst(people: PeopleName, preset: str) -> WorstMotion:
+def people_at_worst(config: EgoRunConfig) -> WorstMotion:
     """Return the worst motion of people that a safety layer assumes.
 
     Args:
-        people: Name of the assumption, as in ``[safety] people``.
-        preset: Preset of the walking model.
+        config: Configuration of the ego.
 
     Raises:
         ConfigError: the preset cannot be used.
     """
-    walking = parameters_of(preset)
-    return worst_motion(people, WorstMotion(walking.max_acceleration, walking.max_speed))
+    walking = crowd_of(config)
+    return worst_motion(
+        config.safety.people, WorstMotion(walking.max_acceleration, walking.max_speed)
+    )

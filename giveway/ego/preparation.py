@@ -6,7 +6,7 @@ from math import sqrt
 from controller import Controller, SafetyParameters
 from fmus import FmuError
 from giveway.config import EgoRunConfig
-from giveway.config.files.presets import parameters_of
+from giveway.config.files.presets import bodies_of, crowd_of
 from giveway.ego.foresight.predictors import predictor_of
 from giveway.ego.people_assumed import people_at_worst
 from giveway.ego.recorded_ego import NoController, RecordedVehicle
@@ -36,8 +36,8 @@ def make_waiting_ego(
     Raises:
         VehicleError: the FMU cannot be loaded.
     """
-    crowd = parameters_of(config.crowd.preset)
-    expected = parameters_of(config.perception.preset or config.crowd.preset)
+    crowd, perception = crowd_of(config), config.perception
+    expected = bodies_of(perception.model, perception.preset or config.crowd.preset)
     with retold(FmuError, VehicleError):
         vehicle, description = open_for(config, time_step, stack)
     predictor = predictor_of(config, controller, time_step, expected)
@@ -57,7 +57,7 @@ def recorded_ego(config: EgoRunConfig, track: EgoTrack, time_step: float) -> Wai
         time_step: Control step of the co-simulation [s].
     """
     vehicle = RecordedVehicle(track, time_step)
-    fastest = parameters_of(config.crowd.preset).max_speed
+    fastest = crowd_of(config).max_speed
     return WaitingEgo(config, vehicle, {}, NoController(), None, fastest, None)
 
 
@@ -68,8 +68,7 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         config: Configuration of the ego.
         time_step: Control step of the co-simulation [s].
     """
-    safety, walking = config.safety, parameters_of(config.crowd.preset)
-    worst = people_at_worst(safety.people, config.crowd.preset)
+    walking, worst = crowd_of(config), people_at_worst(config)
     return SafetyParameters(
         walking_acceleration=worst.acceleration,
         walking_speed=worst.speed,

@@ -83,7 +83,7 @@ class WaitingEgo:
         """The worst motion assumed of people, with or without a safety layer."""
         if self.safety is not None:
             return self.safety.worst
-        return people_at_worst(self.config.safety.people, self.config.crowd.preset)
+        return people_at_worst(self.config)
 
     @property
     def horizon(self) -> int:

@@ -152,7 +152,7 @@ class EgoResult:
         config = self.config
         if not config.safety_layer:
             return None
-        return people_at_worst(config.safety.people, config.crowd.preset)
+        return people_at_worst(config)
 
     @cached_property
     def summary(self) -> dict[str, Any]:

@@ -4,7 +4,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from giveway.config import RunConfig
+from giveway.config.files.layers import Layer, merge
 from giveway.config.files.loading import load
+from giveway.config.option import DEFAULT_PRESET
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError
 from giveway.metrics.plugged_in import metric_columns
@@ -104,8 +106,23 @@ def plan(definition: StudyDefinition, origin: str) -> Plan:
     definition = _with_comparison(definition, designed, origin)
     _require_metrics(definition, origin)
     cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
+    if _meet_others(cells):
+        definition = _with_preset(definition, DEFAULT_PRESET)
+        cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
     _require_own_names(designed, cells, origin)
     return Plan(definition, designed, cells)
+
+
+def _meet_others(cells: Iterable[PlannedCell]) -> bool:
+    """Return whether the presets of people differ only because the controllers declare others."""
+    crowds = [planned.config.crowd for planned in cells]
+    return len({crowd.preset for crowd in crowds if "preset" not in crowd.model_fields_set}) > 1
+
+
+def _with_preset(definition: StudyDefinition, preset: str) -> StudyDefinition:
+    """Return ``definition`` with one preset of people for all controllers."""
+    run = merge([Layer("", definition.run), Layer("", {"crowd": {"preset": preset}})])
+    return definition.model_copy(update={"run": run})
 
 
 def _require_own_names(designed: Design, cells: Iterable[PlannedCell], origin: str) -> None:

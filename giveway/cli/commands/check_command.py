@@ -132,11 +132,12 @@ def _controller(config: RunConfig, step: float, begins: Begins) -> list[Finding]
 
 
 def _model(config: RunConfig, step: float, begins: Begins) -> list[Finding]:
+    from giveway.config.files.presets import crowd_of
     from giveway.crowd import models
     from giveway.plug_ins.conformance.models import check_model
 
     make = models.maker(config.crowd.model, config)
-    return check_model(make, models.setup_of(config, step), begins=begins)
+    return check_model(make, models.setup_of(config, step, crowd_of(config)), begins=begins)
 
 
 def _rule(config: RunConfig, step: float, begins: Begins) -> list[Finding]:

@@ -3,7 +3,7 @@
 import difflib
 import functools
 from collections.abc import Mapping
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,8 +11,11 @@ import tomlkit
 
 from giveway.config.files.schema_names import PRESET, with_schema
 from giveway.config.files.toml import read_toml_file
+from giveway.config.run_config import RunConfig
+from giveway.config.tables.crowd import VCI
+from giveway.config.tables.recorded import RECORDED
 from giveway.errors import ConfigError, suggestion
-from pedestrian_model import PRESETS, ParameterError, VciParameters, require_steady
+from pedestrian_model import PRESETS, SIM, ParameterError, VciParameters, require_steady
 
 SUFFIX = ".toml"
 NAMES = tuple(field.name for field in fields(VciParameters))
@@ -44,6 +47,39 @@ def parameters_of(preset: str) -> VciParameters:
             f"{path}: no preset file can be read there ({error.strerror}); see giveway calibrate"
         ) from error
     return _read(path, (status.st_mtime_ns, status.st_size))
+
+
+def bodies_of(model: str, preset: str) -> VciParameters:
+    """Return the parameters of people whom a model moves.
+
+    The largest acceleration of a fitted preset belongs to the forces of VCI. Other models were not
+    fitted with it: whatever the preset is, they have the largest acceleration of ``SIM``.
+
+    Args:
+        model: Name of the model.
+        preset: Name or file, as for :func:`parameters_of`.
+
+    Raises:
+        ConfigError: the preset cannot be used.
+    """
+    parameters = parameters_of(preset)
+    if model == VCI:
+        return parameters
+    return replace(parameters, max_acceleration=SIM.max_acceleration)
+
+
+def crowd_of(config: RunConfig) -> VciParameters:
+    """Return the parameters of the people of a run.
+
+    Args:
+        config: Configuration of the run.
+
+    Raises:
+        ConfigError: the preset cannot be used.
+    """
+    model = config.crowd.model
+    moving = config.recorded_options.then if model == RECORDED else model
+    return bodies_of(moving, config.crowd.preset)
 
 
 def require_steady_preset(preset: str, time_step: float, where: str) -> None:

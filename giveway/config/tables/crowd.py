@@ -12,6 +12,7 @@ from typing import Annotated, Final, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from giveway.config.option import (
+    DEFAULT_PRESET,
     Displacement,
     Preset,
     Rectangle,
@@ -128,10 +129,11 @@ class CrowdConfig(Section):
         flag="--crowd-model",
     )
     preset: Preset = option(
-        "SIM",
+        DEFAULT_PRESET,
         None,
-        "Parameters of the VCI model: SIM, TABLE2, or a preset file (TOML); fitted to recorded "
-        "people: MIXED, CITR, DUT",
+        "Parameters of the VCI model: MIXED, CITR or DUT (fitted to recorded people), SIM or "
+        "TABLE2 (published), or a preset file (TOML). It is SIM by default if the paper's "
+        "controllers alone drive",
         min_length=1,
     )
     zone: TextOrNumber = option(

@@ -20,7 +20,7 @@ import numpy as np
 
 from giveway.config import RunConfig
 from giveway.config.files.foreign_code import code_hashes
-from giveway.config.files.presets import parameters_of
+from giveway.config.files.presets import crowd_of
 from giveway.cosimulation.assembly import Driven, assemble
 from giveway.cosimulation.counterfactual.crowd_alone import CrowdAlone
 from giveway.cosimulation.counterfactual.follow_up import Beginning, Followed
@@ -146,7 +146,7 @@ def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
     """A hash of all that a crowd without egos depends on."""
     digest = hashlib.sha256()
     settings, crowd = config.crowd, beginning.crowd
-    parameters = parameters_of(settings.preset)
+    parameters = crowd_of(config)
     come_in = settings.flow or settings.recorded
     drawn = (settings, config.seed, beginning.substeps) if come_in else None
     for part in (

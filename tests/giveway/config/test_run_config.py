@@ -173,3 +173,35 @@ def test_a_file_name_that_is_too_long_is_one_line(settings: dict, tmp_path: Path
     with pytest.raises(GivewayError) as refused:
         giveway.run(file)
     assert "\n" not in str(refused.value)
+
+
+def test_people_are_mixed_unless_the_papers_controllers_drive() -> None:
+    def of(**settings) -> str:
+        return RunConfig.model_validate(settings).crowd.preset
+
+    assert of() == of(controller="pid-tuned") == of(ego={"none": True}) == "MIXED"
+    assert of(controller="mpc-paper") == of(controller="pid-paper") == "SIM"
+    assert of(controller="pid", ego={"none": True}) == "SIM"
+    assert of(controller="mpc-paper", crowd={"pedestrians": 3}) == "SIM"
+    assert of(controller="mpc-paper", crowd={"preset": "MIXED"}) == "MIXED"
+    assert of(crowd={"preset": "TABLE2"}) == "TABLE2"
+
+
+def test_egos_with_different_declarations_meet_the_default() -> None:
+    def of(*controllers: str) -> str:
+        egos = [{"controller": one, "ego": {"id": f"ego{i}"}} for i, one in enumerate(controllers)]
+        config = RunConfig.model_validate({"egos": egos})
+        assert {ego.crowd.preset for ego in config.each_ego()} == {config.crowd.preset}
+        return config.crowd.preset
+
+    assert of("mpc-paper", "pid-paper") == "SIM"
+    assert of("mpc-paper", "mpc") == of("mpc", "mpc-paper") == of("mpc") == "MIXED"
+
+
+def test_the_declared_preset_does_not_count_as_set_by_the_user() -> None:
+    paper = RunConfig(controller="mpc-paper")
+    assert paper.model_dump(exclude_unset=True) == {"controller": "mpc-paper"}
+    assert "preset" not in paper.crowd.model_fields_set
+    again = RunConfig.model_validate_json(paper.model_dump_json())
+    assert again == paper
+    assert EgoRunConfig(controller="mpc-paper").crowd.preset == "SIM"

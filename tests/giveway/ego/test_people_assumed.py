@@ -2,17 +2,28 @@
 
 import pytest
 
+from giveway.config import EgoRunConfig
 from giveway.ego.people_assumed import people_at_worst
 from giveway.errors import ConfigError
-from pedestrian_model import SIM
+from pedestrian_model import PRESETS, SIM
 
 
-def test_the_worst_case_is_what_the_preset_allows() -> None:
-    worst = people_at_worst("worst-case", "SIM")
+def worst_case_of(**crowd) -> EgoRunConfig:
+    return EgoRunConfig.model_validate({"crowd": crowd, "safety": {"people": "worst-case"}})
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_worst_case_is_what_the_preset_allows(preset: str) -> None:
+    worst = people_at_worst(worst_case_of(preset=preset))
+    assert worst.acceleration == PRESETS[preset].max_acceleration
+    assert worst.speed == PRESETS[preset].max_speed
+
+
+def test_the_worst_case_of_another_model_is_what_it_allows() -> None:
+    worst = people_at_worst(worst_case_of(preset="MIXED", model="social-force"))
     assert worst.acceleration == SIM.max_acceleration
-    assert worst.speed == SIM.max_speed
 
 
 def test_a_preset_that_is_not_there_is_refused() -> None:
     with pytest.raises(ConfigError, match=r"nowhere\.toml"):
-        people_at_worst("worst-case", "nowhere.toml")
+        people_at_worst(worst_case_of(preset="nowhere.toml"))

@@ -117,3 +117,40 @@ def planned(text):
     from giveway.studies.plan import plan
 
     return plan(parsed(text), "mine.toml")
+
+
+_RIVALS = """
+    name = "rivals"
+    replications = 1
+    [run]
+    crowd.pedestrians = 3
+    [factors]
+    controller = [{controllers}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("controllers", "preset"),
+    [
+        ("'mpc', 'pid-tuned'", "MIXED"),
+        ("'mpc-paper', 'pid-paper'", "SIM"),
+        ("'mpc-paper', 'mpc'", "MIXED"),
+        ("'mpc', 'mpc-paper'", "MIXED"),
+    ],
+)
+def test_rivals_meet_the_same_people(controllers, preset):
+    from giveway.studies.plan import plan
+
+    found = planned(_RIVALS.format(controllers=controllers))
+    assert [cell.config.crowd.preset for cell in found.cells] == [preset, preset]
+    again = plan(found.definition, "again.toml")
+    assert [cell.digest for cell in again.cells] == [cell.digest for cell in found.cells]
+
+
+def test_a_preset_that_a_study_names_counts_for_all():
+    text = _RIVALS.format(controllers="'mpc-paper', 'mpc'")
+    found = planned(text.replace("3\n", "3\n    crowd.preset = 'SIM'\n", 1))
+    assert [cell.config.crowd.preset for cell in found.cells] == ["SIM", "SIM"]
+    varied = planned(text + "    'crowd.preset' = ['CITR', 'TABLE2']\n")
+    presets = [cell.config.crowd.preset for cell in varied.cells]
+    assert presets == ["CITR", "TABLE2", "CITR", "TABLE2"]

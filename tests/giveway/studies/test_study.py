@@ -19,7 +19,8 @@ def test_runs_csv_has_a_row_per_run_and_the_summarys_numbers(small_study):
     assert list(runs["run"]) == [f"c{c}-s{s}" for c in range(1, 5) for s in range(1, 6)]
     import giveway
 
-    settings = {"controller": "pid", "crowd": {"pedestrians": 2}, "seed": 4, "time_limit": 2.0}
+    crowd = {"pedestrians": 2, "preset": "MIXED"}  # as in the runs of the other controller
+    settings = {"controller": "pid", "crowd": crowd, "seed": 4, "time_limit": 2.0}
     alone = giveway.run(settings).summary
     row = runs[runs["run"] == "c4-s4"].iloc[0]
     assert row["controller"] == "pid"

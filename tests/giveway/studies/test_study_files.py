@@ -23,6 +23,12 @@ def test_every_bundled_study_can_be_planned(name):
     planned = plan(read_definition(find_study(name)), name)
     assert len(planned) == len(planned.cells) * planned.definition.replications
     assert len({cell.digest for cell in planned.cells}) == len(planned.cells)
+    people = {"paper": "SIM", "readings": "SIM"}.get(name, "MIXED")
+    for cell in planned.cells:
+        scene = " ".join(level.label for level in cell.cell.levels.values())
+        own = [preset for preset in ("SIM", "TABLE2") if f"{preset} crowd" in scene]
+        own += ["TABLE2"] * ("VCI preset TABLE2" in scene)
+        assert cell.config.crowd.preset == (own or [people])[0], scene
 
 
 @pytest.mark.parametrize("name", bundled_studies())

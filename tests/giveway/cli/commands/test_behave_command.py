@@ -22,7 +22,7 @@ def test_behave_prints_the_ratios_and_writes_tables_and_picture(
     words = ("data", "behave", folder, "--dataset", description)
     assert giveway(*words, "--out", out) == 0
     said = capsys.readouterr().out
-    for text in ("MADE, vci, SIM", "4 people near a vehicle, 1 clip", "mean of the six ratios"):
+    for text in ("MADE, vci, MIXED", "4 people near a vehicle, 1 clip", "mean of the six ratios"):
         assert text in said
     names = {"behaviour.csv", "people.csv", "behaviour.png", "behaviour.svg"}
     assert {path.name for path in out.iterdir()} == names

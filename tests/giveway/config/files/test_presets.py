@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 import giveway
+from giveway.config import RunConfig
 from giveway.config.files.loading import as_layer, load
-from giveway.config.files.presets import parameters_of, preset_text
+from giveway.config.files.presets import bodies_of, crowd_of, parameters_of, preset_text
 from giveway.config.option import PRESET_NAMES
 from giveway.errors import ConfigError
 from giveway.studies.identity import cell_digest, input_hashes
@@ -142,3 +143,22 @@ def test_a_run_refuses_a_preset_by_which_people_tremble(preset, table) -> None:
     file = preset(replace(SIM, destination_gain=5453.0), "shaky.toml")
     with pytest.raises(ConfigError, match=rf"\[{table}\] preset .*shaky.toml: .* = 3.4 > 1"):
         giveway.run({table: {"preset": file}})
+
+
+@pytest.mark.parametrize("name", PRESET_NAMES)
+def test_only_vci_has_the_presets_largest_acceleration(name: str) -> None:
+    assert bodies_of("vci", name) == PRESETS[name]
+    for model in ("social-force", "orca", "jupedsim:SocialForceModel", "mine:People"):
+        expected = replace(PRESETS[name], max_acceleration=SIM.max_acceleration)
+        assert bodies_of(model, name) == expected
+
+
+def test_recorded_people_have_the_limits_of_their_next_model() -> None:
+    recorded = {"model": "recorded", "recorded": [{"name": "a", "path": "a", "dataset": "dut"}]}
+
+    def limit(**options) -> float:
+        config = RunConfig.model_validate({"crowd": recorded, "model_options": options})
+        return crowd_of(config).max_acceleration
+
+    assert limit() == PRESETS["MIXED"].max_acceleration
+    assert limit(then="orca") == SIM.max_acceleration

@@ -56,7 +56,7 @@ def crossing(drive: Drive, zebra: Path, step: float, yielding: bool) -> tuple[Ru
     return drive(
         zebra / f"zebra_{step}.sumocfg",
         ego={"none": True},
-        crowd={"zone": "everywhere"},
+        crowd={"zone": "everywhere", "preset": "SIM"},  # few people of MIXED come before cars
         traffic={"yielding": yielding},
     )
 
