@@ -5,7 +5,7 @@ import giveway
 
 def drive(scenario, seed, **options):
     run = {"scenario": scenario, "seed": seed, "controller": "idm", "controller_options": options}
-    return giveway.run(run, pictures=False)
+    return giveway.run(run | {"crowd.preset": "SIM"}, pictures=False)
 
 
 def test_it_lets_a_crowd_pass_and_drives_on():

@@ -46,7 +46,7 @@ def test_the_table_says_where_it_acted_and_what_the_vehicle_got(run_once: Run) -
 
 
 def test_the_tuned_pid_goes_on_from_the_force_that_acted(run_once: Run) -> None:
-    crowd = {"pedestrians": 30, "two_sided": True}
+    crowd = {"pedestrians": 30, "two_sided": True, "preset": "SIM"}
     ego = run_once(controller="pid-tuned", seed=2, crowd=crowd).ego
     acted = (ego["controller"] == "safety").to_numpy()
     force, moves = ego["force"].to_numpy(), ego["speed"].to_numpy() > 0.0

@@ -272,7 +272,7 @@ def crowded(
     return drive(
         city(0.1),
         ego={"take_over": ("car10",)},
-        crowd={"zone": "everywhere"},
+        crowd={"zone": "everywhere", "preset": "SIM"},
         regulation={"reference_speed": 4.0},  # there for the whole minute
         time_limit=60.0,
     )

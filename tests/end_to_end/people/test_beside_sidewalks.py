@@ -11,9 +11,10 @@ HARD = 3.0  # m/s^2
 def drive(seed, **changes):
     """The first 18 s of a drive through ``crossings``: past the sidewalk before the signals.
 
-    It is told nothing of them, so that it does not slow down for the next green.
+    It is told nothing of them, so that it does not slow down for the next green. People of SIM walk
+    close to the kerb beside cars.
     """
-    run = {"scenario": "crossings", "seed": seed, "time_limit": 18.0}
+    run = {"scenario": "crossings", "seed": seed, "time_limit": 18.0, "crowd.preset": "SIM"}
     return giveway.run(run | {"rules.signal_advice": False} | changes)
 
 

@@ -9,6 +9,7 @@ from support.priority import rules_of
 import giveway
 
 SLOWLY = 4.0  # [m/s] so that both drives come when people are there
+BOLD = {"preset": "SIM"}  # people who come before cars that do not let them pass
 ZEBRA = (58.0, 62.0)  # [m] from where to where along the road (x)
 WAY = (-1.75 - 1.3, -1.75 + 1.3)  # [m] the body's way over it (y), and a body's radius
 
@@ -18,6 +19,7 @@ def in_the_way(priority):
     run = {
         "scenario": "junction",
         "seed": 8,
+        "crowd": BOLD,
         "regulation": {"reference_speed": SLOWLY},
         "rules": rules_of(priority),
         "ego": {"depart_time": 114.0, "depart_position": 10.0, "travel_distance": 55.0},
@@ -51,7 +53,7 @@ def turning(priority):
     regulation = {"reference_speed": SLOWLY}
     rules = rules_of(priority) | {"signal_advice": False}  # it stands before the red light
     run = {"scenario": "junction", "seed": 26, "regulation": regulation, "rules": rules}
-    result = giveway.run(run | {"ego": ego | {"travel_distance": 70.0}})
+    result = giveway.run(run | {"crowd": BOLD, "ego": ego | {"travel_distance": 70.0}})
     ego = result.ego
     onto = ego.time[ego.y <= ARM[1]].iloc[0]
     everybody = result.trajectories

@@ -7,7 +7,7 @@ import giveway
 
 
 def drive(controller="mpc", **perception):
-    run = {"scenario": "shared_space", "seed": 8, "crowd": {"pedestrians": 30}}
+    run = {"scenario": "shared_space", "seed": 8, "crowd": {"pedestrians": 30, "preset": "SIM"}}
     return giveway.run(run | {"controller": controller, "perception": perception}, pictures=False)
 
 

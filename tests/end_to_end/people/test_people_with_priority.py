@@ -35,7 +35,7 @@ def cross(tmp_path_factory):
     (folder / "one.rou.xml").write_text(ROUTES)
     (folder / "one.sumocfg").write_text(CONFIG)
 
-    def run(position, controller="mpc", priority="road"):
+    def run(position, controller="mpc", priority="road", preset="MIXED"):
         ego = {"none": True}
         if position is not None:
             ego = {"route": ["east_out", "far_east_out"], "lane": 1, "depart_time": 1.0}
@@ -46,7 +46,7 @@ def cross(tmp_path_factory):
                 "controller": controller,
                 "regulation": {"reference_speed": 4.0},
                 "rules": rules_of(priority),
-                "crowd": {"zone": "everywhere"},
+                "crowd": {"zone": "everywhere", "preset": preset},
                 "record": {"near": 200.0, "far_period": 0.05},
                 "time_limit": 25.0,
                 "ego": ego,
@@ -70,7 +70,7 @@ def test_she_walks_on_before_an_ego_that_gives_way(cross, controller, position):
 
 
 def test_without_the_law_of_the_road_she_is_pushed_back(cross):
-    pushed = cross(8.0, priority="none")
+    pushed = cross(8.0, priority="none", preset="SIM")
     assert pushed.pushed_back > 0.5
     assert pushed.time > cross(None).time + 2.0
 

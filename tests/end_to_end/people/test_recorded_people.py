@@ -39,7 +39,7 @@ def run(tmp_path: Path, write_clip: Callable, straight_walks: Callable) -> Calla
 
     def make(model: str = "vci", options: dict | None = None, **settings: Any) -> Any:
         entry = {"name": "yard", "path": str(path), "dataset": "citr"} | settings.pop("entry", {})
-        crowd = {"pedestrians": 0, "model": model, "recorded": [entry]}
+        crowd = {"pedestrians": 0, "model": model, "recorded": [entry], "preset": "SIM"}
         base = {"scenario": "shared_space", "controller": "pid-tuned", "model_options": options}
         config = base | {"crowd": crowd, "record": {"near": 500.0}, "model_options": options or {}}
         results = settings.pop("results", None)
@@ -164,6 +164,7 @@ name = "recorded"
 replications = 4
 [run]
 scenario = "recorded"
+crowd.preset = "SIM" # whose people do not sway
 [factors]
 controller = ["mpc", "pid-tuned"]
 "crowd.model" = ["recorded", "vci"]

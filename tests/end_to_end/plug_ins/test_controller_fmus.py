@@ -30,6 +30,7 @@ LIKE_THE_PAPER = {
     "safety.enabled": False,
     "rules": NO_PRIORITY,
     "perception.tracker": False,
+    "crowd.preset": "SIM",
 }
 SHORT: dict[str, Any] = {"time_limit": 3.0, "crowd": {"pedestrians": 3}}
 HEADWAY = """
@@ -90,7 +91,7 @@ def headway(zoo, tmp_path) -> dict[str, Any]:
 def test_our_export_drives_as_our_controller(tmp_path, fmi, controller, seed, pedestrians):
     parameters = ControllerParameters(mpc=controller == "mpc-paper")
     fmu = export_controller(tmp_path / "own.fmu", parameters, fmi_version=fmi)
-    run = {"crowd": {"pedestrians": pedestrians}, "seed": seed}
+    run = {"crowd.pedestrians": pedestrians, "seed": seed}
     ours = giveway.run({**run, "controller": controller}, results=tmp_path / "a", pictures=False)
     theirs = giveway.run(
         {**run, "controller": str(fmu), **LIKE_THE_PAPER}, results=tmp_path / "b", pictures=False
@@ -129,7 +130,7 @@ def test_units_series_and_speeds(zoo, tmp_path):
     settings = {
         "controller": str(zoo.python_controller("3.0")),
         "controller_profile": str(profile),
-        "crowd": {"pedestrians": 20},
+        "crowd": {"pedestrians": 20, "preset": "SIM"},
         "seed": 3,
         "safety": {"enabled": False},
         "time_limit": 12.0,

@@ -13,7 +13,17 @@ import pytest
 
 SEED = 4
 AT = 4.0  # [s] later than anything that is driven before the run
-WORDS = ("run", "shared_space", "--seed", SEED, "--out", "r", "--no-pictures")
+WORDS = (
+    "run",
+    "shared_space",
+    "--seed",
+    SEED,
+    "--crowd-preset",
+    "SIM",
+    "--out",
+    "r",
+    "--no-pictures",
+)
 FAILURES = {
     "segfault": ("1.0", r"SIGSEGV"),
     "exit_0": ("3.0", r"exit\(0\)"),
