@@ -5,11 +5,11 @@
     python benchmarks/tuning/behaviour_tables.py HERMES_FOLDER --dataset hermes --speeds 1.48 0.19
     python benchmarks/tuning/behaviour_tables.py --corridors
 
-The first compares simulated with recorded people as ``giveway data behave`` does, the next two as
-``giveway data corridor`` does, with desired speeds of this mean and deviation. The last one lets
-people walk in periodic corridors, one way and both ways: their speeds beside Weidmann's, and the
-order parameter of lanes. JuPedSim's models are left out if they are not installed (extra
-``jupedsim``), and of the periodic corridors, whose people have images.
+The first compares simulated with recorded people as ``giveway data behave`` does. The next two do
+so in corridors, with desired speeds of this mean and deviation [m/s]. The last one lets people walk
+in periodic corridors, one way and both ways: their speeds beside Weidmann's, and the order
+parameter of lanes. JuPedSim's models are left out if they are not installed (extra ``jupedsim``),
+and of the periodic corridors, whose people have images.
 """
 
 import argparse
@@ -26,7 +26,7 @@ from giveway.recordings import dataset_of, read_recordings
 from giveway.validation.behaviour.comparison import DRAWS, RECORDED, Yardstick, counts_of
 from giveway.validation.behaviour.corridor import DENSITIES, FREE_SPEEDS, walk, weidmann
 from giveway.validation.behaviour.measures import ALL, MEASURES, together
-from giveway.validation.corridors.comparison import compare_in_corridors
+from giveway.validation.corridors import compare_in_corridors
 from pedestrian_model import JUPEDSIM_MODELS, PRESETS
 
 _STEP = 0.05  # Time step [s] in the corridors
@@ -64,10 +64,9 @@ def _counted(counts: object) -> str:
 def in_corridors(folder: Path, dataset: str, speeds: list[float]) -> None:
     """Print a row of speeds and flows for each crowd; those outside of the bar are bold."""
     recordings = read_recordings(folder, dataset_of(dataset))
-    drawn = dict(zip(("desired_speed_mean", "desired_speed_sd"), speeds, strict=True))
     for number, (name, crowd) in enumerate(CROWDS.items()):
-        config = RunConfig.model_validate({"crowd": {**crowd, **drawn}})
-        table = compare_in_corridors(recordings, config).table
+        config = RunConfig.model_validate({"crowd": crowd})
+        table = compare_in_corridors(recordings, config, speeds=tuple(speeds)).table
         if not number:
             print("| |", " | ".join(table["of"]), "| within |")
             print("|---" * (len(table) + 2) + "|")

@@ -33,7 +33,6 @@ def build_data() -> typer.Typer:
     app.add("describe", _describe)
     app.add("measure", _measure)
     app.add("behave", _behave)
-    app.add("corridor", _corridor)
     app.add("scenario", _scenario)
     app.add("compare", _compare)
     return app
@@ -77,30 +76,10 @@ def _behave(
     force: _Force = False,
     quiet: _Quiet = False,
 ) -> None:
-    """Compare how simulated and recorded people behave near the recorded vehicles."""
+    """Compare simulated with recorded people: near recorded vehicles, or in corridors."""
     from giveway.cli.commands.behave_command import behave_command
 
     behave_command(folder, dataset, model, preset, out, force=force, quiet=quiet)
-
-
-def _corridor(
-    folder: _Folder,
-    dataset: _Dataset = None,
-    model: _Model = "vci",
-    preset: _Preset = "MIXED",
-    crowd_desired_speed_mean: Annotated[
-        float, typer.Option(help="Mean desired speed [m/s] of people who are never free.")
-    ] = 1.34,
-    crowd_desired_speed_sd: Annotated[float, typer.Option(help="Its standard deviation.")] = 0.26,
-    out: _Drawn = None,
-    force: _Force = False,
-    quiet: _Quiet = False,
-) -> None:
-    """Compare speed per density, and flow through the exit, of people in recorded corridors."""
-    from giveway.cli.commands.corridor_command import corridor_command
-
-    speeds = crowd_desired_speed_mean, crowd_desired_speed_sd
-    corridor_command(folder, dataset, model, preset, speeds, out, force=force, quiet=quiet)
 
 
 def _scenario(

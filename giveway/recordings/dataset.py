@@ -85,7 +85,7 @@ class LightFile(Section):
 
 
 class Corridor(Section):
-    """The straight corridor in which people walk one way, for ``giveway data corridor``.
+    """The straight corridor in which people walk one way, for ``giveway data behave``.
 
     Places are in giveway's frame: metres, y up.
     """

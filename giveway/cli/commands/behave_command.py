@@ -1,14 +1,18 @@
-"""The command ``giveway data behave``: simulated people compared with recorded ones."""
+"""The command ``giveway data behave``: simulated people compared with recorded ones.
 
+The recordings of a data set with a corridor are compared in it, all others near vehicles.
+"""
+
+from functools import partial
 from pathlib import Path
 
+import pandas as pd
 from rich.console import Console
 from rich.table import Column, Table
 
 from giveway.cli.screen.printing import escape, numbers_of, print_place
 from giveway.cli.screen.recordings import cite, counted, read
 from giveway.config import RunConfig
-from giveway.config.files.layers import Layer, build_config
 from giveway.config.files.presets import parameters_of, require_steady_preset
 from giveway.config.plug_in_names import BUNDLED_MODELS
 from giveway.errors import ConfigError, retold, suggestion
@@ -19,6 +23,8 @@ from giveway.validation.behaviour import Comparison, compare
 from giveway.validation.behaviour.comparison import DRAWS, HALVES, RECORDED, SEED, SIMULATED
 from giveway.validation.behaviour.measures import MEASURES
 from giveway.validation.behaviour.output import FILES, write_behaviour
+from giveway.validation.corridors import BAR, InCorridors, compare_in_corridors
+from giveway.validation.corridors.output import CORRIDOR_FILES, write_corridors
 from pedestrian_model import LONGEST_STEP, PedestrianModelError
 
 
@@ -39,48 +45,58 @@ def behave_command(
     """
     console = Console(quiet=quiet)
     described = dataset_of(dataset)
-    config = config_of(model, preset)
-    if out is not None:
-        check_folder(out, force=force, ours=FILES, writer="giveway data behave")
-    recordings = read(console, folder, described)
-    compile_kernels_once(console)
-    with (
-        counted(console, "Simulating", len(recordings)) as advance,
-        retold(PedestrianModelError, ConfigError),
-    ):
-        found = compare(recordings, config, advance)
-    title = f"{described.name}, {called(model, preset)}"
-    console.print(_distributions(found, title))
-    console.print(_counts(found))
-    cite(console, described)
-    if out is not None:
-        with console.status("Drawing ..."):
-            write_behaviour(found, title, out)
-        print_place(console, "Tables and picture", out)
-
-
-def config_of(model: str, preset: str, **crowd: float) -> RunConfig:
-    """Return the configuration of a crowd that ``--model`` and ``--preset`` name.
-
-    Args:
-        model: Name of a bundled pedestrian model.
-        preset: Preset of VCI.
-        crowd: Other keys of [crowd], by flags of their names.
-
-    Raises:
-        ConfigError: a value cannot be used, or people tremble with the preset.
-    """
     if model not in BUNDLED_MODELS:
         raise ConfigError(f"--model {model}: unknown model; {suggestion(model, BUNDLED_MODELS)}")
     parameters_of(preset)
     require_steady_preset(preset, LONGEST_STEP, "--preset")
-    values = {"crowd": {"model": model, "preset": preset, **crowd}}
-    return build_config([Layer("command line", values, from_flags=True)])
+    if out is not None:
+        ours = FILES | CORRIDOR_FILES
+        check_folder(out, force=force, ours=ours, writer="giveway data behave")
+    config = RunConfig.model_validate({"crowd": {"model": model, "preset": preset}})
+    recordings = read(console, folder, described)
+    compile_kernels_once(console)
+    title = f"{described.name}, {model}" + (f", {preset}" if model == "vci" else "")
+    with (
+        counted(console, "Simulating", len(recordings)) as advance,
+        retold(PedestrianModelError, ConfigError),
+    ):
+        if described.corridor is None:
+            near = compare(recordings, config, advance)
+            tables = [_distributions(near, title), _counts(near)]
+            write = partial(write_behaviour, near, title)
+        else:
+            inside = compare_in_corridors(recordings, config, advance)
+            tables = [_corridors(inside, title)]
+            write = partial(write_corridors, inside, title)
+    for table in tables:
+        console.print(table)
+    cite(console, described)
+    if out is not None:
+        with console.status("Drawing ..."):
+            write(out)
+        print_place(console, "Tables and picture", out)
 
 
-def called(model: str, preset: str) -> str:
-    """Return how titles call a crowd."""
-    return f"{model}, {preset}" if model == "vci" else model
+def _corridors(found: InCorridors, title: str) -> Table:
+    rows, names, free = found.table, found.flows.index, pd.Series(found.free)
+    table = Table(
+        *numbers_of("recorded", "simulated", "difference", f"within {BAR:.0%}"),
+        title=escape(f"{title}: {len(free)} people in {len(names)} corridors"),
+        caption=escape(
+            "mean speed [m/s] per density, flow [1/s] through the exit; people are simulated "
+            f"{DRAWS} times; within {BAR:.0%}: {rows['within_bar'].sum()} of {len(rows)}; "
+            f"people ever free: {free.count()}, at {_number(free.mean(), 2)} ± "
+            f"{_number(free.std(ddof=0), 2)} m/s; recordings left out: {found.read - len(names)}"
+        ),
+    )
+    for row in rows.to_dict("records"):
+        table.add_row(
+            escape(f"{row['measure']}, {row['of']}"),
+            *(_number(row[who], 2) for who in (RECORDED, SIMULATED)),
+            _number(100.0 * row["difference"], 0) + " %",
+            "yes" if row["within_bar"] else "no",
+        )
+    return table
 
 
 def _distributions(found: Comparison, title: str) -> Table:

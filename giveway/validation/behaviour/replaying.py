@@ -90,7 +90,6 @@ class Walks:
         surroundings: Walls.
         left: Function that returns who (m,) has left by their places (m, 2), or None if everybody
             stays until the last instant.
-        room: Distance [m] from others that a place must have to be entered; others wait for it.
     """
 
     desired_speed: Array
@@ -99,7 +98,6 @@ class Walks:
     passages: Array | None = None
     surroundings: Surroundings = OPEN_GROUND
     left: Callable[[Array], NDArray[np.bool_]] | None = None
-    room: float = 0.0
 
 
 def walked(
@@ -123,7 +121,7 @@ def walked(
         PedestrianModelError: a person's state is not finite.
     """
     people, bounds = recording.people, recording.people.bounds
-    first, last = _first(people).copy(), walks.last.copy()
+    first, last = _first(people), walks.last.copy()
     start = np.concatenate([[0], np.cumsum(last - first + 1)])
     position, velocity = np.empty((start[-1], 2)), np.empty((start[-1], 2))
     position[start[:-1]] = people.position[bounds[:-1]]
@@ -141,8 +139,6 @@ def walked(
     crowd = None
     for k in range(int(first.min(initial=recording.frames)), int(last.max(initial=0))):
         there = np.flatnonzero((first <= k) & (k < last))
-        if walks.room:
-            there = _with_room(there, position[start[there] + k - first[there]], first, k, walks)
         rows = start[there] + k - first[there]
         if crowd is None or not np.array_equal(there, now):
             now = roster.person_ids = there
@@ -165,26 +161,6 @@ def walked(
         if walks.left is not None:
             last[there[walks.left(crowd.position)]] = k + 1
     return replace(recording, people=_walked(people, (first, last), start, position, velocity))
-
-
-def _with_room(
-    there: NDArray[np.int64], place: Array, first: NDArray[np.int64], k: int, walks: Walks
-) -> NDArray[np.int64]:
-    """Return the people who are there; who has no room to enter waits for the next instant.
-
-    Args:
-        there: People (m,), with those who want to enter.
-        place: Places (m, 2) [m].
-        first: First instant (n,) of each person, changed for those who wait.
-        k: Instant.
-        walks: Walks of the people.
-    """
-    inside = first[there] < k
-    for i in np.flatnonzero(~inside):
-        apart = np.hypot(*(place[inside] - place[i]).T)
-        inside[i] = apart.min(initial=np.inf) >= walks.room
-    first[there[~inside]] += 1
-    return there[inside]
 
 
 def random_of(

@@ -16,7 +16,6 @@ _PLATE = 0.2  # Thickness [m] of the wall that holds the exit
 _BESIDE = 10.0  # Length [m] of the walls beside entrance and exit
 _BEYOND = 30.0  # Distance [m] that people want to go on behind the exit
 _KEY = re.compile(r"\\\{(width|exit)\\\}|\\\*")
-_FORM = 'right = [0.0, 4.0, 0.0, -4.0], width = 1.8, exit = 1.2, or names = "uo-*-{width}-{exit}"'
 
 
 @dataclass(frozen=True)
@@ -82,18 +81,15 @@ class StraightCorridor:
 
 
 def corridor_of(recording: Recording) -> StraightCorridor | None:
-    """Return the corridor of a recording, or None if its name is not one of a corridor's.
+    """Return the corridor of a recording, or None if it is not in one by its name.
 
     Raises:
-        ConfigError: the data set has no corridor, or its exit is not in it.
+        ConfigError: the corridor is too short, or its exit is not in it.
     """
     dataset = recording.dataset
     described = dataset.corridor
     if described is None:
-        raise ConfigError(
-            f"--dataset {dataset.name}: [corridor] is missing; expected the walls of a description "
-            f"(TOML), like: {_FORM}"
-        )
+        return None
     sizes: dict[str, float] = {}
     if described.names:
         match = re.fullmatch(_KEY.sub(_expression, re.escape(described.names)), recording.name)

@@ -14,7 +14,6 @@ LONGER = 1.5
 """Time that people have, as a share of the recording's."""
 _AHEAD, _BESIDE = 2.5, 0.5  # Distances [m] ahead and beside within which free people see nobody
 _FREE = 0.5  # Time [s] for which somebody must be free to show a desired speed
-_ROOM = 0.3  # Distance [m] from others at which people enter: 99 % of HERMES keep as much
 _BEHIND = 2.0  # Distance [m] behind the exit at which people leave
 
 
@@ -49,7 +48,6 @@ def replayed_in(
         passages,
         corridor.surroundings(),
         lambda position: corridor.along(position) > corridor.length + _BEHIND,
-        _ROOM,
     )
     return walked(recording, config, walks, seed)
 

@@ -54,3 +54,32 @@ def test_an_unknown_model_is_refused(recorded_crossing, capsys) -> None:
     error = capsys.readouterr().err
     assert "--model vcx: unknown model; did you mean 'vci'?" in error
     assert error.count("\n") == 1
+
+
+def test_people_in_a_corridor_are_compared_there(recorded_corridor, tmp_path, capsys) -> None:
+    folder, description = recorded_corridor("walk-200-200")
+    out = tmp_path / "out"
+    words = ("data", "behave", folder, "--dataset", description, "--preset", "MIXED")
+    assert giveway(*words, "--out", out) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    for text in (
+        "MADE, vci, MIXED: 60 people in 1 corridors",
+        "flow, walk-200-200",
+        "people ever free: 2, at 1.25 ± 0.00 m/s; recordings left out: 0",
+        "Nobody 2026",
+    ):
+        assert text in said
+    names = {"corridor.csv", "corridor.png", "corridor.svg"}
+    assert {path.name for path in out.iterdir()} == names
+    table = pd.read_csv(out / "corridor.csv")
+    assert table["recorded"].tolist() == pytest.approx([1.25, 2.03], abs=0.02)
+    assert giveway(*words, "--out", out) == 2
+    assert "--force" in capsys.readouterr().err
+
+
+def test_a_name_of_no_corridor_is_one_line(recorded_corridor, capsys) -> None:
+    folder, description = recorded_corridor("yard")
+    assert giveway("data", "behave", folder, "--dataset", description) == 2
+    error = capsys.readouterr().err
+    assert "0 people in 0 corridors without vehicles, of 1 recordings" in error
+    assert error.count("\n") == 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from support.recorded_corridor import DENSITY, FLOW, SPEED
 
@@ -12,13 +13,10 @@ from giveway.config import RunConfig
 from giveway.errors import DatasetError
 from giveway.recordings import dataset_of, read_recordings
 from giveway.validation.behaviour.replaying import settled
-from giveway.validation.corridors.comparison import Walked, compare_in_corridors, measured
+from giveway.validation.corridors.comparison import InCorridors, compare_in_corridors, measured
 from giveway.validation.corridors.geometry import corridor_of
 
-
-def crowd(speed: float) -> RunConfig:
-    values = {"desired_speed_mean": speed, "desired_speed_sd": 0.0}
-    return RunConfig.model_validate({"crowd": {"model": "constant-velocity", **values}})
+STRAIGHT = RunConfig.model_validate({"crowd": {"model": "constant-velocity"}})
 
 
 @pytest.fixture
@@ -30,17 +28,16 @@ def recordings(recorded_corridor):
 
 def test_density_speed_and_flow_are_those_of_the_recording(recordings) -> None:
     here = settled(recordings[0])
-    found = measured(corridor_of(here), here, here.frames)
-    steady = found.density[10:-5]
-    assert steady == pytest.approx(DENSITY, rel=0.02)
-    assert found.speed == pytest.approx(SPEED, rel=1e-3)
-    assert found.flow == pytest.approx([FLOW], rel=0.01)
+    windows, flow = measured(corridor_of(here), here, here.frames)
+    assert windows["density"].to_numpy()[10:-5] == pytest.approx(DENSITY, rel=0.02)
+    assert windows["speed"].to_numpy() == pytest.approx(SPEED, rel=1e-3)
+    assert flow == pytest.approx(FLOW, rel=0.01)
 
 
 def test_people_of_the_recorded_speed_are_within_the_bar(recordings) -> None:
-    found = compare_in_corridors(recordings, crowd(SPEED), draws=2)
-    assert (found.names, found.left_out, found.people) == (("walk-200-200",), 1, 60)
-    assert found.free == pytest.approx([SPEED, SPEED])
+    found = compare_in_corridors(recordings, STRAIGHT, draws=2, speeds=(SPEED, 0.0))
+    assert (found.read, len(found.free)) == (2, 60)
+    assert found.free[~np.isnan(found.free)] == pytest.approx([SPEED, SPEED])
     table = found.table.set_index("of")
     assert list(table.index) == ["0.5 to 1 /m^2", "walk-200-200"]
     assert table["recorded"].tolist() == pytest.approx([SPEED, FLOW], rel=0.01)
@@ -49,7 +46,7 @@ def test_people_of_the_recorded_speed_are_within_the_bar(recordings) -> None:
 
 
 def test_slower_people_are_outside_of_the_bar(recordings) -> None:
-    table = compare_in_corridors(recordings, crowd(0.8), draws=1).table
+    table = compare_in_corridors(recordings, STRAIGHT, draws=1, speeds=(0.8, 0.0)).table
     speed, flow = table["difference"]
     assert np.isnan(speed)  # they are denser than any recorded second
     assert flow < -0.15
@@ -62,28 +59,34 @@ def test_flow_counts_until_the_end_if_not_all_get_out(recordings) -> None:
     stuck = people.position.copy()
     stuck[people.track >= 30] = 0.5
     jam = replace(here, people=replace(people, position=stuck))
-    whole = measured(corridor_of(here), jam, 1000).flow
-    assert whole == pytest.approx([29 / (1000 / 16.0 - 12.0 / SPEED)], rel=0.02)
+    _, flow = measured(corridor_of(here), jam, 1000)
+    assert flow == pytest.approx(29 / (1000 / 16.0 - 12.0 / SPEED), rel=0.02)
+
+
+def test_flow_is_unknown_if_nobody_gets_out(recordings) -> None:
+    here = settled(recordings[0])
+    stuck = replace(here.people, position=0.5 + 0.0 * here.people.position)
+    assert np.isnan(measured(corridor_of(here), replace(here, people=stuck), 1000)[1])
 
 
 def test_a_bin_with_few_seconds_has_no_speed() -> None:
-    found = Walked(np.array([0.1] * 5 + [0.7] * 4), np.arange(9.0), np.array([1.0]))
-    assert found.speeds(2)[0] == 2.0
-    assert np.isnan(found.speeds(2)[1])
+    windows = pd.DataFrame({"density": [0.1] * 5 + [0.7] * 4, "speed": np.arange(9.0)})
+    flows = pd.DataFrame({"recorded": [2.0], "simulated": [2.1]}, index=["one"])
+    found = InCorridors(1, np.ones(12), windows.assign(who="recorded"), flows)
+    assert found.speeds["recorded"].dropna().to_dict() == {0: 2.0}
+    table = found.table
+    assert table["of"].tolist() == ["0 to 0.5 /m^2", "one"]
+    assert table["within_bar"].tolist() == [False, True]
 
 
-def test_recordings_of_no_corridor_are_refused(recordings) -> None:
-    with pytest.raises(DatasetError, match="none of 1 has a name of a corridor"):
-        compare_in_corridors(recordings[1:], crowd(SPEED))
-
-
-def test_vehicles_in_a_corridor_are_refused(recordings) -> None:
-    here = replace(recordings[0], vehicles=recordings[0].people)
-    with pytest.raises(DatasetError, match="60 vehicles; expected people alone in a corridor"):
-        compare_in_corridors([here], crowd(SPEED))
-
-
-def test_a_handful_of_people_is_refused(recordings) -> None:
-    few = recordings[0].people.only(np.arange(60) < 6)
-    with pytest.raises(DatasetError, match="6 people in corridors; expected at least 10"):
-        compare_in_corridors([replace(recordings[0], people=few)], crowd(SPEED))
+@pytest.mark.parametrize("people", ["none", "few", "beside vehicles"])
+def test_recordings_without_people_in_corridors_are_refused(recordings, people) -> None:
+    corridor, yard = recordings
+    few = corridor.people.only(np.arange(60) < 6)
+    here, said = {
+        "none": (yard, "0 people in 0 corridors"),
+        "few": (replace(corridor, people=few), "6 people in 1 corridors"),
+        "beside vehicles": (replace(corridor, vehicles=few), "0 people in 0 corridors"),
+    }[people]
+    with pytest.raises(DatasetError, match=f"{said} without vehicles, of 1 recordings; expected"):
+        compare_in_corridors([here], STRAIGHT)
