@@ -13,7 +13,7 @@ from pedestrian_model.errors import (
 from pedestrian_model.other_models.jupedsim import JUPEDSIM_MODELS, JuPedSimName, JuPedSimPeople
 from pedestrian_model.other_models.simple import PLAIN_MODELS, PlainModel, PlainName, unmoved
 from pedestrian_model.other_models.stepwise_prediction import StepwisePredictor
-from pedestrian_model.parameters import SIM, TABLE2, VciParameters
+from pedestrian_model.parameters import HELD, SIM, TABLE2, VciParameters
 from pedestrian_model.plug_in import (
     Accelerations,
     Goals,
@@ -34,6 +34,7 @@ from pedestrian_model.vci.prediction import Predictor
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
+    "HELD",
     "JUPEDSIM_MODELS",
     "LONGEST_STEP",
     "OPEN_GROUND",

@@ -172,6 +172,10 @@ def _require(name: str, value: object, expected: _Range) -> None:
 #: The preset for simulations, in which pedestrians who meet head-on never overlap.
 SIM = VciParameters()
 
+#: Acceleration [m/s^2] up to which walls and closed signals hold people who do not accelerate as
+#: much of themselves (ours): that of SIM, for which the wall's force was chosen.
+HELD = SIM.max_acceleration
+
 #: A second published version of the same table, in which each strength has one digit less. It
 #: predicts free walking a little better, but pedestrians who meet head-on pass through each other.
 TABLE2 = replace(

@@ -3,6 +3,7 @@
 from controller import WorstMotion, worst_motion
 from giveway.config import EgoRunConfig
 from giveway.config.files.presets import crowd_of
+from pedestrian_model import HELD
 
 
 def people_at_worst(config: EgoRunConfig) -> WorstMotion:
@@ -15,6 +16,6 @@ def people_at_worst(config: EgoRunConfig) -> WorstMotion:
         ConfigError: the preset cannot be used.
     """
     walking = crowd_of(config)
-    return worst_motion(
-        config.safety.people, WorstMotion(walking.max_acceleration, walking.max_speed)
-    )
+    # walls and closed signals hold people by more than their own acceleration
+    limits = WorstMotion(max(walking.max_acceleration, HELD), walking.max_speed)
+    return worst_motion(config.safety.people, limits)

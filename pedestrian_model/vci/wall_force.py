@@ -7,12 +7,10 @@ from numpy.typing import NDArray
 
 from pedestrian_model._jit import inlined
 from pedestrian_model._mathematics import exponential
+from pedestrian_model.parameters import HELD
 from pedestrian_model.vci.buffers import MOST, PX, PY, WS, WX, WY
 from pedestrian_model.walls import DEPTH, REACH, find_walls
 
-# Acceleration [m/s^2] up to which a wall holds people who do not accelerate as much of themselves
-# (ours): that of SIM, for which the wall's force was chosen.
-_HELD = 5.0
 _LEAST_EXPONENT = -700.0  # least exponent without underflow
 
 
@@ -49,6 +47,6 @@ def add_walls(
         near = A_w * exponential(max(min(-b_w * (s - R), cap), _LEAST_EXPONENT))
         f = (near if s >= 0.0 else 0.0) + k_col * max(0.0, R - s)
         f = f if -DEPTH <= s <= REACH else 0.0
-        most[k] = max(top, min(f, c.m * _HELD))
+        most[k] = max(top, min(f, c.m * HELD))
         f_x[k] += f * n_x[k]
         f_y[k] += f * n_y[k]
