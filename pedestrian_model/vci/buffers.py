@@ -24,8 +24,8 @@ BLOCK = 8
  FX, FY,                  # force from the other pedestrians
  VFX, VFY, S,             # force from the vehicles, signed distance to their contours
  TX, TY, V0, SOFT,        # target, desired speed, [m^2] s_des^2 of the target
- WS, WX, WY,              # signed distance to the nearest wall, its normal
- MOST,                    # largest total force
+ WS, WX, WY,              # signed distance to the nearest wall, its normal (or to a closed line)
+ MOST,                    # largest total force along WX, WY
  NX, NY, NVX, NVY,        # next state
  PRIORITY,                # 0 to 1; filled if anybody has priority
  ROWS) = range(25)

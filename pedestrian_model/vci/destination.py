@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pedestrian_model._jit import inlined
 from pedestrian_model.parameters import HELD
 from pedestrian_model.routes import Routes, heading_for
-from pedestrian_model.vci.buffers import MOST, PX, PY, SOFT, TX, TY, V0, VX, VY
+from pedestrian_model.vci.buffers import MOST, PX, PY, SOFT, TX, TY, V0, VX, VY, WX, WY
 
 # Value [m^2] that replaces s_des^2 for a way-point without a stop; it only avoids 0/0.
 _NO_SLOWING = 1e-12
@@ -57,7 +57,10 @@ def set_targets(
         if stops and at < start[i + 1] - 1:  # a closed signal, and not the end of the route
             x, y = rows[PX, k] - to_x, rows[PY, k] - to_y
             v_x, v_y = rows[VX, k], rows[VY, k]
-            most[k] = max(most[k], c.m * _braking(x, y, v_x, v_y, routes.passage[at]))
+            needed = c.m * _braking(x, y, v_x, v_y, routes.passage[at])
+            if needed > most[k]:  # it is held against its velocity, and no more by a wall
+                most[k], speed = needed, math.sqrt(v_x * v_x + v_y * v_y)
+                rows[WX, k], rows[WY, k] = -v_x / speed, -v_y / speed
 
 
 @inlined

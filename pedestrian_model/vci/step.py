@@ -31,6 +31,8 @@ from pedestrian_model.vci.buffers import (
     VFY,
     VX,
     VY,
+    WX,
+    WY,
     Scratch,
 )
 from pedestrian_model.vci.destination import set_targets
@@ -110,7 +112,8 @@ def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
     n is a multiple of the block. Results of dummies are never read.
     """
     m, k_des, F_2, inverse_F = c.m, c.k_des, c.F_2, c.inverse_F
-    most, v_max = rows[MOST], c.v_max
+    top, most, v_max = c.m * c.a_max, rows[MOST], c.v_max
+    hold_x, hold_y = rows[WX], rows[WY]
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
     fx, fy, vfx, vfy = rows[FX], rows[FY], rows[VFX], rows[VFY]
     to_x, to_y, v0, s_des_2 = rows[TX], rows[TY], rows[V0], rows[SOFT]
@@ -125,10 +128,18 @@ def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
         drive = beta * k_des
         F_x = fx[k] + vfx[k] + drive * fma(pace, dx, -vx[k])
         F_y = fy[k] + vfy[k] + drive * fma(pace, dy, -vy[k])
-        # The force is limited to m a_max, or to what a wall holds with.
+        # The force is limited to m a_max. A wall or a closed signal raises the limit in the
+        # direction in which it holds, and not beside it: neighbours would make people tremble.
         F = math.sqrt(fma(F_x, F_x, F_y * F_y))
-        scale = most[k] / F if most[k] < F else 1.0
-        a_x, a_y = F_x * scale / m, F_y * scale / m
+        scale = top / F if top < F else 1.0
+        held = most[k] > top
+        along = F_x * hold_x[k] + F_y * hold_y[k] if held else 0.0
+        room = math.sqrt(most[k] * most[k] - top * top) if held else 0.0
+        bounded = min(max(along, -room), room)
+        more = bounded - along * scale if abs(bounded) > abs(along) * scale else 0.0
+        F_x = F_x * scale + more * hold_x[k] if held else F_x * scale
+        F_y = F_y * scale + more * hold_y[k] if held else F_y * scale
+        a_x, a_y = F_x / m, F_y / m
         # The speed at the end of the step is limited to v_max.
         end_x, end_y = fma(a_x, dt, vx[k]), fma(a_y, dt, vy[k])
         speed = math.sqrt(fma(end_x, end_x, end_y * end_y))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pedestrian_model import PRESETS, Crowd, CrowdModel, Surroundings, Vehicles
+from pedestrian_model import PRESETS, Crowd, CrowdModel, Surroundings, Vehicles, Walls
 
 STEP = 0.05
 LINE, END = 0.0, 10.0  # [m] the kerb, and the end of the route
@@ -47,3 +47,19 @@ def test_who_waits_stands_at_the_line(preset: str) -> None:
 @pytest.mark.parametrize("preset", PRESETS)
 def test_an_open_signal_holds_nobody(preset: str) -> None:
     assert walk(preset, 1.4, -3.0, closed=False).max() > END - 0.5
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_wall_holds_people_in_its_own_direction_only(preset: str) -> None:
+    row = [0.6 * i for i in range(6)]
+    crowd = Crowd.create(
+        [[x, -2.0] for x in row], [[0.0, 1.4]] * 6, [1.4] * 6, [[(x, 10.0)] for x in row]
+    )
+    surroundings = Surroundings(walls=Walls.create([[50.0, 0.0, -50.0, 0.0]]))
+    model, before = CrowdModel(PRESETS[preset], STEP), crowd.velocity.copy()
+    for _ in range(200):
+        model.advance(crowd, Vehicles.empty(), surroundings)
+        aside = np.abs(crowd.velocity - before)[:, 0] / STEP
+        assert aside.max() <= PRESETS[preset].max_acceleration + 1e-9
+        before = crowd.velocity.copy()
+    assert crowd.position[:, 1].max() < 0.0
