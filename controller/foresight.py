@@ -61,9 +61,10 @@ class Evaluation(NamedTuple):
 
     Attributes:
         gap: Distances (N,) [m] to the closest person in front; inf without one.
-        conflicts: Numbers (N,) of persons whose time to collision is below the conflict time.
         threat_free: Threat-free speeds (N,) [m/s], up to which no person could force an emergency
             stop by any motion they are capable of; inf if the manoeuvre's speed is threat-free.
+        passing: Passing speeds (N,) [m/s]: speeds at which drivers pass people at the predicted
+            clearances; inf if the manoeuvre is no faster.
         later_crossings: Later crossings (n, 4), of people on the ego's path beyond the horizon:
             distance [m] ahead of the front at the horizon's end, speed [m/s] along the path, and
             the times [s] after the horizon's end at which they enter and leave the path; they leave
@@ -71,8 +72,8 @@ class Evaluation(NamedTuple):
     """
 
     gap: Array
-    conflicts: Array
     threat_free: Array
+    passing: Array
     later_crossings: Array = np.empty((0, 4))  # shared default that is never written
 
 

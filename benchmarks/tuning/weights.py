@@ -33,9 +33,8 @@ SCENES: dict[str, dict[str, Any]] = {
 }
 SAVING = tuple(SCENES)[:5]
 RANGES = {
-    "conflict_weight": (0.4, 2.5),
-    "nearness_weight": (2.0, 9.0),
-    "minimum_distance": (0.3, 0.8),
+    "precaution_weight": (2.0, 30.0),
+    "minimum_distance": (0.5, 1.5),
     "threat_weight": (0.5, 3.0),
     "later_weight": (0.7, 1.3),
     "horizon": (2.0, 3.0),

@@ -5,12 +5,11 @@ from typing import Any
 import numpy as np
 
 from controller._jit import Array, inner, kernel
+from controller.driving_constants import COMFORTABLE
 from controller.planning.cost_to_go import time_to_go
 from controller.planning.parameters import Weights
 
 _BLOCKED = 2.0  # time [s] beyond the horizon for which a manoeuvre still blocks a keep-clear zone
-# Speed [m/s], v_r of Yang & Özgüner 2019, above which the weight of a conflict grows with the cube
-_SHARED = 4.0
 _CLEAR = 0.3  # tolerance [m]: a keep-clear zone counts as left this far before its end
 
 
@@ -33,8 +32,8 @@ def cost(
 
     Args:
         manoeuvre: Distances [m], speeds [m/s] and accelerations [m/s^2], (N + 1,) each.
-        evaluation: Gaps [m] to the closest person in front, persons in conflict, and threat-free
-            speeds [m/s] at steps 1 ... N, (N,) each, and later crossings, (n, 4).
+        evaluation: Gaps [m] to the closest person in front, threat-free and passing speeds [m/s]
+            at steps 1 ... N, (N,) each, and later crossings, (n, 4).
         allowed: Distances (N,) [m] that may be driven until these steps, by vehicles and lights.
         wanted: Speed [m/s] that lost time refers to.
         time_step: Control step [s].
@@ -45,14 +44,14 @@ def cost(
         distance [m].
     """
     distance, speeds, accelerations = manoeuvre
-    gap, conflicts, threat_free, later_crossings = evaluation
+    gap, threat_free, passing, later_crossings = evaluation
     own = own_cost(speeds, accelerations, wanted, time_step, weights)
     own += later_cost(
         later_crossings, distance[-1], speeds[-1], wanted, allowed, time_step, weights
     )
     so_far = 0.0, 0.0
     for i in range(len(gap)):
-        beyond, people = distance[i + 1] - allowed[i], (gap[i], conflicts[i], threat_free[i])
+        beyond, people = distance[i + 1] - allowed[i], (gap[i], threat_free[i], passing[i])
         so_far = add_cost_of_others(so_far, speeds[i + 1], people, beyond, weights)
     others, missing = so_far
     return own + time_step * others, time_step * others, missing
@@ -151,25 +150,22 @@ def add_cost_of_others(
         so_far: Sum of the cost rate over the steps before, and their largest missing stopping
             distance [m].
         speed: Speed of the manoeuvre at this step [m/s].
-        people: Gap [m] to the closest person in front, number of persons in conflict, and
-            threat-free speed [m/s].
+        people: Gap [m] to the closest person in front, threat-free and passing speed [m/s].
         beyond: Distance [m] beyond what may be driven; negative if less is driven.
         weights: Fields of :class:`Weights`.
 
     Returns:
         Sum and largest missing stopping distance, both with this step.
     """
-    (others, missing), (gap, conflicts, threat_free), w = so_far, people, Weights(*weights)
-    share = speed / w.reference_speed
-    counted = min(conflicts, 1.0) + w.growth * max(conflicts - 1.0, 0.0)
-    others += w.conflict * counted * np.sqrt(share) * max(1.0, speed / _SHARED) ** 3
+    (others, missing), (gap, threat_free, passing), w = so_far, people, Weights(*weights)
     others += w.threat * max(0.0, speed - threat_free) / w.reference_speed
-    if gap < w.safe_distance:
-        others += w.nearness * (1.0 - max(gap, 0.0) / w.safe_distance) * share
+    if gap < np.inf:
+        passing = min(passing, np.sqrt(2.0 * COMFORTABLE * max(0.0, gap - w.minimum_distance)))
         lacking = stopping_need(speed, w) - gap
         if lacking > 0.0 and speed > 0.0:
-            others += w.closeness * lacking * share
+            others += w.closeness * lacking * speed / w.reference_speed
             missing = max(missing, lacking)
+    others += w.precaution * max(0.0, speed - passing) / w.reference_speed
     if beyond > 0.0:
         others += w.closeness * beyond
         missing = max(missing, beyond)

@@ -49,7 +49,7 @@ def follow(
         the plan; whether a stop stays possible if the last speed is kept beyond the plan.
     """
     speed, before, force, fastest = state
-    best, (gap, _, threat_free), _ = chosen
+    best, (gap, threat_free, _), _ = chosen
     soon, gentle, weights = rules
     allowed, lane_speeds, room = bounds
     nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
@@ -145,10 +145,10 @@ def missing_of(
     weights: tuple[Any, ...],
 ) -> float:
     """The largest stopping distance [m] that a plan lacks if people move as for the manoeuvre."""
-    gap, conflicts, threat_free = evaluation
+    gap, threat_free, passing = evaluation
     so_far = 0.0, 0.0
     for i in range(len(gap)):
-        people = gap[i] + best[0][i + 1] - plan[0][i + 1], conflicts[i], threat_free[i]
+        people = gap[i] + best[0][i + 1] - plan[0][i + 1], threat_free[i], passing[i]
         beyond = plan[0][i + 1] - allowed[i]
         so_far = add_cost_of_others(so_far, plan[1][i + 1], people, beyond, weights)
     return so_far[1]

@@ -43,7 +43,8 @@ def aim(
         for k in range(count):
             wanted, v, a = goals[k, 0], speeds[k, i], asked_for[k]
             if wanted > 0.0 or v > fastest:
-                goal = min(wanted, max((fastest - v) / _EASING, -FIRM))
+                end = min(goals[k, 1], fastest) if wanted > 0.0 else fastest
+                goal = min(wanted, max((end - v) / _EASING, -FIRM))
             else:
                 goal = max(wanted, min(0.0, (goals[k, 1] - v) / _EASING))
             a += min(max(goal - a, -most), most)

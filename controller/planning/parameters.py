@@ -14,7 +14,7 @@ from controller.defaults import (
     SAFE_DISTANCE,
     SPEED_MAX,
 )
-from controller.driving_constants import FIRM
+from controller.driving_constants import AT_REST, FIRM
 from controller.parameters import require, require_not_negative, require_positive
 
 
@@ -27,20 +27,18 @@ class ManoeuvreParameters:
     """
 
     # accelerations [m/s^2] that the manoeuvres aim at
-    accelerations: tuple[float, ...] = (2.5, 0.0, -1.5, -2.5, -2.5, -2.5, -5.0)
-    # shares of v_r at which the braking of these manoeuvres ends
-    slowest: tuple[float, ...] = (0.0, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)
+    accelerations: tuple[float, ...] = (2.5, 1.5, 1.5, 0.0, -1.5, -2.5, -2.5, -2.5, -5.0)
+    # shares of v_r at which these manoeuvres end
+    slowest: tuple[float, ...] = (1.0, 0.6, 0.35, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)
     jerk: float = 8.0  # jerk [m/s^3] with which accelerations change
     deceleration: float = 6.0  # deceleration b [m/s^2] with which a stop stays possible
-    minimum_distance: float = 0.4  # distance [m] to a person in front at standstill
+    minimum_distance: float = AT_REST  # distance [m] to a person in front at standstill
     headway: float = 0.1  # additional distance per speed [s]
     time_weight: float = 1.0  # weight of the share of the reference speed that is lost
     acceleration_weight: float = 0.05  # weight of the squared acceleration [(m/s^2)^2]
-    nearness_weight: float = 7.0  # weight of the missing share of d_safe, times v / v_r
     closeness_weight: float = 100.0  # weight of the missing stopping distance [m], times v / v_r
-    conflict_weight: float = 0.8  # weight of a person in conflict, times sqrt(v / v_r)
-    conflict_growth: float = 0.5  # share of this weight for each further person in conflict
     threat_weight: float = 1.5  # weight of the speed above the threat-free one, over v_r
+    precaution_weight: float = 10.0  # weight of the speed above the passing one, over v_r
     final_weight: float = 1.3  # weight [s] of the missing share of speed at the horizon's end
     later_weight: float = 0.8  # weight of the time that is lost beyond the horizon
     persistence: float = 0.02  # cost [s] by which another manoeuvre must beat the last plan
@@ -69,11 +67,9 @@ class ManoeuvreParameters:
 _WEIGHTS = (
     "time_weight",
     "acceleration_weight",
-    "nearness_weight",
     "closeness_weight",
-    "conflict_weight",
-    "conflict_growth",
     "threat_weight",
+    "precaution_weight",
     "final_weight",
     "later_weight",
     "persistence",
@@ -82,14 +78,10 @@ _WEIGHTS = (
 
 StyleName = Literal["careful", "normal", "assertive"]
 
-#: Parameters of :class:`ManoeuvreParameters` by driving style: points on the Pareto front of the
-#: ego's time against risk and people's delay, found by paired runs (docs/controllers.md).
-STYLES: Final[Mapping[StyleName, Mapping[str, float]]] = MappingProxyType(
-    {
-        "careful": {"conflict_weight": 1.6, "nearness_weight": 10.0, "minimum_distance": 0.8},
-        "normal": {"conflict_weight": 0.8, "nearness_weight": 7.0, "minimum_distance": 0.4},
-        "assertive": {"conflict_weight": 0.4, "nearness_weight": 3.5, "minimum_distance": 0.4},
-    }
+#: Precaution weight by driving style: points on the Pareto front of the ego's time against close
+#: passes and people's delay (docs/controllers.md).
+STYLES: Final[Mapping[StyleName, float]] = MappingProxyType(
+    {"careful": 20.0, "normal": 10.0, "assertive": 5.0}
 )
 
 
@@ -150,11 +142,9 @@ class Weights(NamedTuple):
     deceleration: float
     time: float
     acceleration: float
-    nearness: float
     closeness: float
-    conflict: float
-    growth: float
     threat: float
+    precaution: float
     final: float
     later: float
 
@@ -169,11 +159,9 @@ class Weights(NamedTuple):
             m.deceleration,
             m.time_weight,
             m.acceleration_weight,
-            m.nearness_weight,
             m.closeness_weight,
-            m.conflict_weight,
-            m.conflict_growth,
             m.threat_weight,
+            m.precaution_weight,
             m.final_weight,
             m.later_weight,
         )

@@ -149,7 +149,7 @@ class Planner:
             name: Name of the chosen manoeuvre.
         """
         search, plan, to = self._search, self._plan, self._to
-        evaluation = (search.gap, search.conflicts, search.threat_free)
+        evaluation = (search.gap, search.threat_free, search.passing)
         chosen = search.best, evaluation, search.missing
         lane_speeds = self._any_speed if road.lane_speeds is None else road.lane_speeds
         bounds = road.allowed, lane_speeds, self._corridor

@@ -33,8 +33,8 @@ class Search:
         best: Distance, speed and acceleration of the manoeuvre of least cost. This and what
             follows is valid until the next search.
         gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Evaluation`.
-        conflicts: Persons in conflict (N,), as in :class:`Evaluation`.
         threat_free: Threat-free speeds (N,) [m/s], as in :class:`Evaluation`.
+        passing: Passing speeds (N,) [m/s], as in :class:`Evaluation`.
         missing: Largest part [m] of the stopping distance for which it has no room.
         tried: Number of manoeuvres that were compared.
     """
@@ -47,10 +47,10 @@ class Search:
         # Lost time refers to at least half of v_r, also where a bend or a light allows less.
         self._slowest = 0.5 * v_r
         self._kinds = [
-            (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
+            (a, share * v_r if a <= 0.0 or share < 1.0 else inf) for a, share in zip(m.accelerations, m.slowest, strict=True)
         ]
         self._names = [
-            "drive on" if a > 0.0 else f"{a:+g} m/s^2 to {least:g} m/s" for a, least in self._kinds
+            "drive on" if k == 0 else f"{a:+g} m/s^2 to {least:g} m/s" for k, (a, least) in enumerate(self._kinds)
         ]
         self._names += ["up to the end", "as planned"]
         self._goals = np.array(self._kinds)
@@ -72,8 +72,8 @@ class Search:
         self._trials = Trials.empty(count, N, penalty.copy())
         self._motions = (self._trials.distance, self._trials.speed, self._trials.acceleration)
         self._each = [self._trials.of(trial) for trial in range(count)]
-        self.gap, self.conflicts, self.threat_free = np.full(N, inf), np.zeros(N), np.full(N, inf)
-        self._free, self._nobody = np.full(N, inf), np.zeros(N)
+        self.gap, self.threat_free, self.passing = np.full((3, N), inf)
+        self._free = np.full(N, inf)
         self._take(_DRIVE_ON)
         self.reset()
 
@@ -187,7 +187,7 @@ class Search:
         self.tried, self.missing = result.tried, result.missing
         if result.best >= 0:
             self._take(result.best)
-            self.gap, self.conflicts, self.threat_free, _ = result.evaluation
+            self.gap, self.threat_free, self.passing, _ = result.evaluation
         return bool(result.clear)
 
     def _one_by_one(
@@ -208,7 +208,7 @@ class Search:
             self.tried += len(trials)
             for trial in trials:
                 manoeuvre = self._trials.of(trial)
-                evaluation = Evaluation(self._free, self._nobody, self._free)
+                evaluation = Evaluation(self._free, self._free, self._free)
                 if foresight is not None:
                     evaluation = foresight.evaluate(Manoeuvre(*manoeuvre))
                 whole, disturbed, missing = cost(
@@ -223,7 +223,7 @@ class Search:
                 if whole < lowest:
                     lowest, self.missing = whole, missing
                     self._take(trial)
-                    self.gap, self.conflicts, self.threat_free = (a.copy() for a in evaluation[:3])
+                    self.gap, self.threat_free, self.passing = (a.copy() for a in evaluation[:3])
                     if foresight is not None:
                         foresight.prefer()
                 if probe and disturbed <= 0.0 and trial == batches.first[0]:

@@ -53,8 +53,6 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
             "style",
             "effort_weight",
             "jerk_weight",
-            "conflict_weight",
-            "nearness_weight",
             "threat_weight",
             "later_weight",
             "minimum_distance",
@@ -87,6 +85,12 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("perception", "signal_plans"): ("rules", "signal_advice"),
     ("planner", "terminal"): "leave it out: it is always off",
     ("planner", "block_growth"): "leave it out: it is always 0.25",
+    **{
+        (table, name): "write [controller_options] precaution_weight (--set precaution_weight=10), "
+        "or leave it out"
+        for table in ("planner", "controller_options")
+        for name in ("conflict_weight", "nearness_weight")
+    },
 }
 """Each refused key: the key to write instead, or a sentence that says what to do."""
 

@@ -114,12 +114,10 @@ def manoeuvres_of(own: PlannerOptions, margin: float = 0.0) -> ManoeuvreParamete
         own: Options of the planner.
         margin: Distance [m] kept to people for the errors of the vehicle's model.
     """
-    weighed = {
-        name: usual if getattr(own, name) is None else getattr(own, name)
-        for name, usual in STYLES[own.style].items()
-    }
-    weighed["minimum_distance"] += margin
-    return filled(ManoeuvreParameters, own, **weighed)
+    usual = STYLES[own.style]
+    weight = usual if own.precaution_weight is None else own.precaution_weight
+    distance = own.minimum_distance + margin
+    return filled(ManoeuvreParameters, own, precaution_weight=weight, minimum_distance=distance)
 
 
 def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:

@@ -16,7 +16,7 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
     """Return the study of all combinations of some options' values.
 
     Args:
-        variations: Texts like ``controller_options.conflict_weight=0.3,0.6``.
+        variations: Texts like ``controller_options.precaution_weight=5,20``.
         settings: TOML file with the other settings of every run, or None for giveway's defaults.
 
     Raises:
@@ -63,7 +63,7 @@ def _parsed(variation: str) -> tuple[str, list[Any]]:
     if not equals or not name.strip() or len(values) < 2:
         raise ConfigError(
             f"--vary {variation}: expected an option and at least two values, like "
-            "controller_options.conflict_weight=0.3,0.6"
+            "controller_options.precaution_weight=5,20"
         )
     return name.strip(), values
 

@@ -184,7 +184,7 @@ class PlannerOptions(Section):
         "normal",
         None,
         "Driving style, careful, normal or assertive: how much delay the ego accepts for people's "
-        "sake. It sets two weights and a distance",
+        "sake. It sets precaution_weight",
         flag="--style",
     )
     effort_weight: float = option(
@@ -203,20 +203,11 @@ class PlannerOptions(Section):
         le=100,
         because="with a larger weight, a plan depends on this term alone",
     )
-    conflict_weight: float | None = option(
+    precaution_weight: float | None = option(
         None,
         None,
-        "Weight of people less than 1.5 s from a collision: seconds of delay for one such "
-        "person-second at v_r. By default the style sets it: 1.6, 0.8 or 0.4",
-        ge=0,
-        le=1e3,
-        because="with a larger weight, a plan depends on this term alone",
-    )
-    nearness_weight: float | None = option(
-        None,
-        None,
-        "Weight of nearness: seconds of delay for one second at v_r right before a person, 0 at "
-        "d_safe. By default the style sets it: 10, 7 or 3.5",
+        "Weight of precaution: seconds of delay for one second at v_r where a person is so near "
+        "that drivers would stand. By default the style sets it: 20, 10 or 5",
         ge=0,
         le=1e3,
         because="with a larger weight, a plan depends on this term alone",
@@ -238,11 +229,10 @@ class PlannerOptions(Section):
         le=1e3,
         because="with a larger weight, a plan depends on this term alone",
     )
-    minimum_distance: float | None = option(
-        None,
+    minimum_distance: float = option(
+        1.1,
         "m",
-        "Least distance to a person in front, at standstill. By default the style sets it: 0.8, "
-        "0.4 or 0.4",
+        "Least distance to the middle of a person in front, at standstill",
         ge=0,
         le=100,
         least=MILLIMETRE,

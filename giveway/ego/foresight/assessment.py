@@ -1,10 +1,10 @@
-"""The assessment of a manoeuvre in a predicted crowd: gaps, conflicts, threat-free speeds."""
+"""The assessment of a manoeuvre in a predicted crowd: gaps, threat-free and passing speeds."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from giveway.ego.foresight.threats import Alarm, conflicts_and_threat_free
+from giveway.ego.foresight.threats import Alarm, threat_free_and_passing
 from giveway.ego.perception.corridor import closest_in_front
 from giveway.geometry.kernel import Array, inlined, kernel
 from giveway.geometry.passage import window
@@ -19,7 +19,6 @@ class View(NamedTuple):
     length: float  # length of the body [m]
     width: float  # width of the body [m]
     half_width: float  # half width of the corridor [m]
-    conflict_time: float  # time to collision [s] below which two bodies are in conflict
     time_step: float  # time step of a manoeuvre [s]
     every: float  # number of a manoeuvre's steps in one prediction step of the crowd
 
@@ -33,9 +32,9 @@ def assess(
     sight: tuple[tuple[float, ...], tuple[Any, ...]],
     evaluation: tuple[Array, Array, Array],
 ) -> None:
-    """Fill gaps in front, persons on a collision course, and threat-free speeds at steps 1 ... N.
+    """Fill gaps in front, threat-free and passing speeds at steps 1 ... N.
 
-    Conflicts and threat-free speeds are computed at the first step of each prediction interval and
+    Threat-free and passing speeds are computed at the first step of each prediction interval and
     held to its end. Between predictions people move along straight lines.
 
     Args:
@@ -44,7 +43,7 @@ def assess(
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
         sight: Fields of a :class:`View` and of an :class:`Alarm`.
-        evaluation: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
+        evaluation: Gaps [m], threat-free and passing speeds [m/s], (N,) each, filled.
     """
     now, predicted = crowd
     between = np.empty((now.shape[0], 2))
@@ -87,11 +86,11 @@ def assess_step(
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
         sight: Fields of a :class:`View` and of an :class:`Alarm`.
-        evaluation: Gaps [m], persons in conflict and threat-free speeds [m/s], (N,) each, filled.
+        evaluation: Gaps [m], threat-free and passing speeds [m/s], (N,) each, filled.
     """
     (vertices, stations, headings), (before, after, between) = path, people
     (j, predicted), (distance, speeds) = which, manoeuvre
-    gap, conflicts, threat_free = evaluation
+    gap, threat_free, passing = evaluation
     view, alarm = sight
     v, limits = View(*view), Alarm(*alarm)
     length, time_step, every = v.length, v.time_step, int(v.every)
@@ -108,7 +107,7 @@ def assess_step(
         )
         gap[i] = closest - at
         if i > begin:
-            conflicts[i], threat_free[i] = conflicts[begin], threat_free[begin]
+            threat_free[i], passing[i] = threat_free[begin], passing[begin]
             continue
         x, y, heading = body_pose(vertices, stations, headings, at, length)
         stop = at + speeds[i + 1] * (time_step + speeds[i + 1] / (2.0 * limits.braking))
@@ -116,11 +115,11 @@ def assess_step(
         if segment_at(stations, at - length) != segment_at(stations, stop) and stop > at:
             x_s, y_s, _ = body_pose(vertices, stations, headings, stop, 0.0)
             braking_heading = np.arctan2(y_s - y, x_s - x)
-        conflicts[i], threat_free[i] = conflicts_and_threat_free(
+        threat_free[i], passing[i] = threat_free_and_passing(
             (between, before, after),
             (x, y, heading, braking_heading),
             speeds[i + 1],
             (length / 2.0, v.width / 2.0),
-            (every * time_step, v.conflict_time, time_step),
+            (every * time_step, time_step, (i + 1) * time_step),
             limits,
         )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from controller.kernels import add_cost_of_others, later_cost, own_cost
 from giveway.ego.foresight.assessment import View, assess_step, interval_of
-from giveway.ego.foresight.intent import step_yielding
+from giveway.ego.foresight.intent import keep_on, step_yielding
 from giveway.ego.foresight.later_crossings import fill_later_crossings
 from giveway.ego.foresight.workspace import Arrays
 from giveway.ego.perception.corridor import set_pose
@@ -242,6 +242,7 @@ def advance(
                 return bad
         if j > 0:  # step 0 is the walking model's: intent estimation compares people with it
             step_yielding(law[-1], 4 * (here - n), state, scene, x, v)
+        keep_on(law[-1], j, people, x, v)
         for p in range(n):
             base = 4 * (here + p)
             state[base], state[base + 1] = x[p, 0], x[p, 1]

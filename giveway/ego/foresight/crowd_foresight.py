@@ -20,7 +20,6 @@ from giveway.ego.perception.kerbs import NO_KERBS, kerb_lines
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
-from giveway.metrics.conflicts import CRITICAL_TTC
 from pedestrian_model import (
     LONGEST_STEP,
     Crowd,
@@ -73,8 +72,6 @@ class EgoAssumptions(NamedTuple):
     clearance: float  # distance [m] that the safety layer keeps to pedestrians' bodies
     braking: float  # largest deceleration [m/s^2]
     worst: WorstMotion | None  # motion that the safety layer assumes; None without such a layer
-    # Time to collision [s] below which a person is in conflict with the ego (FHWA-HRT-08-051)
-    conflict_time: float = CRITICAL_TTC
 
 
 class CrowdForesight:
@@ -105,9 +102,9 @@ class CrowdForesight:
         every = round(predictor.time_step / time_step)
         self._predictor, self._every = predictor, every
         self._way = path.vertices, path.stations, path.headings
-        shape, half_width, clearance, braking, worst, conflict_time = ego
+        shape, half_width, clearance, braking, worst = ego
         self._view = tuple(
-            View(shape.length, shape.width, half_width, conflict_time, time_step, every)
+            View(shape.length, shape.width, half_width, time_step, every)
         )
         walking = predictor.parameters
         able = worst or WorstMotion(walking.max_acceleration, walking.max_speed)
@@ -125,7 +122,7 @@ class CrowdForesight:
         self._estimator, self._soon = estimator, np.empty(0)
         self._length = shape.length
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
-        self._evaluation = Evaluation(np.empty(N), np.zeros(N), np.zeros(N))
+        self._evaluation = Evaluation(*np.zeros((3, N)))
         self._predicted = np.empty((M, 0, 2))
         self._best = np.empty((M, 0, 2))
         self._poses = np.empty((M, 0, 7))
@@ -170,7 +167,7 @@ class CrowdForesight:
             self._yielding, self._soon = self._estimator.yielding, self._soon[:0]
         else:
             self._alternative = None
-            self._yielding = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
+            self._yielding = np.zeros(len(pedestrians), dtype=np.int8), 0.0, 1.0, 0.0
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front = ego
         self._copied, self._preferred = False, False
@@ -195,14 +192,13 @@ class CrowdForesight:
     def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
         """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
         self._predict(manoeuvre.distance, manoeuvre.speed)
-        gap, conflicts, threat_free, _ = self._evaluation
         assess(
             self._way,
             (self._pedestrians.position, self._predicted),
             self._front,
             (manoeuvre.distance, manoeuvre.speed),
             (self._view, self._alarm),
-            (gap, conflicts, threat_free),
+            self._evaluation[:3],
         )
         wishes = self._predictor.desired_velocities(self._pedestrians, self._surroundings)
         later_crossings = np.empty((len(wishes), 4))

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.foresight.later_crossings import abreast
+from giveway.ego.foresight.workspace import Arrays
 from giveway.geometry.kernel import Array, inlined, inner, kernel
 from giveway.geometry.path import EgoPath, segment_at
 from pedestrian_model import Crowd, Predictor
@@ -26,15 +27,20 @@ from pedestrian_model import Crowd, Predictor
 _ERROR = 0.1  # standard deviation [m/s] of a speed that is predicted one step ahead
 _PRIOR = -3.0  # log odds that a new person yields: 1 in 21
 _SUREST = 4.0  # bound of the log odds, so that people may change their minds
+_SIGHT = 60.0  # distance [m] ahead of the front, within which people may stand on the way
 _REACH = 25.0  # distance [m] ahead of the front, within which intent is estimated
 _ASIDE = 6.0  # distance [m] to the corridor's edge, beyond which people do not slow down for it
 _TOWARDS = 0.3  # desired speed [m/s] towards the corridor, above which a person wants to cross
 _EDGE = 0.05  # distance [m] to the corridor's edge at which people who yield stop
 _SWAY = 0.1  # distance [m] that people may walk beyond the stopping point of their speed
 _OPEN = 2.0  # absolute log odds below which a person's intent is uncertain
+_STANDS = 0.25  # speed [m/s] below which a person is predicted to go on standing
 _NEVER = -1  # number of a look that never took place
 
-Yielding = tuple[NDArray[np.bool_], float, float, float]
+WALKS, YIELDS, KEEPS_ON = 0, 1, 2
+"""What a person is predicted to do: walk as the model says, yield, or keep the velocity."""
+
+Yielding = tuple[NDArray[np.int8], float, float, float]
 
 
 class AlternativeHypothesis(NamedTuple):
@@ -73,7 +79,7 @@ class IntentEstimator:
         self._odds = np.zeros(0)
         self._told = np.zeros((0, every), dtype=np.int64)
         self._expected = np.zeros((0, every, 3))
-        self._numbers, self._yield = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
+        self._numbers, self._yield = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int8)
 
     def odds(self, number: int) -> float:
         """Return the log odds that the person of this number yields."""
@@ -105,10 +111,10 @@ class IntentEstimator:
         uncertain = np.abs(self._odds[numbers]) < _OPEN
         other = people.select(np.ones(len(people), dtype=np.bool_))
         self.update(people, numbers, front, expected)
-        odds, yields = self._odds.copy(), np.zeros(len(numbers), dtype=np.bool_)
+        odds, yields = self._odds.copy(), np.zeros(len(numbers), dtype=np.int8)
         odds[numbers[uncertain]] *= -1.0
         seen = (*other.state, other.desired_speed, *other.routes)
-        none = _NEVER, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_), np.zeros(0)
+        none = _NEVER, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int8), np.zeros(0)
         memory = odds, self._told, self._expected
         _update(self._way, front, seen, (numbers, yields), none, memory, self._law)
         differ = yields != self._yield
@@ -130,7 +136,7 @@ class IntentEstimator:
             expected: States (4 m,), x, y [m], v_x, v_y [m/s], of the m people of the latest look
                 one prediction step later, as predicted then; (0,) without a prediction.
         """
-        yields = np.zeros(len(numbers), dtype=np.bool_)
+        yields = np.zeros(len(numbers), dtype=np.int8)
         seen = (*people.state, people.desired_speed, *people.routes)
         latest = (self._look, self._numbers, self._yield, expected)
         while True:
@@ -155,8 +161,8 @@ def _update(
     path: tuple[Array, Array],
     front: float,
     people: tuple[Any, ...],
-    marked: tuple[NDArray[np.int64], NDArray[np.bool_]],
-    latest: tuple[int, NDArray[np.int64], NDArray[np.bool_], Array],
+    marked: tuple[NDArray[np.int64], NDArray[np.int8]],
+    latest: tuple[int, NDArray[np.int64], NDArray[np.int8], Array],
     memory: tuple[Array, NDArray[np.int64], Array],
     law: tuple[float, float, float],
 ) -> int:
@@ -192,13 +198,18 @@ def _update(
             n = before[i]
             told[n, slot] = look - 1
             expected[n, slot, 0], expected[n, slot, 1] = outcome[4 * i + 2], outcome[4 * i + 3]
-            expected[n, slot, 2] = yielded[i]
+            expected[n, slot, 2] = yielded[i] == YIELDS
     slot = look % every
-    first, last = segment_at(stations, front), segment_at(stations, front + _REACH)
+    first, last = segment_at(stations, front), segment_at(stations, front + _SIGHT)
     for i in range(len(numbers)):
         x, y, n, at = position[i, 0], position[i, 1], numbers[i], start[i] + index[i]
         station, lateral, e_x, e_y = abreast(vertices, stations, first, last, x, y)
         ahead, aside = station - front, abs(lateral) - half_width
+        stands = velocity[i, 0] ** 2 + velocity[i, 1] ** 2 < _STANDS * _STANDS
+        near = ahead <= _REACH
+        if 0.0 < ahead and ((aside <= 0.0 and (near or stands)) or (near and stands)):
+            yields[i] = KEEPS_ON
+            continue
         to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
         far = np.sqrt(to_x * to_x + to_y * to_y)
         if not (0.0 < ahead <= _REACH and 0.0 < aside <= _ASIDE and far > 0.0):
@@ -216,7 +227,7 @@ def _update(
             slower = taken_up * wish * (1.0 - room / np.sqrt(room * room + smoothing * smoothing))
             odds[n] = shifted(odds[n], off, slower, was[2] > 0.0)
         if odds[n] > 0.0:
-            yields[i] = True
+            yields[i] = YIELDS
             pace = max((velocity[i, 0] * to_x + velocity[i, 1] * to_y) / far, 0.0)
             missing = desired_speed[i] * desired_speed[i] - pace * pace
             if missing > 0.0:  # the stopping point that VCI's slowing down implies
@@ -260,7 +271,7 @@ def step_yielding(
     yields, taken_up, smoothing, dt = yielding
     waypoints, _, _, begin = scene.routes
     for p in range(position.shape[0]):
-        if not yields[p]:
+        if yields[p] != YIELDS:
             continue
         base, last = at + 4 * p, begin[p + 1] - 1
         to_x, to_y = waypoints[last, 0] - state[base], waypoints[last, 1] - state[base + 1]
@@ -269,6 +280,27 @@ def step_yielding(
         v_x, v_y = v_x + taken_up * (gain * to_x - v_x), v_y + taken_up * (gain * to_y - v_y)
         velocity[p, 0], velocity[p, 1] = v_x, v_y
         position[p, 0], position[p, 1] = state[base] + dt * v_x, state[base + 1] + dt * v_y
+
+
+@inlined
+def keep_on(
+    yielding: tuple[Any, ...], step: int, people: Arrays, position: Array, velocity: Array
+) -> None:
+    """Move people who keep their velocity to where they are after a prediction step; in place.
+
+    Args:
+        yielding: Yielding state, see :attr:`IntentEstimator.yielding`.
+        step: Index of the prediction step.
+        people: Positions (n, 2) [m] and velocities (n, 2) [m/s] of all people now, and more.
+        position: Positions (n, 2) [m] of all people after the step; changed.
+        velocity: Velocities (n, 2) [m/s] of all people after the step; changed.
+    """
+    yields, _, _, dt = yielding
+    for p in range(position.shape[0]):
+        if yields[p] == KEEPS_ON:
+            for axis in range(2):
+                velocity[p, axis] = people[1][p, axis]
+                position[p, axis] = people[0][p, axis] + (step + 1) * dt * velocity[p, axis]
 
 
 @inner

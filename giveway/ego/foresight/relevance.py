@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from controller.driving_constants import AT_REST, COMFORTABLE
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, inner, kernel
@@ -104,11 +105,12 @@ class Nearby:
         path, span = self._path, self._span
         reach = min(speed * span + self._gain, max(speed, self._wanted) * span)
         stop = self._time_step + speed / self._strongest
+        ahead = max(self._ahead, speed * speed / (2.0 * COMFORTABLE) + AT_REST - reach)
         margin = max(MARGIN, self._body + self._lunge / 2.0 * stop * stop)
         mask = np.empty(len(crowd), dtype=np.bool_)
         come_near(
             (path.vertices, path.stations),
-            (front - self._behind, front + reach + self._ahead),
+            (front - self._behind, front + reach + ahead),
             (crowd.position, crowd.velocity),
             span,
             self._half_width + margin,

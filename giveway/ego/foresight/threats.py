@@ -1,19 +1,27 @@
-"""Pedestrians in conflict with the ego, and speeds at which none could force a hard stop."""
+"""The speeds at which no pedestrian could force a hard stop, and at which drivers pass them."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from controller.driving_constants import STANDING
+from controller.driving_constants import (
+    PASSING_FAR,
+    PASSING_KERB,
+    PASSING_NEAR,
+    PASSING_TAIL,
+    STANDING,
+)
 from controller.kernels import towards_kerb
 from giveway.ego.perception.kerbs import NO_KERBS
-from giveway.geometry.contact import contact_interval, to_frame
+from giveway.geometry.contact import to_frame
 from giveway.geometry.kernel import Array, inner
 
 _HALVINGS = 5  # number of bisections in the search for the threat-free speed
 _WHOLE = 1e-6  # tolerance [steps] when a stopping time is rounded up to whole steps
 _ROUNDING = 1e-6  # tolerance [m] of distances that exclude a person
-_FADING = 0.5  # time [s] beyond the conflict time, in which a person's weight falls to 0
+_AHEAD = 2.0  # time [s] within which a person whom the ego may meet is looked at
+_BLUR = 0.05  # growth [m/s] of the error of predicted positions
+_TOWARDS = 0.3  # speed [m/s] towards the ego's way, above which a person heads for it
 _SPARE = 0.05  # margin [m] beyond the safety layer's need, for errors of the prediction
 _NOT_BEHIND_ONE = 0.0, 0.0, 0.0  # kerb of a person who is not on a sidewalk
 
@@ -32,7 +40,7 @@ class Alarm(NamedTuple):
 
 
 @inner
-def conflicts_and_threat_free(
+def threat_free_and_passing(
     people: tuple[Array, Array, Array],
     pose: tuple[float, float, float, float],
     speed: float,
@@ -40,12 +48,11 @@ def conflicts_and_threat_free(
     times: tuple[float, float, float],
     alarm: Alarm,
 ) -> tuple[float, float]:
-    """Return the persons in conflict with the ego, and its threat-free speed.
+    """Return the threat-free speed and the passing speed [m/s] of the ego.
 
-    A person is in conflict if they would touch the ego within the conflict time, both keeping their
-    velocity. A contact up to half a second later counts in proportion. The threat-free speed [m/s]
-    is the highest one at which no pedestrian could force an emergency stop (:func:`is_threat`). It
-    is inf if ``speed`` itself is threat-free.
+    The threat-free speed is the highest one at which no pedestrian could force an emergency stop
+    (:func:`is_threat`). The passing speed is the one at which drivers pass the pedestrians that are
+    beside or before the body (:func:`passing_speed`). Each is inf if ``speed`` is no higher.
 
     Args:
         people: Positions of people now, before and after the interval [m], (n, 2) each.
@@ -53,22 +60,22 @@ def conflicts_and_threat_free(
             the front to where it would stop.
         speed: Speed of the ego [m/s].
         body: Half of its length and half of its width [m].
-        times: Interval between two predictions, time to collision of a conflict, step [s].
+        times: Interval between two predictions, step, and time from now on [s].
         alarm: Assumptions about people and braking.
     """
     here, before, after = people
     front_x, front_y, heading, braking_heading = pose
-    (half_length, half_width), (interval, conflict_time, time_step) = body, times
+    (half_length, half_width), (interval, time_step, later) = body, times
     if speed <= STANDING:
-        return 0.0, np.inf
+        return np.inf, np.inf
     c, s = np.cos(heading), np.sin(heading)
     turn = braking_heading - heading
     c_b, s_b = 1.0, 0.0
     if turn != 0.0:
         c_b, s_b = np.cos(turn), np.sin(turn)
-    soon = conflict_time + _FADING
-    far = 2.0 * half_length + half_width + soon * (speed + alarm.walking_speed)
-    conflicts, threat_free, braking = 0.0, speed, outline(speed, time_step, alarm)
+    far = 2.0 * half_length + half_width + _AHEAD * (speed + alarm.walking_speed)
+    blur, passing = _BLUR * later, speed
+    threat_free, braking = speed, outline(speed, time_step, alarm)
     for j in range(here.shape[0]):
         d_x, d_y = here[j, 0] - front_x, here[j, 1] - front_y
         if d_x * d_x + d_y * d_y > far * far:
@@ -77,17 +84,13 @@ def conflicts_and_threat_free(
         w_x = (after[j, 0] - before[j, 0]) / interval
         w_y = (after[j, 1] - before[j, 1]) / interval
         w_x, w_y = to_frame(w_x, w_y, c, s)
-        # The least separation of the bodies within that time, along and across the ego.
-        apart = max(
-            abs(y) - half_width - abs(w_y) * soon,
-            abs(x + half_length) - half_length - abs(w_x - speed) * soon,
-        )
-        if apart <= alarm.radius + _ROUNDING:
-            begin, end = contact_interval(
-                x + half_length, y, w_x - speed, w_y, half_length, half_width, alarm.radius
-            )
-            if end >= 0.0 and begin < soon:
-                conflicts += min(1.0, (soon - begin) / _FADING)
+        off = max(abs(x + half_length) - half_length, 0.0)
+        aside = max(abs(y) - half_width, 0.0)
+        clear = max(0.0, np.sqrt(off * off + aside * aside) - alarm.radius - blur)
+        kept = j < alarm.kerbs.shape[0] and alarm.kerbs[j, 0] ** 2 + alarm.kerbs[j, 1] ** 2 > 0.0
+        heads = not kept and (w_y * y < -_TOWARDS * abs(y) or abs(y) < half_width)
+        passed = x < -half_length and w_x * w_x + w_y * w_y > _TOWARDS * _TOWARDS
+        passing = min(passing, passing_speed(clear, passed, heads))
         if not alarm.heeded:
             continue
         if turn != 0.0:
@@ -111,7 +114,27 @@ def conflicts_and_threat_free(
                     low = middle
             threat_free = low
             braking = outline(threat_free, time_step, alarm)
-    return conflicts, threat_free if threat_free < speed else np.inf
+    threat_free = threat_free if threat_free < speed else np.inf
+    return threat_free, passing if passing < speed else np.inf
+
+
+@inner
+def passing_speed(clearance: float, at_tail: bool, heads: bool) -> float:
+    """Return the speed [m/s] at which drivers pass a person at this clearance [m].
+
+    Args:
+        clearance: Distance [m] between the person's body and the ego's outline.
+        at_tail: Whether the person is beside the rear half of the ego, or behind.
+        heads: Whether the person heads for the ego's way.
+    """
+    if at_tail:
+        return PASSING_TAIL[1] if clearance < PASSING_TAIL[0] else np.inf
+    speed = min(
+        PASSING_NEAR[0] + PASSING_NEAR[1] * clearance, PASSING_FAR[0] + PASSING_FAR[1] * clearance
+    )
+    if clearance >= PASSING_KERB[0] and not heads:
+        speed = max(speed, PASSING_KERB[1])
+    return speed
 
 
 class Outline(NamedTuple):

@@ -29,7 +29,7 @@ class Workspace:
         self.count, self.people, self._predicted = count, people, predicted
         self._state = np.empty(count * predicted * people * 4)
         self._index = np.empty(count * predicted * people, dtype=np.int64)
-        evaluations = np.zeros((3, count, horizon))  # gaps, conflicts, threat-free speeds
+        evaluations = np.zeros((3, count, horizon))  # gaps, threat-free and passing speeds
         self._evaluations = [Evaluation(*rows) for rows in zip(*evaluations, strict=True)]
         # Rows: own and later cost, cost of others, missing distance, own cost
         self._sums = np.zeros((4, count))

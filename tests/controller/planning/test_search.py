@@ -25,7 +25,7 @@ class Wall:
         self.distance = distance
 
     def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
-        return Evaluation(self.distance - manoeuvre.distance[1:], NOBODY, FREE)
+        return Evaluation(self.distance - manoeuvre.distance[1:], NOBODY, FREE, FREE)
 
     def prefer(self) -> None:
         pass
