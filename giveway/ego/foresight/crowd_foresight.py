@@ -103,9 +103,7 @@ class CrowdForesight:
         self._predictor, self._every = predictor, every
         self._way = path.vertices, path.stations, path.headings
         shape, half_width, clearance, braking, worst = ego
-        self._view = tuple(
-            View(shape.length, shape.width, half_width, time_step, every)
-        )
+        self._view = tuple(View(shape.length, shape.width, half_width, time_step, every))
         walking = predictor.parameters
         able = worst or WorstMotion(walking.max_acceleration, walking.max_speed)
         self._limits = Alarm(

@@ -207,7 +207,7 @@ def _update(
         ahead, aside = station - front, abs(lateral) - half_width
         stands = velocity[i, 0] ** 2 + velocity[i, 1] ** 2 < _STANDS * _STANDS
         near = ahead <= _REACH
-        if 0.0 < ahead and ((aside <= 0.0 and (near or stands)) or (near and stands)):
+        if ahead > 0.0 and ((aside <= 0.0 and (near or stands)) or (near and stands)):
             yields[i] = KEEPS_ON
             continue
         to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
