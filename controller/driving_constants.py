@@ -10,7 +10,7 @@ STANDING: Final = 0.2
 """Speed [m/s] below which a vehicle counts as standing (Yang & Özgüner 2019: an obstacle)."""
 
 PASSING_NEAR: Final = 0.4, 2.2
-"""Speed [m/s] beside a person at contact, and its rise [1/s] with the clearance, up to 1.2 m. The 37
+"""Speed [m/s] beside a person at contact, and its rise [1/s] with the clearance, up to 1.2 m. The
 recorded drivers of DUT (Yang et al., IEEE IV 2019) pass people at 0 to 0.3 m with 1.0 m/s in the
 median (85 %: 1.6), at 0.5 to 1 m with 1.6 (2.7)."""
 
@@ -19,15 +19,16 @@ PASSING_FAR: Final = 1.6, 1.2
 median (85 %: 4.6)."""
 
 PASSING_KERB: Final = 1.0, 30.0 / 3.6
-"""Clearance [m] from which on people who do not head for the way are passed with this speed [m/s] or
-more: 30 km/h, the limit of roads on which people walk beside cars (WHO, Speed management, 2008)."""
+"""Clearance [m] from which on people who do not head for the way are passed with at least this
+speed [m/s]: 30 km/h, the limit where people walk beside cars (WHO, Speed management, 2008)."""
 
 PASSING_TAIL: Final = 0.5, 1.5
 """Clearance [m] of people beside the rear half up to which this speed [m/s] is kept. People walk
 behind a car that has passed them: all close passes of DUT's recorded drivers are there."""
 
 AT_REST: Final = 1.1
-"""Distance [m] from the middle of a person in front at which the ego comes to rest; giveway's own choice."""
+"""Distance [m] from the middle of a person in front at which the ego comes to rest; giveway's own
+choice."""
 
 COMFORTABLE: Final = 2.0
 """Deceleration [m/s²] of a driver who is not surprised; giveway's own choice."""

@@ -28,7 +28,8 @@ def aim(
     Args:
         speed: Speed now [m/s].
         before: Acceleration before [m/s^2].
-        goals: Wanted acceleration [m/s^2] and speed [m/s] at which braking ends, (k, 2).
+        goals: Wanted acceleration [m/s^2] and speed [m/s] at which it ends, (k, 2). Speeding up to
+            0 ends at ``fastest``.
         fastest: Speed [m/s] at which speeding up ends.
         jerk: Jerk [m/s^3] with which accelerations change.
         time_step: Control step [s].
@@ -43,7 +44,8 @@ def aim(
         for k in range(count):
             wanted, v, a = goals[k, 0], speeds[k, i], asked_for[k]
             if wanted > 0.0 or v > fastest:
-                end = min(goals[k, 1], fastest) if wanted > 0.0 else fastest
+                ends = wanted > 0.0 and goals[k, 1] > 0.0
+                end = min(goals[k, 1], fastest) if ends else fastest
                 goal = min(wanted, max((end - v) / _EASING, -FIRM))
             else:
                 goal = max(wanted, min(0.0, (goals[k, 1] - v) / _EASING))

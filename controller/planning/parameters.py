@@ -29,7 +29,7 @@ class ManoeuvreParameters:
     # accelerations [m/s^2] that the manoeuvres aim at
     accelerations: tuple[float, ...] = (2.5, 1.5, 1.5, 0.0, -1.5, -2.5, -2.5, -2.5, -5.0)
     # shares of v_r at which these manoeuvres end
-    slowest: tuple[float, ...] = (1.0, 0.6, 0.35, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)
+    slowest: tuple[float, ...] = (0.0, 0.6, 0.35, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)
     jerk: float = 8.0  # jerk [m/s^3] with which accelerations change
     deceleration: float = 6.0  # deceleration b [m/s^2] with which a stop stays possible
     minimum_distance: float = AT_REST  # distance [m] to a person in front at standstill

@@ -47,13 +47,10 @@ class Search:
         # Lost time refers to at least half of v_r, also where a bend or a light allows less.
         self._slowest = 0.5 * v_r
         self._kinds = [
-            (a, share * v_r if a <= 0.0 or share < 1.0 else inf)
-            for a, share in zip(m.accelerations, m.slowest, strict=True)
+            (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
         ]
-        self._names = [
-            "drive on" if k == 0 else f"{a:+g} m/s^2 to {least:g} m/s"
-            for k, (a, least) in enumerate(self._kinds)
-        ]
+        self._names = [f"{a:+g} m/s^2 to {end:g} m/s" for a, end in self._kinds]
+        self._names[_DRIVE_ON] = "drive on"
         self._names += ["up to the end", "as planned"]
         self._goals = np.array(self._kinds)
         # Braking to a speed is tried only from a higher one. The index of _others counts the

@@ -22,7 +22,7 @@ SHORT = 9.0  # [s] the first pedestrians and the ego meet after some 6 s
 SWITCHES = {
     "effort_weight": 0.0,
     "jerk_weight": 0.0,
-    "conflict_weight": 0.0,
+    "precaution_weight": 0.0,
     "later_weight": 0.0,
     "horizon": 1.0,
 }

@@ -19,7 +19,7 @@ N, DT = 20, 0.05
 LENGTH, WIDTH, RADIUS = 5.0, 2.0, SIM.body_radius
 
 
-HALF_WIDTH, CONFLICT_TIME, FADING = 1.25, 1.5, 0.5
+HALF_WIDTH = 1.25
 
 
 FRONT = 20.0  # [m]
@@ -42,7 +42,7 @@ def manoeuvre(speed, acceleration=0.0):
 EVERY = 2  # steps of a manoeuvre in one of the prediction
 
 
-LOOKS = range(0, N - 1, EVERY)  # where conflicts are looked for
+LOOKS = range(0, N - 1, EVERY)  # where threats are looked for
 
 
 ALARM = Alarm(RADIUS, 0.05, WORST.acceleration, WORST.speed, 8.0, heeded=True)
@@ -73,7 +73,7 @@ def assessed(path, people, m, *, alarm=ALARM, every=EVERY):
         (2.0 * people[0] - people[1], np.ascontiguousarray(people[every - 1 :: every])),
         FRONT,
         (m.distance, m.speed),
-        (View(LENGTH, WIDTH, HALF_WIDTH, CONFLICT_TIME, DT, every), alarm),
+        (View(LENGTH, WIDTH, HALF_WIDTH, DT, every), alarm),
         out,
     )
     return out

@@ -242,7 +242,7 @@ def advance(
                 return bad
         if j > 0:  # step 0 is the walking model's: intent estimation compares people with it
             step_yielding(law[-1], 4 * (here - n), state, scene, x, v)
-        keep_on(law[-1], j, people, x, v)
+            keep_on(law[-1], j, people, x, v)
         for p in range(n):
             base = 4 * (here + p)
             state[base], state[base + 1] = x[p, 0], x[p, 1]

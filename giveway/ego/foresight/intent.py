@@ -209,7 +209,6 @@ def _update(
         near = ahead <= _REACH
         if ahead > 0.0 and ((aside <= 0.0 and (near or stands)) or (near and stands)):
             yields[i] = KEEPS_ON
-            continue
         to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
         far = np.sqrt(to_x * to_x + to_y * to_y)
         if not (0.0 < ahead <= _REACH and 0.0 < aside <= _ASIDE and far > 0.0):

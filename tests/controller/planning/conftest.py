@@ -143,7 +143,7 @@ class Bystanders:
         gap = self.at - self.front - manoeuvre.distance[1:, None]
         there = (self.until > self.step + self._steps[:, None]) & (gap > -0.3)
         closest = np.where(there, gap, np.inf).min(axis=1, initial=np.inf)
-        return Evaluation(closest, np.zeros(len(closest)), self._threat_free)
+        return Evaluation(closest, self._threat_free, self._threat_free)
 
     def prefer(self):
         pass

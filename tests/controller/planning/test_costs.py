@@ -1,4 +1,4 @@
-"""Costs of a manoeuvre: speed, acceleration, conflicts, room for a stop."""
+"""Costs of a manoeuvre: speed, acceleration, passing speeds, room for a stop."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ def costs(
     w,
     *,
     gap=FREE,
-    conflicts=0.0,
     threat_free=FREE,
+    passing=FREE,
     allowed=FREE,
     later_crossings=NOBODY_LATER,
     wanted=4.0,
 ):
     N = len(m.speed) - 1
-    *full, allowed = (np.full(N, x, dtype=float) for x in (gap, conflicts, threat_free, allowed))
+    *full, allowed = (np.full(N, x, dtype=float) for x in (gap, threat_free, passing, allowed))
     motion = (m.distance, m.speed, m.acceleration)
     return cost(motion, (*full, later_crossings), allowed, wanted, DT, w)
 
@@ -86,31 +86,22 @@ def test_a_free_way_costs_the_missing_speed_and_the_acceleration():
 def test_the_cost_of_others_by_hand():
     m, n = steady(2.0, 20), 20 * DT
     own = costs(m, weights())[0]
-    w = weights(
-        nearness_weight=0.3,
-        closeness_weight=20.0,
-        conflict_weight=0.6,
-        conflict_growth=0.25,
-        threat_weight=1.0,
-    )
-    half = math.sqrt(0.5)  # of v_r
-    assert costs(m, w, conflicts=0.5)[1] == pytest.approx(n * 0.6 * 0.5 * half)
-    assert costs(m, w, conflicts=3.0)[1] == pytest.approx(n * 0.6 * (1 + 2 * 0.25) * half)
+    w = weights(closeness_weight=20.0, threat_weight=1.0, precaution_weight=3.0)
     assert costs(m, w, threat_free=1.0)[1] == pytest.approx(n * 1.0 / 4.0)
-    assert costs(m, w, gap=4.0)[1] == pytest.approx(n * 0.3 * 0.5 * 0.5)  # half d_safe, half v_r
-    assert costs(m, w, gap=8.0)[1] == 0.0
+    assert costs(m, w, passing=1.5)[1] == pytest.approx(n * 3.0 * 0.5 / 4.0)
+    assert costs(m, w, passing=2.0)[1] == 0.0
     need = stopping_need(2.0, w)
     whole, others, missing = costs(m, w, gap=need - 0.5)
-    nearness = 0.3 * (1.0 - (need - 0.5) / 8.0) * 0.5
     assert (whole - own, missing) == (pytest.approx(others), pytest.approx(0.5))
-    assert others == pytest.approx(n * (nearness + 20.0 * 0.5 * 0.5))
+    comfortable = math.sqrt(2.0 * 2.0 * max(0.0, need - 0.5 - w.minimum_distance))
+    assert others == pytest.approx(n * (20.0 * 0.5 * 0.5 + 3.0 * (2.0 - comfortable) / 4.0))
 
 
-def test_conflict_weight_is_cubic_above_the_shared_space_speed():
-    w = weights(conflict_weight=0.6)._replace(reference_speed=8.0)
-    slow, shared, fast = (costs(steady(v, 20), w, conflicts=1.0)[1] for v in (1.0, 4.0, 8.0))
-    assert shared == pytest.approx(2.0 * slow)  # the square root
-    assert fast == pytest.approx(math.sqrt(2.0) * 8.0 * shared)
+def test_a_person_in_front_is_approached_as_far_as_a_comfortable_stop_allows():
+    """From 2 m/s a stop with 2 m/s^2 takes 1 m."""
+    w, m = weights(minimum_distance=1.0, precaution_weight=3.0), steady(2.0, 20)
+    assert costs(m, w, gap=2.0)[1] == 0.0
+    assert costs(m, w, gap=1.5)[1] == pytest.approx(20 * DT * 3.0 * (2.0 - math.sqrt(2.0)) / 4.0)
 
 
 def test_beyond_what_is_allowed_each_metre_counts():
@@ -126,11 +117,11 @@ def test_who_stands_lacks_no_stopping_distance():
 
 def test_the_corridor_ends_where_stopping_for_all_is_possible():
     w, m, room = weights(), steady(2.0, 4), np.empty(4)
-    gap = np.array([5.0, 0.9, np.inf, 5.0])
+    gap = np.array([5.0, 1.5, np.inf, 5.0])
     allowed = np.array([np.inf, np.inf, 3.0, 0.1])
     corridor(m.distance, m.speed, gap, allowed, w, room)
     first = m.distance[1] + 5.0 - stopping_need(2.0, w)
-    second = m.distance[2] + 0.9 - stopping_need(2.0, w)
+    second = m.distance[2] + 1.5 - stopping_need(2.0, w)
     assert room == pytest.approx([first, second, 3.0, 0.1])
     corridor(m.distance, m.speed, np.zeros(4), np.full(4, np.inf), w, room)
     assert room == pytest.approx(m.distance[1:])  # never less than the manoeuvre itself

@@ -16,7 +16,7 @@ from controller import ControllerError, ManoeuvreParameters, PlannerParameters
         ({"slowest": (0.0,)}, "slowest"),
         ({"jerk": 0.0}, "jerk"),
         ({"deceleration": -1.0}, "deceleration"),
-        ({"conflict_weight": np.nan}, "conflict_weight"),
+        ({"precaution_weight": np.nan}, "precaution_weight"),
     ],
 )
 def test_parameters_out_of_range_are_refused_by_name(changes, name):

@@ -36,7 +36,7 @@ class Fixed:
 
     def evaluate(self, manoeuvre):
         gap = self.room + FOLLOWING.safe_distance - manoeuvre.distance[1:]
-        return Evaluation(gap, np.zeros(N), FREE)
+        return Evaluation(gap, FREE, FREE)
 
     def prefer(self):
         pass
@@ -63,17 +63,17 @@ def test_the_corridor_always_leaves_a_plan(speed, force, room, threat_free):
     assert speed <= 1e-3 or force - 1000.0 <= plan.force <= force + 1000.0
 
 
-class Crossing:
-    """People on a collision course whatever is driven: a plan once made goes on for its cost."""
+class Beside:
+    """People beside the way whatever is driven: a plan once made goes on for its cost."""
 
     def evaluate(self, manoeuvre):
-        return Evaluation(FREE, np.full(N, 0.1), FREE)
+        return Evaluation(FREE, FREE, np.full(N, 5.9))
 
     def prefer(self):
         pass
 
 
-@pytest.mark.parametrize("crowd", [None, Crossing()], ids=["nobody", "people about"])
+@pytest.mark.parametrize("crowd", [None, Beside()], ids=["nobody", "people about"])
 def test_lanes_speeds_are_kept_to_whatever_the_manoeuvre(crowd):
     planner = Planner(MODEL, replace(FOLLOWING, reference_speed=10.0))
     dt, speed, force = MODEL.time_step, 10.0, 10.0 * MODEL.friction
@@ -91,12 +91,12 @@ class StepsOut:
     """Somebody for whose sake the ego has to be slow for a while, from 1.2 s ahead on."""
 
     def __init__(self, horizon, threat_free):
-        self.nobody = np.full(horizon, np.inf), np.zeros(horizon)
+        self.nobody = np.full(horizon, np.inf)
         self.threat_free = np.full(horizon, np.inf)
         self.threat_free[24:30] = threat_free
 
     def evaluate(self, manoeuvre):
-        return Evaluation(*self.nobody, self.threat_free)
+        return Evaluation(self.nobody, self.threat_free, self.nobody)
 
     def prefer(self):
         pass
@@ -122,7 +122,7 @@ class BesideTheWay:
     PLACE, CALM, FULLY = 40.0, 5.0, 8.0  # [m], [m/s], [m/s^2]
 
     def __init__(self, horizon):
-        self.nobody = np.full(horizon, np.inf), np.zeros(horizon)
+        self.nobody = np.full(horizon, np.inf)
         self.driven = 0.0
 
     def fastest(self, station):
@@ -134,9 +134,8 @@ class BesideTheWay:
 
     def evaluate(self, manoeuvre):
         threat_free = self.fastest(self.driven + manoeuvre.distance[1:])
-        return Evaluation(
-            *self.nobody, np.where(manoeuvre.speed[1:] > threat_free, threat_free, np.inf)
-        )
+        heeded = np.where(manoeuvre.speed[1:] > threat_free, threat_free, np.inf)
+        return Evaluation(self.nobody, heeded, self.nobody)
 
     def prefer(self):
         pass

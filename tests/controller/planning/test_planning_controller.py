@@ -136,7 +136,7 @@ def test_it_drives_up_to_where_the_way_ends(room):
 
 @pytest.mark.parametrize("to_clear", [0.0, 4.0])
 def test_it_drives_on_from_where_it_would_block_others(bystanders, to_clear):
-    """Behind somebody who stays, with its rear on a crossing: nearer than it would stop else."""
+    """Behind somebody who stays, with its rear on a crossing: on to where it rests anyway."""
     controller = PlanningController(Planner(MODEL, PlannerParameters()))
     crowd = bystanders(np.array([7.0]), [np.inf], N)
     x, v = 0.0, 0.0
@@ -146,5 +146,4 @@ def test_it_drives_on_from_where_it_would_block_others(bystanders, to_clear):
         force = controller.control(seen).force
         x += DT * v
         v = max(0.0, MODEL.decay * v + MODEL.speed_per_force * force)
-    assert (x > 3.5) == bool(to_clear)
-    assert x < 6.5
+    assert 7.0 - LEAST - 0.3 < x < 7.0 - LEAST + 0.1

@@ -15,7 +15,7 @@ from controller.planning.search import Search
 MODEL = LongitudinalModel(mass=1000.0, friction=100.0, time_step=0.05)
 PARAMETERS = PlannerParameters()
 N = PARAMETERS.horizon
-FREE, NOBODY = np.full(N, np.inf), np.zeros(N)
+FREE = np.full(N, np.inf)
 
 
 class Wall:
@@ -25,7 +25,7 @@ class Wall:
         self.distance = distance
 
     def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
-        return Evaluation(self.distance - manoeuvre.distance[1:], NOBODY, FREE, FREE)
+        return Evaluation(self.distance - manoeuvre.distance[1:], FREE, FREE)
 
     def prefer(self) -> None:
         pass

@@ -116,10 +116,11 @@ def test_a_style_sets_what_the_options_leave_out():
     chosen = PlannerOptions.model_fields["style"].annotation
     assert get_args(chosen) == get_args(StyleName) == tuple(STYLES)
     for name, usual in STYLES.items():
-        found = manoeuvres_of(PlannerOptions(style=name, nearness_weight=5.0), margin=0.1)
-        assert found.conflict_weight == usual["conflict_weight"]
-        assert found.nearness_weight == 5.0
-        assert found.minimum_distance == usual["minimum_distance"] + 0.1
+        found = manoeuvres_of(PlannerOptions(style=name), margin=0.1)
+        assert found.precaution_weight == usual
+        assert found.minimum_distance == ManoeuvreParameters().minimum_distance + 0.1
+        set_ = manoeuvres_of(PlannerOptions(style=name, precaution_weight=5.5))
+        assert set_.precaution_weight == 5.5
 
 
 def test_an_option_reaches_the_parameter_of_its_name():

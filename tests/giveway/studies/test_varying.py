@@ -12,12 +12,12 @@ from giveway.studies.varying import chosen, varied
 
 
 def test_variations_are_a_grid_of_their_values():
-    found = varied(["controller_options.conflict_weight=0.3, 0.6", "controller=mpc,pid-tuned"])
+    found = varied(["controller_options.precaution_weight=5, 20", "controller=mpc,pid-tuned"])
     assert found.factors == {
-        "controller_options.conflict_weight": [0.3, 0.6],
+        "controller_options.precaution_weight": [5, 20],
         "controller": ["mpc", "pid-tuned"],
     }
-    assert found.name == "vary_controller_options.conflict_weight_controller"
+    assert found.name == "vary_controller_options.precaution_weight_controller"
     assert found.replications == 20
 
 

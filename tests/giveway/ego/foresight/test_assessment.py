@@ -1,4 +1,4 @@
-"""The assessment of a manoeuvre: gaps and conflicts with those predicted."""
+"""The assessment of a manoeuvre: gaps to people and passing speeds beside them."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from support.manoeuvres import (
-    CONFLICT_TIME,
     DT,
-    FADING,
     FRONT,
     HALF_WIDTH,
     LENGTH,
@@ -25,34 +23,19 @@ from support.manoeuvres import (
 
 from giveway.ego.foresight.assessment import PASSED
 
-EDGE = 1e-6
 
-
-def conflicts_at(path, people, m, i):
-    """Persons at step i + 1 on a course that touches the ego's body, and those on the edge.
-
-    Whoever touches it within the conflict time counts once, half a second later not at all.
-    """
+def clearances_at(path, people, m, i):
+    """Clearance [m] of each person to the ego's body at step i + 1, and places in its frame."""
     x, y, heading = path.pose(FRONT + m.distance[i + 1], LENGTH)
     towards = np.array([np.cos(heading), np.sin(heading)])
     left = np.array([-towards[1], towards[0]])
-    front = np.array([x, y])
-    corners = [
-        front - back * LENGTH * towards + side * WIDTH / 2 * left
-        for back, side in ((0, 1), (0, -1), (1, -1), (1, 1))
-    ]
-    body = shapely.Polygon(corners)
-    shapely.prepare(wider := body.buffer(RADIUS, quad_segs=4000))
-    relative = (people[i + 1] - people[i]) / DT - m.speed[i + 1] * towards
-    surely, perhaps = 0.0, 0
-    for p, w in zip(people[i], relative, strict=True):
-        course = shapely.LineString([p, p + w * (CONFLICT_TIME + FADING)])
-        if wider.intersects(course):
-            met = shapely.intersection(course, wider)
-            begin = min(np.hypot(*(np.array(met.coords) - p).T)) / np.hypot(*w)
-            surely += np.clip((CONFLICT_TIME + FADING - begin) / FADING, 0.0, 1.0)
-        perhaps += abs(body.distance(course) - RADIUS) <= EDGE
-    return surely, perhaps
+    away = people[i] - np.array([x, y])
+    corners = [(0, 1), (0, -1), (-1, -1), (-1, 1)]
+    body = shapely.Polygon([(LENGTH * a, WIDTH / 2 * b) for a, b in corners])
+    place = np.column_stack([away @ towards, away @ left])
+    velocity = (people[i + 1] - people[i]) / DT
+    clear = body.distance(shapely.points(place)) - RADIUS
+    return clear, place, np.column_stack([velocity @ towards, velocity @ left])
 
 
 @pytest.mark.parametrize("seed", range(15))
@@ -85,26 +68,36 @@ def test_who_is_predicted_at_each_step_is_looked_at_at_each_step():
 
 def test_steps_that_are_left_over_belong_to_the_last_prediction():
     people, m = walkers(np.random.default_rng(2), STRAIGHT), manoeuvre(3.0)
-    gaps, conflicts, threat_free = assessed(STRAIGHT, people[:18], m, every=3)
-    for values in (conflicts, threat_free, gaps + m.distance[1:]):
+    gaps, threat_free, passing = assessed(STRAIGHT, people[:18], m, every=3)
+    for values in (threat_free, passing, gaps + m.distance[1:]):
         assert values[-2:] == pytest.approx(np.repeat(values[-3], 2))
 
 
 @pytest.mark.parametrize("seed", range(15))
 @pytest.mark.parametrize("name", PATHS)
-def test_conflicts_are_people_on_a_course_into_the_ego(name, seed):
+def test_passing_speeds_are_those_of_the_nearest_clearances(name, seed):
     path, g = PATHS[name], np.random.default_rng(100 + seed)
     people, m = walkers(g, path), manoeuvre(g.uniform(1.0, 6.0), g.uniform(-3.0, 1.0))
-    _, conflicts, _ = assessed(path, people, m)
+    _, _, passing = assessed(path, people, m)
     for i in LOOKS:
-        if m.speed[i + 1] > 0.2:
-            surely, perhaps = conflicts_at(path, people, m, i)
-            assert surely - EDGE <= conflicts[i] <= surely + perhaps + EDGE
-    assert np.array_equal(conflicts[1::2], conflicts[::2])  # held between two looks
+        speed, least = m.speed[i + 1], np.inf
+        if speed <= 0.2:
+            continue
+        for clear, (x, y), (w_x, w_y) in zip(*clearances_at(path, people, m, i), strict=True):
+            d = max(0.0, clear - 0.05 * DT * (i + 1))
+            if x < -LENGTH / 2 and np.hypot(w_x, w_y) > 0.3:
+                pace = 1.5 if d < 0.5 else np.inf
+            else:
+                pace = min(0.4 + 2.2 * d, 1.6 + 1.2 * d)
+                heads = -w_y * np.sign(y) > 0.3 or abs(y) < WIDTH / 2
+                pace = max(pace, 30.0 / 3.6) if d >= 1.0 and not heads else pace
+            least = min(least, pace)
+        assert passing[i] == pytest.approx(least if least < speed else np.inf, rel=1e-6)
+    assert np.array_equal(passing[1::2], passing[::2])  # held between two looks
 
 
 def test_who_stands_is_in_nobodys_way():
     people = walkers(np.random.default_rng(0), STRAIGHT)
-    _, conflicts, threat_free = assessed(STRAIGHT, people, manoeuvre(0.1))
-    assert not conflicts.any()
+    _, threat_free, passing = assessed(STRAIGHT, people, manoeuvre(0.1))
+    assert np.isinf(passing).all()
     assert np.isinf(threat_free).all()

@@ -73,7 +73,7 @@ def drive(seed, searching, steps=25):
         ahead.look(crowd, OPEN_GROUND, (poses(), 0, front), speed)
         plan = planner.plan(speed, force, 4.0, Road(np.full(N, 30.0)), asked)
         search, expected = planner._search, ahead.best
-        told.append((plan, *(a.copy() for a in (search.gap, search.conflicts, search.threat_free))))
+        told.append((plan, *(a.copy() for a in (search.gap, search.threat_free, search.passing))))
         told[-1] += (None if expected is None else expected.copy(),)
         force, front = plan.force, front + DT * speed
         speed = max(0.0, MODEL.decay * speed + MODEL.speed_per_force * force)

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.manoeuvres import (
-    CONFLICT_TIME,
     DT,
     FRONT,
     HALF_WIDTH,
@@ -31,7 +30,7 @@ from pedestrian_model import OPEN_GROUND, SIM, Crowd
 
 def foresight(**changes):
     shape = VehicleShape(LENGTH, WIDTH)
-    ego = EgoAssumptions(shape, HALF_WIDTH, 0.05, 8.0, WORST, CONFLICT_TIME)
+    ego = EgoAssumptions(shape, HALF_WIDTH, 0.05, 8.0, WORST)
     predictor = plan_predictor(SIM, DT, N)
     return CrowdForesight(predictor, STRAIGHT, ego._replace(**changes), horizon=N, time_step=DT)
 

@@ -42,7 +42,7 @@ def test_a_person_is_a_threat_only_above_the_threat_free_speed(seed):
     g = np.random.default_rng(seed)
     people, v = walkers(g, STRAIGHT, count=1), g.uniform(1.0, 6.0)
     m = manoeuvre(v)
-    _, _, threat_free = assessed(STRAIGHT, people, m)
+    _, threat_free, _ = assessed(STRAIGHT, people, m)
 
     def threatened(i, speed):
         return any(
@@ -68,7 +68,7 @@ def test_a_person_is_a_threat_only_above_the_threat_free_speed(seed):
 
 def test_without_a_safety_layer_every_speed_is_calm():
     people = walkers(np.random.default_rng(3), STRAIGHT)
-    _, _, threat_free = assessed(
+    _, threat_free, _ = assessed(
         STRAIGHT, people, manoeuvre(4.0), alarm=ALARM._replace(heeded=False)
     )
     assert np.isinf(threat_free).all()
@@ -129,6 +129,6 @@ def test_a_person_for_whom_the_layer_would_act_is_a_threat(name):
         way = front_poses(path, front, layer.reach(3.98), LENGTH)
         if layer.filter(398.0, 3.98, way, there, np.zeros((1, 2))).acted:
             acted += 1
-            _, _, threat_free = assessed(path, np.repeat(there[None], N, axis=0), m)
+            _, threat_free, _ = assessed(path, np.repeat(there[None], N, axis=0), m)
             assert threat_free[0] < 3.98, (ahead, aside)
     assert acted > 20
