@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Run = Callable[..., RunResult]
 
-FREE, GIVES_WAY = 6, 22  # crowds that leave the ego alone, and that it waits for
+FREE, GIVES_WAY = 7, 4  # crowds that leave the ego alone, and that it waits for
 SHORT = 9.0  # [s] the first pedestrians and the ego meet after some 6 s
 SWITCHES = {
     "effort_weight": 0.0,
@@ -77,7 +77,7 @@ def test_every_ingredient_can_be_changed_and_matters(drive: Run, name: str) -> N
 
 
 @pytest.mark.parametrize(
-    ("name", "seed", "until"), [("calm_time", 1, 12.0), ("threat_weight", 4, 16.0)]
+    ("name", "seed", "until"), [("calm_time", 6, 12.0), ("threat_weight", 1, 16.0)]
 )
 def test_calm_speeds_matter_in_some_crowds(drive: Run, name: str, seed: int, until: float) -> None:
     usual = drive(controller="mpc", seed=seed, time_limit=until)

@@ -8,6 +8,7 @@ from support.priority import rules_of
 
 import giveway
 
+RASH = {"precaution_weight": 0.0}  # an ego that gives way for the law's sake alone
 SLOWLY = 4.0  # [m/s] so that both drives come when people are there
 BOLD = {"preset": "SIM"}  # people who come before cars that do not let them pass
 ZEBRA = (58.0, 62.0)  # [m] from where to where along the road (x)
@@ -20,6 +21,7 @@ def in_the_way(priority):
         "scenario": "junction",
         "seed": 8,
         "crowd": BOLD,
+        "controller_options": RASH,
         "regulation": {"reference_speed": SLOWLY},
         "rules": rules_of(priority),
         "ego": {"depart_time": 114.0, "depart_position": 10.0, "travel_distance": 55.0},
@@ -53,7 +55,9 @@ def turning(priority):
     regulation = {"reference_speed": SLOWLY}
     rules = rules_of(priority) | {"signal_advice": False}  # it stands before the red light
     run = {"scenario": "junction", "seed": 26, "regulation": regulation, "rules": rules}
-    result = giveway.run(run | {"crowd": BOLD, "ego": ego | {"travel_distance": 70.0}})
+    result = giveway.run(
+        run | {"crowd": BOLD, "controller_options": RASH, "ego": ego | {"travel_distance": 70.0}}
+    )
     ego = result.ego
     onto = ego.time[ego.y <= ARM[1]].iloc[0]
     everybody = result.trajectories

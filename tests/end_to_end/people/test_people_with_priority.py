@@ -35,7 +35,7 @@ def cross(tmp_path_factory):
     (folder / "one.rou.xml").write_text(ROUTES)
     (folder / "one.sumocfg").write_text(CONFIG)
 
-    def run(position, controller="mpc", priority="road", preset="MIXED"):
+    def run(position, controller="mpc", priority="road", preset="MIXED", **own):
         ego = {"none": True}
         if position is not None:
             ego = {"route": ["east_out", "far_east_out"], "lane": 1, "depart_time": 1.0}
@@ -44,6 +44,7 @@ def cross(tmp_path_factory):
             {
                 "scenario": str(folder / "one.sumocfg"),
                 "controller": controller,
+                "controller_options": own,
                 "regulation": {"reference_speed": 4.0},
                 "rules": rules_of(priority),
                 "crowd": {"zone": "everywhere", "preset": preset},
@@ -70,7 +71,7 @@ def test_she_walks_on_before_an_ego_that_gives_way(cross, controller, position):
 
 
 def test_without_the_law_of_the_road_she_is_pushed_back(cross):
-    pushed = cross(8.0, priority="none", preset="SIM")
+    pushed = cross(8.0, "mpc", priority="none", preset="SIM", precaution_weight=0.0)
     assert pushed.pushed_back > 0.5
     assert pushed.time > cross(None).time + 2.0
 
