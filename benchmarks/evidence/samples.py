@@ -29,13 +29,13 @@ SCENES = ["one-sided, 30", "one-sided, 60", "two-sided, 10", "two-sided, 30", "t
 RIVALS = ["mpc", "pid-tuned"]
 
 CONTROLLERS = Study(
-    "controllers", 24, twin=True, changes={"only": {"scene": SCENES, "controller": RIVALS}}
+    "controllers", 50, twin=True, changes={"only": {"scene": SCENES, "controller": RIVALS}}
 )
-ON_ROADS = Study("controllers", 16, changes={"only": {"scene": ROADS, "controller": RIVALS}})
-ATTITUDES = Study("styles", 24, twin=True)
+ON_ROADS = Study("controllers", 50, changes={"only": {"scene": ROADS, "controller": RIVALS}})
+ATTITUDES = Study("styles", 50, twin=True)
 ABLATION = Study(
     "ablation",
-    30,
+    60,
     first_seed=1,
     changes={"comparison": {"factor": "variant", "baseline": "mpc"}},
 )
