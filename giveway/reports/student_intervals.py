@@ -7,14 +7,10 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit  # a part of scipy.stats that loads quickly
 
 
-def possible(interval: tuple[float, float], least: float = 0.0) -> tuple[float, float]:
-    """Return an interval of a mean without impossible values: no time is negative.
-
-    Student's interval has no bounds. If bodies overlapped, the smallest measured value ``least`` is
-    negative and is the bound instead.
-    """
+def possible(interval: tuple[float, float]) -> tuple[float, float]:
+    """Return an interval of a mean without impossible values: no time or count is negative."""
     low, high = interval
-    return max(low, min(least, 0.0)), high
+    return max(low, 0.0), high
 
 
 def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:

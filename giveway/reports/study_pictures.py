@@ -260,13 +260,13 @@ def _by_cell(study: StudyFolder, name: str) -> dict[int, NDArray[np.float64]]:
 def _trade_off(study: StudyFolder) -> Iterator[Picture]:
     times = _by_cell(study, "completion_time")
     name = "completion_time" if any(v.size for v in times.values()) else "total_wait"
-    x, y = _by_cell(study, name), _by_cell(study, "minimum_clearance")
+    x, y = _by_cell(study, name), _by_cell(study, "close_passes")
     confidence = study.definition.comparison.confidence
     points = [
         TradeOffPoint(
             " / ".join(context.key), label, float(x[cell].mean()), float(y[cell].mean()),
             possible(mean_interval(x[cell], confidence)),
-            possible(mean_interval(y[cell], confidence), float(y[cell].min())),
+            possible(mean_interval(y[cell], confidence)),
         )
         for context in contexts(study)
         for label, cell in context.cells.items()
@@ -277,25 +277,25 @@ def _trade_off(study: StudyFolder) -> Iterator[Picture]:
     labels = [label for label in compared_labels(study) if any(p.level == label for p in points)]
     factors = " / ".join(contexts(study)[0].levels)
     tags = f" Beside each point: {factors}." if factors else ""
-    time, clearance = metric(name), metric("minimum_clearance")
+    time, passes = metric(name), metric("close_passes")
     yield Picture(
         name="tradeoff",
         section="trade-off",
         caption=(
-            f"Mean {time.label} against mean {clearance.label} of each cell, with "
+            f"Mean {time.label} against mean {passes.label} of each cell, with "
             f"{100.0 * confidence:g} % intervals of the means (Student's t, as far as they are "
-            f"possible). Up and to the left is better; a thin line joins cells that differ in "
+            f"possible). Down and to the left is better; a thin line joins cells that differ in "
             f"{study.definition.comparison.factor} alone.{tags}"
         ),
         alt="; ".join(
-            f"{p.context} {p.level}: {p.x:.2f} {time.unit}, {p.y:.2f} {clearance.unit}"
+            f"{p.context} {p.level}: {p.x:.2f} {time.unit}, {p.y:.2f} {passes.label}"
             for p in points
         ),
         figure=tradeoff_figure(
             sorted(points, key=lambda point: labels.index(point.level)),
             level_colours(compared_labels(study), baseline_label(study)),
             x_label=(f"Mean {time.label}", time.unit),
-            y_label=(f"Mean {clearance.label}", clearance.unit),
+            y_label=(f"Mean {passes.label}", passes.unit),
         ),
     )
 
