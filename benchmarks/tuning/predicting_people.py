@@ -2,7 +2,7 @@
 
 Run: python benchmarks/tuning/predicting_people.py --write drives.json [--people MIXED SIM orca]
          [--goals known heading] [--seeds 901 913] [--predictors 'VCI, MIXED' drift]
-         [--weights '' careful 'conflicts 4']
+         [--weights '' careful 'precaution 40']
      python benchmarks/tuning/predicting_people.py --show drives.json [--against 'VCI, MIXED']
 
 Drives that the file has already are not repeated. A person is passed closely whose smallest
@@ -48,9 +48,9 @@ WEIGHTS: dict[str, dict[str, Any]] = {
     "": {},
     "careful": {"style": "careful"},
     "assertive": {"style": "assertive"},
-    "conflicts 4": {"conflict_weight": 4.0, "nearness_weight": 20.0, "minimum_distance": 0.8},
+    "precaution 40": {"precaution_weight": 40.0},
 }
-"""Options of the planner: its default, the other styles, and heavy weights of what is close."""
+"""Options of the planner: its default, the other styles, and a heavy weight of precaution."""
 # Columns of the table: number of a drive, its mean, sum or largest over the drives, decimals
 SHOWN: dict[str, tuple[str, Callable[[list[float]], float], int]] = {
     "time [s]": ("time", np.mean, 1),
