@@ -86,7 +86,7 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("planner", "terminal"): "leave it out: it is always off",
     ("planner", "block_growth"): "leave it out: it is always 0.25",
     **{
-        (table, name): "write [controller_options] precaution_weight (--set precaution_weight=10), "
+        (table, name): "write [controller_options] precaution_weight (--set precaution_weight=5), "
         "or leave it out"
         for table in ("planner", "controller_options")
         for name in ("conflict_weight", "nearness_weight")
