@@ -77,7 +77,7 @@ def test_every_ingredient_can_be_changed_and_matters(drive: Run, name: str) -> N
 
 
 @pytest.mark.parametrize(
-    ("name", "seed", "until"), [("calm_time", 6, 12.0), ("threat_weight", 1, 16.0)]
+    ("name", "seed", "until"), [("calm_time", 6, 12.0), ("threat_weight", 2, 16.0)]
 )
 def test_calm_speeds_matter_in_some_crowds(drive: Run, name: str, seed: int, until: float) -> None:
     usual = drive(controller="mpc", seed=seed, time_limit=until)

@@ -7,7 +7,7 @@ import giveway
 
 
 def drive(controller="mpc", **perception):
-    run = {"scenario": "shared_space", "seed": 8, "crowd": {"pedestrians": 30, "preset": "SIM"}}
+    run = {"scenario": "shared_space", "seed": 2, "crowd": {"pedestrians": 30, "preset": "SIM"}}
     return giveway.run(run | {"controller": controller, "perception": perception}, pictures=False)
 
 
@@ -17,7 +17,7 @@ def test_a_tracker_takes_most_of_it_away():
         for perception in ({}, {"position_noise": 0.1}, {"position_noise": 0.1, "tracker": False})
     )
     assert tracked < exact + 1.0
-    assert raw > exact + 1.0
+    assert raw > exact + 5.0
 
 
 @pytest.mark.parametrize("controller", ["mpc-paper", "pid-paper"])
