@@ -1,4 +1,4 @@
-"""What the planner predicts people with: the same drives with each predictor, compared in pairs.
+"""Compares what the planner predicts people with: the same drives with each predictor, in pairs.
 
 Run: python benchmarks/tuning/predicting_people.py --write drives.json [--people MIXED SIM orca]
          [--goals known heading] [--seeds 901 913] [--predictors 'VCI, MIXED' drift]
