@@ -38,7 +38,7 @@ _STANDS = 0.25  # speed [m/s] below which a person is predicted to go on standin
 _NEVER = -1  # number of a look that never took place
 
 WALKS, YIELDS, KEEPS_ON = 0, 1, 2
-"""The motions that a person is predicted with: as the model says, yielding, keeping the velocity."""
+"""The motions that a person is predicted with: by the model, yielding, at the same velocity."""
 
 Yielding = tuple[NDArray[np.int8], float, float, float]
 
