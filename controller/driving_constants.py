@@ -24,7 +24,7 @@ speed [m/s]: 30 km/h, the limit where people walk beside cars (WHO, Speed manage
 
 PASSING_TAIL: Final = 0.5, 1.5
 """Clearance [m] of people beside the rear half up to which this speed [m/s] is kept. People walk
-behind a car that has passed them: all close passes of DUT's recorded drivers are there."""
+behind a car that has passed them: all close passes in DUT's roundabout clips are there."""
 
 AT_REST: Final = 1.1
 """Distance [m] from the middle of a person in front at which the ego comes to rest; giveway's own
