@@ -6,18 +6,18 @@ import pytest
 import giveway
 
 
-def drive(controller="mpc", **perception):
-    run = {"scenario": "shared_space", "seed": 2, "crowd": {"pedestrians": 30, "preset": "SIM"}}
+def drive(controller="mpc", seed=8, **perception):
+    run = {"scenario": "shared_space", "seed": seed, "crowd": {"pedestrians": 30, "preset": "SIM"}}
     return giveway.run(run | {"controller": controller, "perception": perception}, pictures=False)
 
 
 def test_a_tracker_takes_most_of_it_away():
     exact, tracked, raw = (
-        drive(**perception).summary["completion_time"]
+        drive(seed=1, **perception).summary["completion_time"]
         for perception in ({}, {"position_noise": 0.1}, {"position_noise": 0.1, "tracker": False})
     )
     assert tracked < exact + 1.0
-    assert raw > exact + 5.0
+    assert raw > exact + 10.0
 
 
 @pytest.mark.parametrize("controller", ["mpc-paper", "pid-paper"])
