@@ -8,7 +8,7 @@ import pytest
 from controller import LongitudinalModel, Planner, PlannerParameters
 from controller.planning import Road
 from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions, plan_predictor
-from giveway.ego.foresight.intent import IntentEstimator, shifted
+from giveway.ego.foresight.intent import KEEPS_ON, WALKS, IntentEstimator, shifted
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
@@ -69,6 +69,17 @@ def test_a_person_who_slows_down_is_found_out_before_standing():
         else:
             assert way[0] == 18.0
             assert -4.0 < way[1] < -HALF
+
+
+@pytest.mark.parametrize(
+    ("y", "pace", "expected"),
+    [(0.0, PACE, KEEPS_ON), (0.0, 0.0, KEEPS_ON), (-2.4, 0.0, KEEPS_ON), (-2.4, PACE, WALKS)],
+    ids=["walks on the way", "stands on the way", "stands beside it", "walks beside it"],
+)
+def test_who_is_on_the_way_or_stands_is_not_pushed_aside(y, pace, expected):
+    seen = estimator()
+    seen.update(walker(y, pace), np.array([7]), FRONT, np.empty(0))
+    assert seen.yielding[0].tolist() == [expected]
 
 
 def test_who_goes_on_after_all_is_believed():
