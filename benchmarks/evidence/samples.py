@@ -67,8 +67,8 @@ LIGHTS = Study(
         "factors": {
             "scenario": ROADS,
             "plans": {
-                "told": {},
-                "not told": {"rules": {"signal_advice": False}},
+                "told": {"rules": {"signal_advice": True}},
+                "not told": {},
             },
         },
         "comparison": {"factor": "plans", "baseline": "not told"},

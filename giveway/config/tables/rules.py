@@ -9,6 +9,9 @@ from giveway.plug_ins.sockets import RULE, Socket
 OF_PRIORITY = frozenset({"crossings", "right_of_way", "merging"})
 """The rules of priority; by default they hold if the controller's declaration says so."""
 
+OFF_BY_DEFAULT = frozenset({"signal_advice"})
+"""The rules that hold only if they are asked for."""
+
 
 class RulesConfig(PlugInTable):
     """The rules of the road that the ego heeds; its controller decides on one that is left out."""
@@ -21,8 +24,14 @@ class RulesConfig(PlugInTable):
     signal_advice: bool | None = option(
         None,
         None,
-        "Traffic lights tell the ego their plan (SPaT). The ego waits for nobody who will find "
-        "theirs red, and mpc arrives when its own light is green. They do by default",
+        "The ego's own light tells it its plan (SPaT), and mpc arrives when it is green. It does "
+        "not by default",
+    )
+    signal_plans: bool | None = option(
+        None,
+        None,
+        "Walkers' lights tell the ego when they change. The ego waits for nobody who will find "
+        "theirs red, and knows when people at the kerb may start. They do by default",
     )
     stops: bool | None = option(
         None,

@@ -88,7 +88,7 @@ class RouteContext:
     @property
     def change_of(self) -> ChangeOf:
         """The function that returns the next change of a traffic light, as far as it is known."""
-        return self.session.signal_plans.change if self.heeds("signal_advice") else untold
+        return self.session.signal_plans.change if self.heeds("signal_plans") else untold
 
     @cached_property
     def profile(self) -> SpeedProfile | None:

@@ -20,10 +20,12 @@ from giveway.sumo.signal_plans import Greens, GreensOf
 
 _ARROW = frozenset("s")  # letter of red with a green arrow: a turn is allowed after a stop
 _SLOWED = 0.8  # share of the speed at the decision to pass at yellow, below which the ego stops
-_SLOWEST = 2.0  # lowest advisory speed [m/s]
+_SLOWEST = 5.0  # lowest advisory speed [m/s], as of SUMO's device.glosa.min-speed
+_KEPT_UP = 4.0  # pace [m/s] below which advice that was begun ends
 _FAR = 150.0  # distance [m] within which the ego receives a signal plan
 _STARTS = 1.0  # start-up time [s] of the first vehicle after the light turns green
 _COASTING = 0.4  # largest drop [m/s] of the advisory speed below the present one (1 m/s^2)
+FOLLOWED = 50.0  # distance [m] of a vehicle behind, within which nothing is advised
 _WAVE = 4.2  # speed [m/s] of the start-up wave in a queue, 15 km/h (Treiber & Kesting 2013)
 
 
@@ -68,6 +70,7 @@ class TrafficLights:
         self._next = 0
         self._greens_of = greens_of
         self._greens: Greens = ()  # green windows of the next light
+        self._advises = False  # whether it follows the advice for the next light
         self._desired_speed = desired_speed
         self._gap = gap
         self.needs = Needs(frozenset(light.system for light in self._lights))
@@ -129,7 +132,7 @@ class TrafficLights:
         """The station [m] at which the front bumper has to stop; inf if it need not stop."""
         while self._next < len(self._lights) and self._lights[self._next].station <= front:
             self._next += 1
-            self._greens = ()  # they belonged to the light that was passed
+            self._greens, self._advises = (), False  # they belonged to the light that was passed
         for i in range(self._next, len(self._lights)):
             colour = self._colours[i]
             stops = colour in self._red or (colour in YELLOW and self._passing[i] == 0.0)
@@ -138,8 +141,12 @@ class TrafficLights:
         return math.inf
 
     def _advised(self, situation: Situation) -> float:
-        """The speed [m/s] at which the ego arrives at green (GLOSA), or inf without advice."""
-        if self._next >= len(self._lights):
+        """The speed [m/s] at which the ego arrives at green (GLOSA), or inf without advice.
+
+        There is no advice below `_SLOWEST`, none that would slow a vehicle close behind, and none
+        to arrive in a queue that has not left before the light turns red again.
+        """
+        if self._next >= len(self._lights) or situation.follower_gap < FOLLOWED:
             return math.inf
         front, speed = situation.station, situation.speed
         wanted = self._desired_speed(front)
@@ -152,11 +159,15 @@ class TrafficLights:
                 place = min(place, ahead.station - self._gap)
         there = (place - front) / wanted
         for begin, end in self._greens:
-            if there < begin + queue:
-                pace = (place - front) / (begin + max(queue, _STARTS))
-                return max(pace, _SLOWEST, speed - _COASTING)
-            if there < end:
+            if there >= end:
+                continue
+            arrival = begin + max(queue, _STARTS)
+            if there >= begin + queue or arrival >= end:
                 break
+            pace = (place - front) / arrival
+            # Slowing down costs a little of the pace, which does not end the advice.
+            self._advises = pace >= (_KEPT_UP if self._advises else _SLOWEST)
+            return max(pace, _SLOWEST, speed - _COASTING) if self._advises else math.inf
         return math.inf
 
     def _needed(self, i: int, front: float, speed: float) -> float:

@@ -88,7 +88,7 @@ def test_at_yellow_the_ego_stops_if_it_can(drive: Drive, departure: float, passe
         find("junction").config_file,
         ego={"depart_time": departure, "depart_position": 60.0, "initial_speed": 8.0},
         regulation={"reference_speed": 8.0},
-        rules={"following": False, "signal_advice": False},
+        rules={"following": False, "signal_plans": False},
         crowd={"zone": "none"},
         time_limit=12.0,
     )

@@ -15,7 +15,7 @@ def drive(seed, **changes):
     close to the kerb beside cars.
     """
     run = {"scenario": "crossings", "seed": seed, "time_limit": 18.0, "crowd.preset": "SIM"}
-    return giveway.run(run | {"rules.signal_advice": False} | changes)
+    return giveway.run(run | {"rules.signal_plans": False} | changes)
 
 
 def beside_the_sidewalk(result):

@@ -53,7 +53,7 @@ def turning(priority):
     """When the ego's front comes onto the southern crossing, and who is in its way there then."""
     ego = {"route": ["west_in", "south_out"], "depart_time": 82.0, "depart_position": 70.0}
     regulation = {"reference_speed": SLOWLY}
-    rules = rules_of(priority) | {"signal_advice": False}  # it stands before the red light
+    rules = rules_of(priority) | {"signal_plans": False}  # it stands before the red light
     run = {"scenario": "junction", "seed": 26, "regulation": regulation, "rules": rules}
     result = giveway.run(
         run | {"crowd": BOLD, "controller_options": RASH, "ego": ego | {"travel_distance": 70.0}}

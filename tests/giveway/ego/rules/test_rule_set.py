@@ -141,7 +141,7 @@ def test_each_rule_has_a_key_that_switches_it_off() -> None:
     """On the made-up road two rules have a say; each is gone without its key."""
     names = {"traffic_lights": "TrafficLights", "speed_limits": "SpeedLimits"}
     for off in (None, *names):
-        settings: dict[str, Any] = {"rules": {"signal_advice": False}}
+        settings: dict[str, Any] = {"rules": {"signal_plans": False}}
         if off is not None:
             settings["rules"][off] = False
         if off == "speed_limits":
