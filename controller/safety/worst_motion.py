@@ -39,7 +39,8 @@ _SETTING_OUT = 0.6
 """Largest acceleration [m/s^2] of people on foot in SPOT, the tool of Koschi et al."""
 
 #: Larger percentile of two data sets, rounded up (CITR and DUT, Yang et al. 2019, arXiv 1902.00487:
-#: people within 5 m of a moving vehicle, smoothed over 0.5 s).
+#: people within 5 m of a moving vehicle, smoothed over 0.5 s). docs/safety.md has the share of
+#: people at each site who keep to them.
 RECORDED: Final[Mapping[str, WorstMotion]] = MappingProxyType(
     {
         "recorded-99.9": WorstMotion(3.0, 3.3, _SETTING_OUT),  # percentile 99.9 of the frames

@@ -56,3 +56,33 @@ def test_the_onset_is_the_time_from_calm_to_brisk() -> None:
     assert worst.onsets([track], 0.1) == pytest.approx([0.4])
     nobody = track._replace(near=~near)
     assert len(worst.onsets([nobody], 0.1)) == 0
+
+
+def test_needed_is_the_acceleration_less_what_the_margin_allows(clips) -> None:
+    found = worst.needed(list(worst.tracks(clips, 0.5, 10.0)), 1.0 / RATE)
+    # 2 s later, 1 m from the straight line; the margin of 5 cm is worth 0.025 m/s^2
+    seen = found.acceleration > 0.47
+    assert seen.sum() > 20
+    assert found.acceleration[seen] == pytest.approx(0.475, abs=0.001)
+    assert set(found.person.tolist()) == {0}
+    assert (found.speed > 0.5).all()
+
+
+def test_the_last_positions_give_a_velocity_that_is_late(clips) -> None:
+    found = worst.needed(list(worst.tracks(clips, 0.0, 10.0)), 1.0 / RATE, late=True)
+    # 7 frames: 0.117 s late, thus 0.117 m more within 2 s, and 0.05 m less by the margin
+    assert np.median(found.acceleration) == pytest.approx(0.5334, abs=0.001)
+
+
+def test_the_interval_of_a_quantile_is_that_of_its_clips() -> None:
+    values, clip = np.repeat([1.0, 2.0, 3.0], 100), np.repeat([4, 5, 6], 100)
+    assert worst.quantile(values, clip, 0.5) == (2.0, 1.0, 3.0)
+    assert worst.quantile(values, np.zeros(300, dtype=int), 0.5) == (2.0, 2.0, 2.0)
+
+
+def test_the_table_of_sites_says_who_keeps_to_the_bounds(clips, capsys) -> None:
+    worst.sites(clips)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split(" | ")[1] for line in lines[2:]] == ["5", "10", "10", "10"]
+    assert all(line.startswith("| CITR | ") for line in lines[2:])
+    assert all(line.endswith(" | 100.0, 100.00 | 100.0, 100.00 |") for line in lines[2:])
