@@ -68,6 +68,12 @@ def test_whose_way_it_is(who, reason):
     assert answer(8.0, people=who).reason == reason
 
 
+@pytest.mark.parametrize(("y", "reason"), [(-9.0, "free"), (-7.0, "person")])
+def test_at_rest_it_accepts_a_gap_that_it_clears_in_time(y, reason):
+    # 3 m to the person's place and 4.5 m of vehicle, at 1 m/s^2 from rest: 3.9 s, and 1 s of margin
+    assert answer(0.0, people=person(3.0, y, 1.4)).reason == reason
+
+
 @pytest.mark.parametrize(
     ("name", "value"), [("acceleration", 0.0), ("headway", -1.0), ("exponent", np.nan)]
 )
