@@ -6,7 +6,7 @@ from math import sqrt
 from controller import Controller, SafetyParameters
 from fmus import FmuError
 from giveway.config import EgoRunConfig
-from giveway.config.files.presets import bodies_of, crowd_of
+from giveway.config.files.presets import crowd_of, expected_of
 from giveway.ego.foresight.predictors import predictor_of
 from giveway.ego.people_assumed import people_at_worst
 from giveway.ego.recorded_ego import NoController, RecordedVehicle
@@ -36,8 +36,7 @@ def make_waiting_ego(
     Raises:
         VehicleError: the FMU cannot be loaded.
     """
-    crowd, perception = crowd_of(config), config.perception
-    expected = bodies_of(perception.model, perception.preset or config.crowd.preset)
+    crowd, expected = crowd_of(config), expected_of(config)
     with retold(FmuError, VehicleError):
         vehicle, description = open_for(config, time_step, stack)
     predictor = predictor_of(config, controller, time_step, expected)

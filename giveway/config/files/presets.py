@@ -11,7 +11,8 @@ import tomlkit
 
 from giveway.config.files.schema_names import PRESET, with_schema
 from giveway.config.files.toml import read_toml_file
-from giveway.config.run_config import RunConfig
+from giveway.config.option import DEFAULT_PRESET
+from giveway.config.run_config import EgoRunConfig, RunConfig
 from giveway.config.tables.crowd import VCI
 from giveway.config.tables.recorded import RECORDED
 from giveway.errors import ConfigError, suggestion
@@ -80,6 +81,22 @@ def crowd_of(config: RunConfig) -> VciParameters:
     model = config.crowd.model
     moving = config.recorded_options.then if model == RECORDED else model
     return bodies_of(moving, config.crowd.preset)
+
+
+def expected_of(config: EgoRunConfig) -> VciParameters:
+    """Return the parameters by which an ego's controller predicts people.
+
+    By default they are those of ``MIXED``, whatever the people walk by. A controller that declares
+    the people whom it meets, as the paper's do, predicts by the crowd's own.
+
+    Args:
+        config: Configuration of the ego.
+
+    Raises:
+        ConfigError: the preset cannot be used.
+    """
+    declared = config.crowd.preset if config.defaults.crowd_preset else DEFAULT_PRESET
+    return bodies_of(config.perception.model, config.perception.preset or declared)
 
 
 def require_steady_preset(preset: str, time_step: float, where: str) -> None:

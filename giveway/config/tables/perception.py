@@ -59,8 +59,8 @@ class PerceptionConfig(Section):
     preset: Preset = option(
         "",
         None,
-        "Parameters by which people are predicted, as [crowd] preset. By default they are those "
-        "of the crowd",
+        "Parameters by which people are predicted, as [crowd] preset. By default MIXED, whatever "
+        "people walk by; the paper's controllers know those of the crowd",
     )
 
     @property

@@ -10,11 +10,19 @@ import pytest
 import giveway
 from giveway.config import RunConfig
 from giveway.config.files.loading import as_layer, load
-from giveway.config.files.presets import bodies_of, crowd_of, parameters_of, preset_text
+from giveway.config.files.presets import (
+    bodies_of,
+    crowd_of,
+    expected_of,
+    parameters_of,
+    preset_text,
+)
 from giveway.config.option import PRESET_NAMES
 from giveway.errors import ConfigError
 from giveway.studies.identity import cell_digest, input_hashes
 from pedestrian_model import PRESETS, SIM, TABLE2, VciParameters
+
+MIXED = PRESETS["MIXED"]
 
 
 @pytest.fixture
@@ -97,6 +105,30 @@ def test_a_file_beside_the_configuration_is_found_from_anywhere(preset, tmp_path
 
 
 PEOPLE = {"pedestrians": 30}
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        ({}, MIXED),
+        ({"crowd": {"preset": "SIM"}}, MIXED),
+        ({"crowd": {"preset": "SIM"}, "perception": {"preset": "TABLE2"}}, TABLE2),
+        ({"controller": "mpc-paper"}, SIM),
+        ({"controller": "mpc-paper", "crowd": {"preset": "TABLE2"}}, TABLE2),
+        ({"controller": "mpc-paper", "perception": {"preset": "MIXED"}}, MIXED),
+    ],
+)
+def test_only_the_papers_controllers_predict_by_the_crowds(said, expected) -> None:
+    (ego,) = load([as_layer({"scenario": "shared_space"} | said)])[0].each_ego()
+    assert expected_of(ego) == expected
+
+
+def test_another_model_is_believed_with_its_own_acceleration() -> None:
+    believed = {"crowd": {"preset": "SIM"}, "perception": {"model": "orca"}}
+    (ego,) = load([as_layer({"scenario": "shared_space"} | believed)])[0].each_ego()
+    assert expected_of(ego) == replace(MIXED, max_acceleration=SIM.max_acceleration)
+
+
 SETTINGS = {"controller": "mpc-paper", "seed": 3, "time_limit": 8.0}
 
 
