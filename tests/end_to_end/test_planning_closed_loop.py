@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 FREE, GIVES_WAY = 7, 4  # crowds that leave the ego alone, and that it waits for
 SHORT = 9.0  # [s] the first pedestrians and the ego meet after some 6 s
+SIM = {"crowd": {"preset": "SIM"}, "perception": {"preset": "SIM"}}
 SWITCHES = {
     "effort_weight": 0.0,
     "jerk_weight": 0.0,
@@ -30,8 +31,8 @@ SWITCHES = {
 
 @pytest.fixture
 def drive(run_once: Run) -> Run:
-    """Drive before people of SIM: the seeds were chosen for these crowds."""
-    return lambda **config: run_once(**config, crowd={"preset": "SIM"})
+    """Drive before people of SIM, who are known: the seeds were chosen for these crowds."""
+    return lambda **config: run_once(**config, **SIM)
 
 
 def speeds(run: RunResult) -> np.ndarray:
@@ -57,7 +58,7 @@ def test_it_keeps_the_actuators_limits_where_it_acts(drive: Run) -> None:
 
 def test_the_same_seed_gives_the_same_bytes(drive: Run) -> None:
     config = {"controller": "mpc", "seed": GIVES_WAY, "time_limit": SHORT}
-    one, other = drive(**config), giveway.run(config | {"crowd": {"preset": "SIM"}})
+    one, other = drive(**config), giveway.run(config | SIM)
     for name in ("position", "speed", "force"):
         assert getattr(one.ego_track, name).tobytes() == getattr(other.ego_track, name).tobytes()
 

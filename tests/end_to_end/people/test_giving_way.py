@@ -10,7 +10,8 @@ import giveway
 
 RASH = {"precaution_weight": 0.0}  # an ego that gives way for the law's sake alone
 SLOWLY = 4.0  # [m/s] so that both drives come when people are there
-BOLD = {"preset": "SIM"}  # people who come before cars that do not let them pass
+# People who come before cars that do not let them pass, and who are expected to
+BOLD = {"crowd": {"preset": "SIM"}, "perception": {"preset": "SIM"}}
 ZEBRA = (58.0, 62.0)  # [m] from where to where along the road (x)
 WAY = (-1.75 - 1.3, -1.75 + 1.3)  # [m] the body's way over it (y), and a body's radius
 
@@ -20,7 +21,7 @@ def in_the_way(priority):
     run = {
         "scenario": "junction",
         "seed": 8,
-        "crowd": BOLD,
+        **BOLD,
         "controller_options": RASH,
         "regulation": {"reference_speed": SLOWLY},
         "rules": rules_of(priority),
@@ -56,7 +57,7 @@ def turning(priority):
     rules = rules_of(priority) | {"signal_plans": False}  # it stands before the red light
     run = {"scenario": "junction", "seed": 26, "regulation": regulation, "rules": rules}
     result = giveway.run(
-        run | {"crowd": BOLD, "controller_options": RASH, "ego": ego | {"travel_distance": 70.0}}
+        run | BOLD | {"controller_options": RASH, "ego": ego | {"travel_distance": 70.0}}
     )
     ego = result.ego
     onto = ego.time[ego.y <= ARM[1]].iloc[0]

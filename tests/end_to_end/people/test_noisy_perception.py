@@ -8,7 +8,8 @@ import giveway
 
 def drive(controller="mpc", seed=8, **perception):
     run = {"scenario": "shared_space", "seed": seed, "crowd": {"pedestrians": 30, "preset": "SIM"}}
-    return giveway.run(run | {"controller": controller, "perception": perception}, pictures=False)
+    seen = {"preset": "SIM", **perception}
+    return giveway.run(run | {"controller": controller, "perception": seen}, pictures=False)
 
 
 def test_a_tracker_takes_most_of_it_away():

@@ -48,6 +48,7 @@ def cross(tmp_path_factory):
                 "regulation": {"reference_speed": 4.0},
                 "rules": rules_of(priority),
                 "crowd": {"zone": "everywhere", "preset": preset},
+                "perception": {"preset": preset},
                 "record": {"near": 200.0, "far_period": 0.05},
                 "time_limit": 25.0,
                 "ego": ego,

@@ -31,6 +31,7 @@ LIKE_THE_PAPER = {
     "rules": NO_PRIORITY,
     "perception.tracker": False,
     "crowd.preset": "SIM",
+    "perception.preset": "SIM",
 }
 SHORT: dict[str, Any] = {"time_limit": 3.0, "crowd": {"pedestrians": 3}}
 HEADWAY = """
