@@ -134,16 +134,28 @@ def test_it_drives_up_to_where_the_way_ends(room):
     assert hardest < 2.0
 
 
-@pytest.mark.parametrize("to_clear", [0.0, 4.0])
-def test_it_drives_on_from_where_it_would_block_others(bystanders, to_clear):
-    """Behind somebody who stays, with its rear on a crossing: on to where it rests anyway."""
+def rest(bystanders, at, to_clear):
+    """Where it rests [m] from a standstill, behind somebody at the station ``at`` who stays."""
     controller = PlanningController(Planner(MODEL, PlannerParameters()))
-    crowd = bystanders(np.array([7.0]), [np.inf], N)
+    crowd = bystanders(np.array([at]), [np.inf], N)
     x, v = 0.0, 0.0
-    for k in range(200):
+    for k in range(STEPS):
         crowd.step, crowd.front = k, x
         seen = Observation(x, v, crowd.gap(), FREE, foresight=crowd, to_clear=to_clear - x)
         force = controller.control(seen).force
         x += DT * v
         v = max(0.0, MODEL.decay * v + MODEL.speed_per_force * force)
-    assert 7.0 - LEAST - 0.3 < x < 7.0 - LEAST + 0.1
+    return x
+
+
+def test_it_drives_on_from_where_it_would_block_others(bystanders):
+    """With its rear on a crossing it drives on for less room than it would need elsewhere."""
+    places = np.arange(2.5, 4.5, 0.1)
+    elsewhere, blocking = (
+        np.array([rest(bystanders, at, to_clear) for at in places]) for to_clear in (0.0, 1.0)
+    )
+    driven = blocking > elsewhere + 1.0
+    assert driven.any()
+    assert (elsewhere[driven] == 0.0).all(), "it stands where nobody is blocked"
+    np.testing.assert_allclose(blocking[driven], places[driven] - LEAST, atol=0.1)
+    np.testing.assert_allclose(blocking[~driven], elsewhere[~driven], atol=0.1)
