@@ -64,10 +64,13 @@ to leave one; giveway's own choice."""
 FOLLOW_LIMIT: Final = 4.0
 """Largest deceleration [m/s²] with which the tuned PID follows a falling limit; giveway's own."""
 
-LATERAL_ACCELERATION: Final = 2.0
-"""Largest lateral acceleration [m/s²] in a bend. Roads are designed for the side friction that
-drivers still find comfortable: 0.20 g at 30 mph (AASHTO, A Policy on Geometric Design of Highways
-and Streets, 2011, section 3.3)."""
+SIDE_FRICTION: Final = (
+    (10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0, 80.0),
+    (0.38, 0.32, 0.27, 0.23, 0.20, 0.18, 0.16, 0.15, 0.14, 0.13, 0.12, 0.11, 0.10, 0.09, 0.08),
+)
+"""Speeds [mph], and the largest lateral acceleration [g] in a bend at each: the side friction that
+drivers still find comfortable (AASHTO, A Policy on Geometric Design of Highways and Streets, 2011,
+section 3.3)."""
 
 STOPS_AT_YELLOW: Final = 2.5
 """Deceleration [m/s²] with which others stop at a yellow light; giveway's own choice."""

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller._jit import Array
+from controller.driving_constants import FOLLOW_LIMIT
 from controller.observation import Observation
 from controller.parameters import require_not_negative, require_positive
 from controller.plug_in import Acceleration, Setup
@@ -33,6 +34,7 @@ _POSITIVE = {
     "half_width": "m",
     "length": "m",
 }
+_TAKES_UP = 0.5  # time constant [s] with which the driver follows a limit that falls, as in a bend
 _SLOWEST = 1.0  # least speed [m/s] for the computation of arrival times
 
 
@@ -90,6 +92,8 @@ class IntelligentDriver:
         if seen.speed_limit < wanted:
             wanted, cause = max(seen.speed_limit, _NEARLY), "speed limit"
         best = self._acceleration(v, wanted, inf, 0.0), cause
+        if seen.speed_limit < v:  # the IDM alone comes down to a limit only slowly
+            best = min(best, (max((seen.speed_limit - v) / _TAKES_UP, -FOLLOW_LIMIT), cause))
         leaders = (
             (seen.leader_gap, seen.leader_speed, "vehicle"),
             (seen.stop_gap - _AT_LINE + o.standing_gap, 0.0, "stop line"),

@@ -13,6 +13,7 @@ import numpy as np
 from giveway.cosimulation.entry.departure_time import departure_time
 from giveway.cosimulation.entry.entrance import Entrance, initial_speed, require_way, shape_of
 from giveway.cosimulation.entry.room import Entry, has_room
+from giveway.cosimulation.entry.smoothing import smoothed
 from giveway.ego.ego import Ego
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ConfigError, ScenarioError, suggestion
@@ -298,7 +299,9 @@ class Departures:
             settings.route, settings.lane, start=settings.depart_position
         )
         path = EgoPath.through(lane_path.points)
-        require_way(ego, path, settings.depart_position)
+        begin = settings.depart_position
+        path, lane_path = smoothed(ego, path, lane_path, begin, shape_of(ego, BODY))
+        require_way(ego, path, begin)
         return path, lane_path
 
     def _enter(self, ego: WaitingEgo) -> Ego:

@@ -5,6 +5,7 @@ import math
 from giveway.config.option import LANE
 from giveway.config.tables.basics import DEFAULT_SPEED
 from giveway.cosimulation.entry.joining import join
+from giveway.cosimulation.entry.smoothing import smoothed
 from giveway.cosimulation.entry.stop_places import SERVING, lanes_of, on_path, placed
 from giveway.cosimulation.law_records import LawfulPlaces, way_of
 from giveway.ego.controllers import make_controller
@@ -85,6 +86,7 @@ class Entrance:
             by=lanes_of(places, stops),
         )
         path, departure, joined = join(lane_path, state)
+        path, joined = smoothed(ego, path, joined, departure, shape, state.fastest)
         require_way(ego, path, departure)
         if ego.taken_over:
             vehicles.adopt(state, shape)

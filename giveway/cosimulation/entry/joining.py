@@ -1,7 +1,5 @@
 """The path by which a vehicle that is taken over joins its lane's centre line."""
 
-from dataclasses import replace
-
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.vehicles import VehicleState
@@ -28,23 +26,4 @@ def join(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, Lane
     beside = path.vertices[share > 1.0]
     joined = EgoPath.through([(state.x, state.y), *beside])
     shift = joined.length - (path.length - station)
-    lights = [light._replace(station=light.station - station + shift) for light in lane_path.lights]
-    return (
-        joined,
-        0.0,
-        replace(
-            lane_path,
-            points=joined.vertices,
-            lights=tuple(lights),
-            edges=tuple(begin - station + shift for begin in lane_path.edges),
-            limits=tuple(
-                limit._replace(station=limit.station - station + shift)
-                for limit in lane_path.limits
-            ),
-            passages=tuple(passage.shifted(shift - station) for passage in lane_path.passages),
-            heights=tuple(
-                height._replace(station=height.station - station + shift)
-                for height in lane_path.heights
-            ),
-        ),
-    )
+    return joined, 0.0, lane_path.moved(joined.vertices, lambda at: at - station + shift)

@@ -1,9 +1,9 @@
 """The free speed of an ego along its path if its lanes set it: ``reference_speed = lane``.
 
 Three limits cap the speed: those of the lanes, those of the vehicle (the highest speed of its
-controller, and the speed from which its safety layer can stop), and comfort in bends,
-v <= sqrt(a / curvature). A pass backwards from the end of the path lets the ego brake in time for
-a lower limit, with the comfortable deceleration.
+controller, and the speed from which its safety layer can stop), and comfort in bends, where
+v^2 times the curvature is at most the side friction at the speed v. A pass backwards from the end
+of the path lets the ego brake in time for a lower limit, with the comfortable deceleration.
 """
 
 import math
@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from controller import LongitudinalModel, SafetyLayer
-from controller.driving_constants import COMFORTABLE, LATERAL_ACCELERATION
+from controller.driving_constants import COMFORTABLE, SIDE_FRICTION
 from giveway.config.option import LANE
 from giveway.ego.perception.path_ahead import HALF, PathView
 from giveway.ego.waiting_ego import WaitingEgo
@@ -21,8 +21,14 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import SpeedLimit
 
-_STRAIGHT = 1e-9  # least curvature [1/m], against a division by zero
 _SLOWEST = 0.1  # least speed [m/s] of the profile, so that the ego never stands still for it
+_GRAVITY = 9.81  # [m/s^2]
+_MPH = 0.44704  # [m/s] one mile per hour
+_SPEEDS: Array = np.arange(_SLOWEST, 60.0, 0.1)  # [m/s] at which the side friction is tabulated
+# Curvature [1/m] at which each of these speeds is just comfortable
+_SHARPEST: Array = (
+    _GRAVITY * np.interp(_SPEEDS, _MPH * np.array(SIDE_FRICTION[0]), SIDE_FRICTION[1]) / _SPEEDS**2
+)
 _ROUNDING = 1e-9  # rounding error [m^2/s^2] of squared speeds
 _SPACING = 0.5  # spacing [m] of the stations at which the profile is known
 _PREVIEW = 0.3  # lag [s] of a controller behind a falling reference speed
@@ -56,8 +62,7 @@ class SpeedProfile:
     ) -> None:
         self._deceleration = deceleration
         stations: Array = _SPACING * np.arange(math.ceil(path.length / _SPACING) + 1.0)
-        bends = np.maximum(_curvature(path, length, stations), _STRAIGHT)
-        capped = np.minimum(_of_lanes(limits, stations), np.sqrt(LATERAL_ACCELERATION / bends))
+        capped = np.minimum(of_lanes(limits, stations), in_bends(path, length, stations))
         capped = np.maximum(np.minimum(capped, capable), _SLOWEST)
         # Braking reduces v^2 by 2 b per metre, so v^2 + 2 b s must not decrease along the path.
         braking = 2.0 * deceleration * stations
@@ -149,7 +154,7 @@ def profile_of(
     )
 
 
-def _of_lanes(limits: Sequence[SpeedLimit], stations: Array) -> Array:
+def of_lanes(limits: Sequence[SpeedLimit], stations: Array) -> Array:
     """The lanes' limits (k,) [m/s] at ``stations`` (k,) [m]; the lower one where two lanes meet."""
     speeds: Array = np.full(len(stations), math.inf)
     begins = [limit.station for limit in limits]
@@ -157,6 +162,18 @@ def _of_lanes(limits: Sequence[SpeedLimit], stations: Array) -> Array:
         touched = (stations > limit.station - _SPACING) & (stations < end + _SPACING)
         speeds[touched] = np.minimum(speeds[touched], limit.speed)
     return speeds
+
+
+def in_bends(path: EgoPath, length: float, stations: Array) -> Array:
+    """The speeds (k,) [m/s] that are comfortable in the bends at ``stations`` (k,) [m].
+
+    Args:
+        path: Path of the ego.
+        length: Length of its body [m].
+        stations: Stations [m] of the front bumper.
+    """
+    sharpness = _curvature(path, length, stations)
+    return np.interp(-sharpness, -_SHARPEST, _SPEEDS)
 
 
 def _curvature(path: EgoPath, length: float, stations: Array) -> Array:

@@ -1,7 +1,10 @@
 """The path along the lanes of a route: its centre line, lights, limits and junctions."""
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeVar
 
 from giveway.geometry.kernel import Array
 from giveway.sumo.network.heights import Height
@@ -23,17 +26,22 @@ class Passage(NamedTuple):
     inside: tuple[str, ...]  # lanes in between
     waiting: tuple[float, ...]  # [m] stations inside at which SUMO's vehicles wait for others
 
-    def shifted(self, by: float) -> "Passage":
-        """Return the same passage of a path that begins ``by`` [m] earlier."""
-        waiting = tuple(station + by for station in self.waiting)
-        return self._replace(entry=self.entry + by, exit=self.exit + by, waiting=waiting)
-
 
 class SpeedLimit(NamedTuple):
     """A speed limit that holds from a station of a lane path on."""
 
     station: float  # [m] station along the lane path
     speed: float  # [m/s] limit
+
+
+class LaneWidth(NamedTuple):
+    """The width of the lane from a station of a lane path on."""
+
+    station: float  # [m] station along the lane path
+    width: float  # [m]
+
+
+_Place = TypeVar("_Place", Light, SpeedLimit, LaneWidth, Height)
 
 
 @dataclass(frozen=True)
@@ -49,3 +57,34 @@ class LanePath:
     passages: tuple[Passage, ...]  # junctions whose inner lanes are in the network
     lanes: tuple[tuple[str, str], ...]  # lanes on which the path enters and leaves each edge
     heights: tuple[Height, ...] = ()  # heights of the lanes' vertices, in order
+    widths: tuple[LaneWidth, ...] = ()  # widths of the lanes, in order
+
+    def moved(self, points: Array, station: Callable[[float], float]) -> LanePath:
+        """Return the same lane path along another line.
+
+        Args:
+            points: Line (k, 2) [m].
+            station: Function that returns the station [m] on it of a station on this one.
+        """
+
+        def there(place: _Place) -> _Place:
+            return place._replace(station=station(place.station))
+
+        passages = (
+            each._replace(
+                entry=station(each.entry),
+                exit=station(each.exit),
+                waiting=tuple(map(station, each.waiting)),
+            )
+            for each in self.passages
+        )
+        return replace(
+            self,
+            points=points,
+            lights=tuple(map(there, self.lights)),
+            edges=tuple(map(station, self.edges)),
+            limits=tuple(map(there, self.limits)),
+            passages=tuple(passages),
+            heights=tuple(map(there, self.heights)),
+            widths=tuple(map(there, self.widths)),
+        )

@@ -14,7 +14,13 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at, stations_of
 from giveway.sumo.network.heights import Height, heights_of
 from giveway.sumo.network.internal_lanes import lanes_inside
-from giveway.sumo.network.lane_path import LanePath, Light, Passage, SpeedLimit
+from giveway.sumo.network.lane_path import (
+    LanePath,
+    LaneWidth,
+    Light,
+    Passage,
+    SpeedLimit,
+)
 from giveway.sumo.network.pedestrian_crossings import Crossing, crossings
 from giveway.sumo.network.shared_lanes import Merging, mergings
 
@@ -88,6 +94,7 @@ class Lanes:
         limits: list[SpeedLimit] = []
         passages: list[Passage] = []
         heights: list[Height] = []
+        widths: list[LaneWidth] = []
         driven = 0.0
         for number, (entry, leave) in enumerate(pairs):
             shape = self._changing(edges[number], entry, leave, start if number == 0 else 0.0)
@@ -95,6 +102,7 @@ class Lanes:
             begins.append(driven)
             own = {f"{edges[number]}_{i}" for i in (entry, leave)}
             limits.append(SpeedLimit(driven, min(map(self.speed_limit, own))))
+            widths.append(LaneWidth(driven, min(map(self.width, own))))
             heights += self._heights(f"{edges[number]}_{entry}", driven, _length(shape))
             driven += _length(shape)
             if number < len(links):
@@ -105,6 +113,7 @@ class Lanes:
                 begins_inside = self._begins_inside(link, driven, shape[-1:])
                 speeds = map(self.speed_limit, link.via)
                 limits.extend(map(SpeedLimit, begins_inside, speeds))
+                widths.extend(map(LaneWidth, begins_inside, map(self.width, link.via)))
                 inside = [self.shape(name) for name in link.via]
                 for name, begin in zip(link.via, begins_inside, strict=True):
                     heights += self._heights(name, begin, self.length(name))
@@ -124,6 +133,7 @@ class Lanes:
             tuple(passages),
             tuple((f"{e}_{i}", f"{e}_{j}") for e, (i, j) in zip(edges, pairs, strict=True)),
             tuple(heights),
+            tuple(widths),
         )
 
     def _heights(self, lane: str, begin: float, length: float) -> Iterator[Height]:

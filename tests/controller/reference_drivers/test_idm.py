@@ -80,3 +80,16 @@ def test_at_rest_it_accepts_a_gap_that_it_clears_in_time(y, reason):
 def test_a_driver_that_cannot_be_is_refused(name, value):
     with pytest.raises(ParameterError, match=name):
         IdmOptions(**{name: value})
+
+
+def test_a_limit_that_falls_before_a_bend_is_followed():
+    x, v, over = 0.0, 10.0, 0.0
+    driver = IntelligentDriver(SETUP, IdmOptions())
+    for _ in range(200):  # the limit falls with 2 m/s^2 down to 4 m/s, told 0.3 s ahead
+        limit = np.sqrt(max(16.0, 100.0 - 4.0 * (x + 0.3 * v)))
+        a = driver.control(Observation(x, v, np.inf, np.empty(0), speed_limit=limit)).value
+        assert a >= -4.0
+        x, v = x + 0.05 * (v + 0.025 * a), v + 0.05 * a
+        over = max(over, v - np.sqrt(max(16.0, 100.0 - 4.0 * x)))
+    assert over < 0.6
+    assert v == pytest.approx(4.0, abs=0.1)
