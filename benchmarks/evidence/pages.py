@@ -367,6 +367,23 @@ PAGES: dict[str, Page] = {
             ("pyproject.toml", "benchmarks/speed/install_cost.py"),
         ),
         Page(
+            "benchmark",
+            "docs/benchmark.md",
+            (
+                Block(
+                    "rivals",
+                    Command(
+                        "evidence/rivals.py --out {out} --jobs {jobs}",
+                        "seeds 701 to 800",
+                        "--out {out} --runs 2",
+                    ),
+                    printed,
+                ),
+            ),
+            (*DRIVING, "giveway/studies/benchmark"),
+            kept=True,
+        ),
+        Page(
             "paper",
             "docs/reproduction.md",
             (Block("table 2", samples.PAPER, comparisons.situations),),

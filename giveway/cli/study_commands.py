@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli.help import Commands
+from giveway.cli.help import Commands, JsonFlag
 from giveway.cli.option_groups import (
+    NoTables,
     RerunOutputs,
     StudyChoice,
     StudyComputation,
@@ -26,6 +27,7 @@ def add_studies(app: Commands) -> None:
     """Add the commands about studies to ``app``."""
     app.add("study", ungrouped(_study))
     app.add("studies", _studies)
+    app.add("benchmark", ungrouped(_benchmark))
     app.add("rerun", ungrouped(_rerun))
     app.add("report", _report)
     app.add("replay", _replay)
@@ -74,6 +76,49 @@ def _study(
         **outputs._asdict(),
     )
     raise typer.Exit(study_command(request, options))
+
+
+def _benchmark(
+    controllers: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="CONTROLLER...",
+            help="Bundled controllers, plug-ins or FMUs.",
+        ),
+    ],
+    *,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder (default results/benchmark_CONTROLLER).")
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option(help="TOML file with the options that the controller needs.")
+    ] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FACTOR=LEVEL",
+            help="This scene or these people alone, like people=MIXED; repeatable.",
+        ),
+    ] = None,
+    runs: Annotated[
+        int | None, typer.Option("--runs", help="Drives per scene (default 100).", min=1)
+    ] = None,
+    computation: StudyComputation,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show the plan and the time it will take.")
+    ] = False,
+    quiet: NoTables = False,
+    as_json: JsonFlag = False,
+) -> None:
+    """Drive a controller through frozen scenes, and compare it with kept rivals; resumable."""
+    from giveway.cli.commands.benchmark_command import BenchmarkRequest, benchmark_command
+    from giveway.studies.study_options import StudyOptions
+
+    request = BenchmarkRequest(
+        tuple(controllers), config, tuple(only or ()), runs, out, dry_run, quiet, as_json
+    )
+    options = StudyOptions(**computation._asdict())
+    raise typer.Exit(benchmark_command(request, options))
 
 
 def _studies() -> None:

@@ -26,12 +26,17 @@ def print_levels(console: Console, study: StudyFolder) -> None:
         style="bold",
         highlight=False,
     )
-    parts = [_part(table, columns) for columns in _parts(table, console.width)]
-    console.print(Group(*parts), highlight=False)
+    print_level_table(console, table)
     console.print(
         "All metrics and the ends of the intervals: levels.csv; differences: comparison.csv",
         highlight=False,
     )
+
+
+def print_level_table(console: Console, table: LevelTable) -> None:
+    """Print a table of levels in parts that fit the terminal."""
+    parts = [_part(table, columns) for columns in _parts(table, console.width)]
+    console.print(Group(*parts), highlight=False)
 
 
 def _text(mean: Mean) -> str:

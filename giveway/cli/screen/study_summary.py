@@ -95,6 +95,21 @@ def print_summary(
     if study.definition.primary_outcome is not None and len(study.comparison):
         console.print(escape(primary_outcome(study)), highlight=False)
     _print_precision(console, study)
+    print_runs(console, study, made=made, elapsed=elapsed, workers=workers)
+
+
+def print_runs(
+    console: Console, study: StudyFolder, *, made: int, elapsed: float, workers: int | None
+) -> None:
+    """Print the number of runs, the time that they took, and those without a result.
+
+    Args:
+        console: Console to print on.
+        study: Folder of the study.
+        made: Number of runs that this session has made.
+        elapsed: Time [s] that making them took.
+        workers: Number of processes that made them, or None if a cluster made them.
+    """
     by = "" if workers is None else f" on {counted(workers, 'worker')}"
     there = len(study.records)
     new = "" if made == there else f", {made:,} of them made now,"

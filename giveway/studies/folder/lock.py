@@ -17,7 +17,8 @@ from giveway.studies.study_options import StudyOptions
 
 LOCK = ".lock"
 REPORT = "report.html"
-_DERIVED_FILES = frozenset({*(f"{name}.csv" for name in TABLES), PACKAGE, REPORT})
+BENCHMARK = "benchmark.csv"
+_DERIVED_FILES = frozenset({*(f"{name}.csv" for name in TABLES), PACKAGE, REPORT, BENCHMARK})
 _STUDY_FILES = (
     frozenset({DEFINITION, MANIFEST, RECORDS, ASIDE, "figures", "replays", "reruns"})
     | _DERIVED_FILES
