@@ -41,6 +41,7 @@ from controller.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Se
 from controller.protocol import Controller, Decision
 from controller.qp.least_squares import Outcome
 from controller.safety.layer import SafeForce, SafetyLayer, SafetyParameters
+from controller.safety.vehicle_layer import VehicleAhead, VehicleLayer, VehicleLimits
 from controller.safety.worst_motion import PeopleName, WorstMotion, worst_motion
 from controller.speed_controller import SpeedController
 
@@ -93,6 +94,9 @@ __all__ = [
     "Traffic",
     "TunedPid",
     "TunedPidParameters",
+    "VehicleAhead",
+    "VehicleLayer",
+    "VehicleLimits",
     "WorstMotion",
     "worst_motion",
 ]

@@ -82,3 +82,22 @@ path before it; giveway's own choice."""
 SAFE_TIME_BEHIND: Final = 0.5
 """Time [s] behind a vehicle that passes the ego's path before it, or behind a person for whom the
 ego has already waited; giveway's own choice."""
+
+VEHICLE_GAP: Final = 2.0
+"""Gap [m] to a vehicle ahead at rest: s_0 of city traffic (Treiber & Kesting, Traffic Flow
+Dynamics, 2013, table 11.2)."""
+
+VEHICLE_HEADWAY: Final = 1.0
+"""Time gap [s] to a vehicle ahead, to which the age of what is known of it is added (ibid.)."""
+
+RESTORING: Final = 1.5
+"""Deceleration [m/s²] with which a gap is restored that a vehicle has cut into, unless it brakes or
+the gap closes; b of city traffic (ibid.)."""
+
+RESPONSE: Final = 4.4
+"""Deceleration [m/s²] of the ego's response to a vehicle ahead that brakes as hard as it can: just
+below SUMO's default `decel` of 4.5 m/s²; the rest of the brake is kept for cut-ins."""
+
+EMERGENCY_BRAKING: Final = 9.0
+"""Deceleration [m/s²] of a vehicle ahead in an emergency: SUMO's default `emergencyDecel` of a car.
+"""

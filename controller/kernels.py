@@ -8,6 +8,7 @@ from controller.planning.costs import add_cost_of_others, later_cost, own_cost
 from controller.planning.motions import branch_off
 from controller.safety.layer import largest_safe_force
 from controller.safety.stopping import towards_kerb
+from controller.safety.vehicle_layer import needed_behind, safe_speed_behind
 
 __all__ = [
     "Batches",
@@ -17,6 +18,8 @@ __all__ = [
     "branch_off",
     "largest_safe_force",
     "later_cost",
+    "needed_behind",
     "own_cost",
+    "safe_speed_behind",
     "towards_kerb",
 ]

@@ -406,6 +406,11 @@ class EgoRunConfig(RunConfig):
         return self.defaults.safety_layer if enabled is None else enabled
 
     @property
+    def vehicle_layer(self) -> bool:
+        """True if the safety layer keeps a safe distance to vehicles ahead, too."""
+        return self.safety_layer and self.safety.vehicles and self.heeds("following")
+
+    @property
     def buffer_distance(self) -> float:
         """The distance [m] beyond d_safe over which the reference speed rises to v_r, or 0."""
         if self.defaults.buffered:

@@ -119,12 +119,16 @@ class Mirror:
         self._bends.fill(self.poses, self._egos, 0)
 
     def mark_beside(self, egos: Sequence[Ego]) -> None:
-        """Tell egos which rows are vehicles whose lanes lead them past the egos' paths."""
-        ids, near = self.background.ids, self._near
+        """Tell egos which rows are vehicles that pass beside, and how hard each row brakes."""
+        ids = self.background.ids
+        near = [ids[i] for i in self._near]
+        braking = self._session.vehicles.emergency_braking(near)
+        step = self._substeps * self._time_step
         for ego in egos:
             names = ego.rules.beside
-            rows = [ids[i] in names for i in near] if names else []
+            rows = [name in names for name in near] if names else []
             ego.beside = np.array(rows, dtype=np.bool_)
+            ego.news.tell(near, braking, step)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)

@@ -21,8 +21,9 @@ from giveway.ego.rules.following import Following
 from giveway.ego.rules.protocol import Told
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.traffic_lights import FOLLOWED
-from giveway.ego.safety_layer import EgoSafetyLayer
+from giveway.ego.safety_layer import EgoSafetyLayer, vehicle_layer_of
 from giveway.ego.stop_cause import waits_for
+from giveway.ego.vehicle_ahead import VehicleNews
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
@@ -112,9 +113,13 @@ class Ego:
             regulation.safe_distance,
             self._origin,
             COMFORTABLE,
+            time_step,
             plans=controller.foresees,
             tuned=config.defaults.smooths,
+            paper=config.defaults.buffered,
         )
+        self.news = VehicleNews(time_step)
+        self._vehicle_layer = vehicle_layer_of(config, time_step)
 
     @property
     def foresees(self) -> bool:
@@ -183,11 +188,17 @@ class Ego:
 
     def _heed(self, seen: Perceived, front: float, speed: float) -> None:
         """Fill in the vehicle in front and what the rules of the road demand."""
-        rules, leader, vehicles = self.rules, NO_LEADER, None
+        rules, leader, vehicles, seen.followed = self.rules, NO_LEADER, None, None
         if self._heed_vehicles and seen.poses.shape[1] > 1:
             leader, vehicles = self.corridor.closest_vehicle(
                 seen.poses, seen.row, front, speed, self.beside
             )
+            seen.followed = self.news.look(self.corridor.followed, front, seen.poses.shape[1])
+            if seen.followed is not None:
+                leader = self.news.estimated(leader, seen.followed, front)
+                if seen.followed.decelerates > 0.0:
+                    braking = self.news.stations(leader, seen.followed, self._times)
+                    vehicles = np.minimum(vehicles, braking)
         if self._looks_behind:
             rear = front - self.shape.length
             rules.situation.follower_gap = self.corridor.gap_behind(
@@ -227,13 +238,22 @@ class Ego:
                 f"{decision.force}; expected a finite number [N]; please report this with the "
                 "run's config.toml"
             )
+        asked = decision.force
+        if self._vehicle_layer is not None:
+            force = self._vehicle_layer.filter(asked, self.vehicle.speed, seen.followed)
+            if force < asked:
+                reason = self._vehicle_layer.REASON
+                decision = decision._replace(force=force, acting="safety", reason=reason)
         if self._safety_layer is not None:
             there = self.front, self.vehicle.speed
             people, _, _, bound = seen.percept
             safe = self._safety_layer.overrule(decision, *there, people, bound, seen.kerbs)
             if safe is not None:
-                controller.applied(safe.force)
                 decision = safe
+        if decision.force != asked:
+            controller.applied(decision.force)
+        if self._vehicle_layer is not None:
+            self._vehicle_layer.applied(decision.force)
         self._eases_off = decision.force > self._force
         self._force = decision.force
         return decision
@@ -243,11 +263,10 @@ class Ego:
         front, vehicle, leader, rules = self.front, self.vehicle, seen.leader, self.rules
         origin, stop = front + self._origin, seen.stop + self._origin
         stop += self.config.regulation.safe_distance
-        vehicle_ahead, limit = math.inf, rules.speed
-        if not seen.stop == math.inf == leader.station:
-            vehicle_ahead = self._following.leader_station(leader, front, seen.to_clear)
-            braking = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
-            limit = min(limit, braking)
+        following = self._following
+        limit = following.speed_limit(leader, front, seen.to_clear, vehicle.speed, seen.followed)
+        limit = min(rules.speed, limit, following.stop_limit(seen.stop, front))
+        vehicle_ahead = following.leader_station(leader, front, seen.to_clear)
         if self._controller.foresees:
             limit = min(limit, rules.advice)
         self._view.station = front
@@ -280,6 +299,7 @@ class Ego:
             self.vehicle.step(self._force, self._slope.grade(self.front, self.shape.length))
         self._locate()
         self.rules.advance(self.front, self.vehicle.speed, self._time_step)
+        self.news.advance()
 
     def _locate(self) -> None:
         """Update the station and the pose from the FMU's position."""

@@ -6,6 +6,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from controller import VehicleAhead
 from giveway.ego.foresight.crowd_foresight import CrowdForesight
 from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.ego.perception.leader import NO_LEADER, Leader
@@ -25,6 +26,7 @@ class Perceived:
         pedestrian: Station [m] of the closest perceived pedestrian in front; inf without one.
         closest: Station [m] of the closest pedestrian of the truth in front, for the tables.
         leader: Vehicle in front.
+        followed: Vehicle ahead that drives the same way or stands, or None without one.
         stop: Station [m] at which the front bumper has to stop; inf if it need not stop.
         stops_for: Cause of the stop, "light", "stop" or "yield"; empty without one.
         ahead: Stations (N,) [m] of the closest obstacle at steps 1 ... N.
@@ -43,6 +45,7 @@ class Perceived:
     pedestrian: float = inf
     closest: float = inf
     leader: Leader = NO_LEADER
+    followed: VehicleAhead | None = None
     stop: float = inf
     stops_for: str = ""
     ahead: Array = field(default_factory=lambda: np.empty(0))

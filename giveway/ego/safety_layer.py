@@ -5,10 +5,18 @@ from typing import Any
 
 import numpy as np
 
-from controller import Decision, LongitudinalModel, SafetyLayer, SafetyParameters
+from controller import (
+    Decision,
+    LongitudinalModel,
+    SafetyLayer,
+    SafetyParameters,
+    VehicleLayer,
+    VehicleLimits,
+)
 from controller.kernels import largest_safe_force
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.kerbs import NO_KERBS
+from giveway.ego.vehicle import identified_reaction_time
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath, body_pose, segment_at
@@ -81,6 +89,24 @@ class EgoSafetyLayer:
         if not verdict:
             return None
         return decision._replace(force=safe, acting="safety", reason=layer.REASONS[verdict])
+
+
+def vehicle_layer_of(config: EgoRunConfig, time_step: float) -> VehicleLayer | None:
+    """The safety layer for vehicles ahead, or None if it is off.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Time step of the co-simulation [s].
+    """
+    if not config.vehicle_layer:
+        return None
+    vehicle = config.vehicle
+    return VehicleLayer(
+        LongitudinalModel(vehicle.mass, vehicle.friction, time_step),
+        VehicleLimits(
+            force_limit=vehicle.force_limit, reaction_time=identified_reaction_time(config)
+        ),
+    )
 
 
 @kernel

@@ -1,6 +1,6 @@
 """Finds why a stationary ego is waiting, for the column ``waits_for``."""
 
-from controller import Decision
+from controller import Decision, VehicleLayer
 from giveway.ego.percept import Perceived
 
 _NEAR = 3.0  # distance [m] beyond the kept one, within which an obstacle is the cause
@@ -27,7 +27,7 @@ def waits_for(
     if place <= _NEAR:
         return cause
     if decision.acting == "safety":
-        return "person"
+        return "vehicle" if decision.reason == VehicleLayer.REASON else "person"
     if seen.ahead.size and seen.ahead.min() - front - kept <= 0.0:
         return "vehicle" if seen.predicted is None else "person"
     if decision.force > 0.0 or eases_off:

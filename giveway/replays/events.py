@@ -31,6 +31,7 @@ _NUMBER = r"\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 _AIMED = re.compile(rf"(?P<rate>[-+]{_NUMBER} m/s\^2) to (?P<speed>-?{_NUMBER} m/s)")
 _SAFETY = {
     "safety layer": "the safety layer brakes: a stop must stay possible",
+    "vehicle ahead": "the safety layer brakes: it keeps a safe distance to the vehicle ahead",
     "unavoidable": "the safety layer brakes: no braking is surely enough",
 }
 

@@ -65,6 +65,7 @@ class SumoVehicles:
         self._call = call
         self._lanes = lanes
         self._size = cache(self._type_length_width)
+        self._hardest: Callable[[str], float] = cache(sumo.vehicle.getEmergencyDecel)
         self._id_list = direct(sumo, "vehicle", "getIDList")
         self._position = direct(sumo, "vehicle", "getPosition")
         self._angle = direct(sumo, "vehicle", "getAngle")
@@ -116,6 +117,10 @@ class SumoVehicles:
     def _type_length_width(self, name: str) -> tuple[str, float, float]:
         vehicle = self._vehicle
         return vehicle.getTypeID(name), vehicle.getLength(name), vehicle.getWidth(name)
+
+    def emergency_braking(self, names: Sequence[str]) -> Array:
+        """The decelerations (n,) [m/s^2] of vehicles on the road in an emergency."""
+        return np.array([self._hardest(name) for name in names], dtype=np.float64)
 
     def state(self, name: str) -> VehicleState:
         """Return the state of one vehicle as SUMO has it now."""

@@ -278,6 +278,13 @@ class SafetyConfig(Section):
         "2.8 m/s, 0.03 % and 0.58 %. On a sidewalk the last two assume 0.6 m/s^2 towards the road",
         flag="--safety-people",
     )
+    vehicles: bool = option(
+        True,
+        None,
+        "The safety layer keeps a safe distance (RSS) to vehicles ahead as well, where it is on "
+        "and the ego heeds [rules] following",
+        flag="--safety-vehicles",
+    )
 
 
 class NoOptions(Section):

@@ -22,7 +22,8 @@ class RegulationConfig(Section):
     safe_distance: float = option(
         8.0,
         "m",
-        "Distance d_safe that is kept to people and vehicles in front",
+        "Distance d_safe that is kept to people in front, and by the paper's controllers to "
+        "vehicles as well",
         ge=0,
         le=500,
         least=MILLIMETRE,

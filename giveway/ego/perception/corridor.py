@@ -10,7 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.perception.follower import gap_behind
-from giveway.ego.perception.leader import NOBODY_BESIDE, Leader, vehicles_in_front
+from giveway.ego.perception.leader import (
+    NOBODY_BESIDE,
+    NOT_FOLLOWING,
+    Followed,
+    Leader,
+    vehicles_in_front,
+)
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import EgoPath, body_pose
@@ -31,6 +37,10 @@ class Corridor:
         body_length: Body length of the ego [m].
         straight: Number of steps for which vehicles beside the path are predicted to go straight
             on, or None for N.
+
+    Attributes:
+        followed: Closest vehicle in front that drives the same way or stands, from the last call of
+            :meth:`closest_vehicle`.
     """
 
     def __init__(
@@ -54,6 +64,7 @@ class Corridor:
         self._ahead = np.full(horizon, np.inf)
         self._vehicles_ahead = np.full(horizon, np.inf)
         self._empty = np.full(horizon, np.inf)
+        self.followed = NOT_FOLLOWING
 
     @property
     def empty(self) -> Array:
@@ -108,7 +119,7 @@ class Corridor:
             beside: Marks (k,) of those of the last k vehicles whose lanes lead them past the path.
         """
         ahead = self._vehicles_ahead
-        station, along = vehicles_in_front(
+        station, along, followed = vehicles_in_front(
             self._way,
             poses,
             own,
@@ -117,6 +128,7 @@ class Corridor:
             beside,
             ahead,
         )
+        self.followed = Followed(*followed)
         return Leader(station, along), ahead
 
     def gap_behind(self, vehicles: Array, own: int, rear: float, sight: float) -> float:

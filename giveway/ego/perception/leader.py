@@ -9,12 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from controller.driving_constants import STANDING
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import body_pose, project, segment_at
 
 _ONCOMING = -0.8  # cosine of the angle to the ego's path, below which a vehicle is oncoming
 _PARALLEL = 0.95  # cosine of this angle (18 degrees), above which a vehicle drives the same way
+_FOLLOWED = 0.5  # cosine of this angle (60 degrees), above which a vehicle ahead is followed
 _OUTLINE = 1.0  # largest spacing [m] of the examined points of a vehicle's outline
 _FINEST_OUTLINE = 0.1  # least spacing [m] of these points
 
@@ -26,7 +28,16 @@ class Leader(NamedTuple):
     speed: float  # speed [m/s] along the ego's path, at least 0
 
 
+class Followed(NamedTuple):
+    """The closest vehicle in front that drives the same way, or that stands."""
+
+    station: float = inf  # station [m] of its closest point; inf without a vehicle
+    speed: float = 0.0  # speed [m/s] along the ego's path, at least 0
+    row: int = -1  # its row among the vehicles; -1 without one
+
+
 NO_LEADER = Leader(inf, 0.0)
+NOT_FOLLOWING = Followed()
 NOBODY_BESIDE: NDArray[np.bool_] = np.empty(0, dtype=np.bool_)
 
 
@@ -69,8 +80,11 @@ def vehicles_in_front(
     corridor: tuple[float, int],
     beside: NDArray[np.bool_],
     ahead: Array,
-) -> tuple[float, float]:
+) -> tuple[float, float, tuple[float, float, int]]:
     """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
+
+    The last of the results is the closest one that drives the same way or stands: its station, its
+    speed along the path and its row.
 
     A vehicle in the corridor is predicted to follow the path at its present speed. So a vehicle
     ahead in a bend stays ahead. Any other vehicle is predicted to go straight on for ``straight``
@@ -96,6 +110,7 @@ def vehicles_in_front(
     first, last = window(stations, front, BEHIND)
     ahead[:] = np.inf
     nearest, its_speed = np.inf, 0.0
+    followed, pace, row = np.inf, 0.0, -1
     x_0, y_0, _ = body_pose(vertices, stations, headings, front, 0.0)
     for j in range(poses.shape[1]):
         vehicle = poses[0, j]
@@ -106,9 +121,12 @@ def vehicles_in_front(
         station = outline_in_front(vertices, stations, first, last, vehicle, front, half_width)
         if station < np.inf:
             i = segment_at(stations, station)
-            along = max(0.0, vehicle[3] * np.cos(vehicle[2] - headings[i]))
+            same_way = np.cos(vehicle[2] - headings[i])
+            along = max(0.0, vehicle[3] * same_way)
             if station < nearest:
                 nearest, its_speed = station, along
+            if station < followed and (same_way > _FOLLOWED or vehicle[3] < STANDING):
+                followed, pace, row = station, along, j
             for k in range(N):
                 ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
             continue
@@ -132,4 +150,4 @@ def vehicles_in_front(
             station = outline_in_front(vertices, stations, first, last, poses[k, j], at, half_width)
             if station <= end:
                 ahead[k - 1] = min(ahead[k - 1], station)
-    return nearest, its_speed
+    return nearest, its_speed, (followed, pace, row)

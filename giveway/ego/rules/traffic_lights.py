@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from controller.driving_constants import COMFORTABLE
+from controller.driving_constants import COMFORTABLE, FIRM
 from giveway.ego.rules.junctions import RED, YELLOW
 from giveway.ego.rules.protocol import LIGHT, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
@@ -20,6 +20,7 @@ from giveway.sumo.signal_plans import Greens, GreensOf
 
 _ARROW = frozenset("s")  # letter of red with a green arrow: a turn is allowed after a stop
 _SLOWED = 0.8  # share of the speed at the decision to pass at yellow, below which the ego stops
+_IMMINENT = 0.8  # time [s] to the line within which no slowed ego brakes harder than firmly
 _SLOWEST = 5.0  # lowest advisory speed [m/s], as of SUMO's device.glosa.min-speed
 _KEPT_UP = 4.0  # pace [m/s] below which advice that was begun ends
 _FAR = 150.0  # distance [m] within which the ego receives a signal plan
@@ -107,8 +108,13 @@ class TrafficLights:
                 self._passing[i] = 0.0
             elif self._colours[i] not in YELLOW:
                 self._passing[i] = speed if needed > self._comfortable else 0.0
-            elif speed < _SLOWED * self._passing[i] and needed <= self._hardest:
-                self._passing[i] = 0.0  # an ego that was slowed down would pass too late
+            elif (
+                speed < _SLOWED * self._passing[i]
+                and needed <= self._hardest
+                and (needed <= FIRM or light.station - front > _IMMINENT * speed)
+            ):
+                # An ego that was slowed down would pass too late, unless it is about to pass.
+                self._passing[i] = 0.0
             self._colours[i] = colour
         self._greens = ()
         if self._greens_of is not None and self._next < len(self._lights):

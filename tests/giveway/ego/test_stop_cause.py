@@ -42,3 +42,7 @@ def test_the_layer_waits_for_people_the_plan_for_expected_ones():
     assert cause(acting="safety") == "person"
     assert cause(ahead=np.array([60.0, 47.0, 60.0])) == "vehicle"
     assert cause(ahead=np.array([60.0, 47.0, 60.0]), predicted=np.empty((3, 1, 2))) == "person"
+
+
+def test_the_layer_for_vehicles_waits_for_vehicles():
+    assert cause(acting="safety", reason="vehicle ahead") == "vehicle"

@@ -82,6 +82,24 @@ def test_a_leader_is_expected_to_go_on_as_it_does() -> None:
     assert ahead == pytest.approx(FRONT + 12.0 + 0.15 * np.arange(1, 16))
 
 
+@pytest.mark.parametrize(
+    ("heading", "speed", "row"),
+    [(0.0, 3.0, 1), (0.9, 3.0, 1), (1.2, 3.0, -1), (math.pi, 3.0, -1), (math.pi / 2, 0.0, 1)],
+)
+def test_one_that_drives_the_same_way_or_stands_is_followed(
+    heading: float, speed: float, row: int
+) -> None:
+    poses = trajectories(
+        [(FRONT - LENGTH / 2, 0.0, 0.0, 4.0), (FRONT + 9.0, 0.0, heading, speed)], 3
+    )
+    seen = corridor(STRAIGHT, horizon=3)
+    leader, _ = seen.closest_vehicle(poses, 0, FRONT, 4.0)
+    assert leader != NO_LEADER
+    assert seen.followed.row == row
+    if row > 0:
+        assert seen.followed[:2] == pytest.approx(leader)
+
+
 def test_one_in_the_next_lane_is_not_in_front() -> None:
     assert closest_vehicle((FRONT + 5.0, 3.2, 0.0, 4.0))[0] == NO_LEADER
     assert closest_vehicle((FRONT + 5.0, -3.2, math.pi, 4.0))[0] == NO_LEADER

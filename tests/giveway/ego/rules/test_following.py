@@ -2,57 +2,121 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from controller import VehicleAhead
 from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.rules.following import Following, gap_relaxation
+from giveway.ego.rules.following import Following, gap_kept
 
 DT = 0.05  # [s]
 N = 60
+USUAL = 2.0  # [m]
 
 
-def kept(leader: Leader, speed: float, coming: float = np.inf, origin: float = 0.0) -> float:
-    """What is left of a safe distance of 8 m from an ego whose front bumper is at 40 m."""
+def following(**drives: Any) -> Following:
+    return Following(8.0, 0.0, 2.0, DT, **drives)
+
+
+def kept(leader: Leader, speed: float, coming: float = np.inf) -> float:
+    """The gap that a plan keeps to a vehicle if its front bumper is at 40 m."""
     ahead = np.minimum(leader.station + DT * leader.speed * np.arange(1, N + 1), coming)
-    return 8.0 - gap_relaxation(leader, ahead, 40.0, speed, 8.0, origin)
+    return gap_kept(leader, ahead, 40.0, speed, USUAL)
 
 
-@pytest.mark.parametrize("origin", [0.0, -2.5])
-def test_half_of_d_safe_is_kept_where_firm_braking_allows_it(origin: float) -> None:
+def test_the_usual_gap_is_kept_where_firm_braking_allows_it() -> None:
     for leader in (NO_LEADER, Leader(60.0, 0.0), Leader(45.0, 4.0)):
-        assert kept(leader, 4.0, origin=origin) == 4.0
-        assert kept(leader, 4.0, coming=50.0, origin=origin) == 4.0
+        assert kept(leader, 4.0) == USUAL
+        assert kept(leader, 4.0, coming=50.0) == USUAL
 
 
 def test_a_plan_brakes_firmly_at_most_for_a_sudden_stop_ahead() -> None:
-    for gap, speed, its_speed in [(4.4, 1.85, 0.1), (3.2, 1.4, 1.0), (4.5, 3.5, 0.0)]:
+    for gap, speed, its_speed in [(2.4, 1.85, 0.1), (2.0, 1.4, 1.0), (3.5, 3.5, 0.0)]:
         room = gap - kept(Leader(40.0 + gap, its_speed), speed)
         assert (speed - its_speed) ** 2 / (2.0 * room) < 3.0
-        assert room < gap - 1.9  # but it stops before
+        assert room < gap - 0.9  # but it stops before
         from_the_side = gap - kept(NO_LEADER, speed, coming=40.0 + gap)
         assert speed**2 / (2.0 * from_the_side) < 3.0
 
 
 def test_who_pulls_away_nearby_is_no_wall() -> None:
-    assert kept(Leader(42.9, 13.5), 4.0) == pytest.approx(2.9)
     assert kept(Leader(41.2, 13.5), 4.0) == pytest.approx(1.2)
 
 
-def test_a_quarter_of_d_safe_is_kept_however_hard_the_braking() -> None:
-    assert kept(Leader(43.0, 0.0), 6.0) == 2.0
-    assert kept(Leader(41.0, 0.0), 1.0) == 1.0  # it is nearer: not yet nearer
+def test_a_metre_is_kept_however_hard_the_braking() -> None:
+    assert kept(Leader(43.0, 0.0), 6.0) == 1.0
+    assert kept(Leader(40.5, 0.0), 1.0) == 0.5  # it is nearer: not yet nearer
+
+
+@pytest.mark.parametrize("controller", [{"plans": True}, {"tuned": True}, {}])
+def test_vehicles_are_approached_to_two_metres_instead_of_d_safe(controller: Any) -> None:
+    """A controller keeps d_safe to what it is shown, which is therefore farther off."""
+    follows, leader = following(**controller), Leader(60.0, 0.0)
+    assert follows.leader_station(leader, 40.0, 0.0) == 66.0
+    assert follows.gap_relaxation(leader, np.full(N, 60.0), 40.0, 4.0, 0.0) == 6.0
+    assert follows.speed_limit(leader, 57.4, 0.0) > 0.0
+    assert follows.speed_limit(leader, 58.0, 0.0) == 0.0
+
+
+def test_the_papers_controllers_keep_d_safe_to_vehicles() -> None:
+    follows, leader = following(paper=True), Leader(60.0, 4.0)
+    assert follows.leader_station(leader, 40.0, 0.0) == 60.0
+    assert follows.gap_relaxation(leader, np.full(N, 60.0), 40.0, 4.0, 0.0) == 0.0
+    ahead = VehicleAhead(20.0, 4.0, step=1.0)
+    expected = np.sqrt(4.0**2 + 2.0 * 2.0 * (20.0 - 8.5))
+    assert follows.speed_limit(leader, 40.0, 0.0, 4.0, ahead) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("step", [0.1, 0.5, 1.0])
+@pytest.mark.parametrize("speed", [5.0, 10.0, 14.0])
+def test_the_headway_is_a_second_and_the_age_of_the_news(step: float, speed: float) -> None:
+    gap = 2.5 + (1.0 + step) * speed
+    near, far = (
+        following().speed_limit(
+            Leader(40.0 + g, speed), 40.0, 0.0, 20.0, VehicleAhead(g, speed, step=step)
+        )
+        for g in (gap - 0.5, gap + 4.0)
+    )
+    assert near == 20.0  # it slows down gently from there
+    relaxed = following()
+    for _ in range(1000):
+        near = relaxed.speed_limit(
+            Leader(39.5 + gap, speed), 40.0, 0.0, speed, VehicleAhead(gap - 0.5, speed, step=step)
+        )
+    assert speed - 1.5 < near < speed
+    assert far >= near
+
+
+def test_a_gap_is_restored_gently_unless_it_closes() -> None:
+    def falls(its_speed: float, decelerates: float = 0.0) -> float:
+        ahead = VehicleAhead(5.0, its_speed, decelerates=decelerates, step=0.1)
+        asked = Leader(45.0, its_speed), 40.0, 0.0, 10.0, ahead
+        follows = following()
+        assert follows.speed_limit(*asked) == 10.0
+        return (10.0 - follows.speed_limit(*asked)) / DT
+
+    assert falls(10.0) == pytest.approx(1.5)
+    assert falls(4.0) == pytest.approx(1.2 * 36.0 / 8.0)
+    assert falls(10.0, decelerates=4.0) > 2.0
+
+
+def test_a_stop_is_approached_in_comfort() -> None:
+    assert following().stop_limit(56.0, 40.0) == pytest.approx(8.0)
+    assert following().stop_limit(np.inf, 40.0) == np.inf
+    assert following().speed_limit(NO_LEADER, 40.0, 0.0) == np.inf
 
 
 @pytest.mark.parametrize("origin", [0.0, -2.5])
 def test_the_gap_relaxes_until_the_ego_has_left_the_zone(origin: float) -> None:
     """It drives up to where it may: not slower on the way, as what is left gets less."""
-    following = Following(8.0 - origin, origin, 2.0, plans=True, tuned=False)
+    follows = Following(8.0 - origin, origin, 2.0, DT, paper=True)
     leader, cleared = Leader(50.0, 0.0), 47.0
     for front in (40.0, 44.0, 46.0, 46.9):
-        relaxation = following.keep_clear_relaxation(leader.station, front, cleared - front)
+        relaxation = follows.keep_clear_relaxation(leader.station, front, cleared - front)
         assert 8.0 - relaxation == pytest.approx(2.5)  # it comes to a stand half a metre before
-        assert following.speed_limit(leader, np.inf, front, cleared - front) > 0.0
-    assert following.keep_clear_relaxation(leader.station, cleared, 0.0) == 0.0
-    assert following.keep_clear_relaxation(60.0, 44.0, 3.0) == 0.0  # there is room enough
-    assert following.keep_clear_relaxation(48.0, 44.0, 3.0) == 6.0  # it comes no nearer than 2 m
+        assert follows.speed_limit(leader, front, cleared - front) > 0.0
+    assert follows.keep_clear_relaxation(leader.station, cleared, 0.0) == 0.0
+    assert follows.keep_clear_relaxation(60.0, 44.0, 3.0) == 0.0  # there is room enough
+    assert follows.keep_clear_relaxation(48.0, 44.0, 3.0) == 6.0  # it comes no nearer than 2 m

@@ -62,6 +62,9 @@ def test_an_ego_that_is_slowed_at_yellow_stops_after_all() -> None:
     watch = lights()
     assert stop("y", 76.0, 10.0, watch) == math.inf
     assert stop("y", 90.0, 7.9, watch) == STOP  # 3.1 m/s^2
+    about = lights()
+    assert stop("y", 76.0, 10.0, about) == math.inf
+    assert stop("y", 97.0, 5.0, about) == math.inf  # 4.2 m/s^2, 0.6 s before it passes
     late = lights()
     assert stop("y", 76.0, 10.0, late) == math.inf
     assert stop("y", 97.0, 7.9, late) == math.inf  # 10.4 m/s^2
