@@ -27,10 +27,11 @@ from giveway.config.tables.people import DISTRACTED, SHARE, PeopleConfig
 from giveway.config.tables.recorded import RECORDED, RecordedConfig, read_recorded
 
 DESIRED_SPEEDS: Final = (0.5, 2.2)
-"""The bounds [m/s] of desired speeds; our reading of Yang & Özgüner 2019 (docs/reproduction.md)."""
+"""Bounds [m/s] of desired speeds by default (reading of Yang & Özgüner 2019; reproduction.md)."""
 
 ENCOUNTERS: Final = "encounters"
 VCI: Final = "vci"
+_SLOWEST, _FASTEST = 0.1, 2.5  # Widest bounds [m/s] of desired speeds; 2.5 m/s: v_max of VCI
 _NEAREST = 0.01  # Smallest side of an area, and smallest walk [m]
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
 
@@ -81,9 +82,9 @@ class CrowdConfig(Section):
         1.394,
         "m/s",
         "Mean desired speed",
-        ge=DESIRED_SPEEDS[0],
-        le=DESIRED_SPEEDS[1],
-        because="no person's desired speed is outside of these bounds",
+        ge=_SLOWEST,
+        le=_FASTEST,
+        because="nobody walks slower on and on, or faster",
     )
     desired_speed_sd: float = option(
         0.26,
@@ -92,6 +93,11 @@ class CrowdConfig(Section):
         ge=0,
         le=2,
         because="people's walking speeds differ by less",
+    )
+    desired_speed_bounds: Displacement = option(
+        DESIRED_SPEEDS,
+        "m/s",
+        "Smallest and largest desired speed. Speeds beyond them are drawn again",
     )
     groups: float = option(
         0.0,
@@ -216,6 +222,7 @@ class CrowdConfig(Section):
                 f"spawn_area: {x_max - x_min:g} by {y_max - y_min:g} m: expected sides of at least "
                 f"{_NEAREST:g} m: a body has to fit"
             )
+        self._require_speeds()
         if 0.0 < math.hypot(*self.walk) < _NEAREST:
             raise ValueError(
                 f"walk = {self.walk}: expected at least {_NEAREST:g} m, or 0,0 for people who "
@@ -224,6 +231,19 @@ class CrowdConfig(Section):
         if self.model == RECORDED:
             self._require_recorded()
         return self
+
+    def _require_speeds(self) -> None:
+        low, high = self.desired_speed_bounds
+        if not _SLOWEST <= low < high <= _FASTEST:
+            raise ValueError(
+                f"desired_speed_bounds = {low:g},{high:g}: expected two speeds, the smaller one "
+                f"first, from {_SLOWEST:g} to {_FASTEST:g} [m/s]"
+            )
+        if not low <= self.desired_speed_mean <= high:
+            raise ValueError(
+                f"desired_speed_mean = {self.desired_speed_mean:g}: expected {low:g} to {high:g} "
+                "[m/s]; or other desired_speed_bounds"
+            )
 
     def _require_recorded(self) -> None:
         if not self.recorded:

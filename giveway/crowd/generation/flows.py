@@ -13,7 +13,6 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from giveway.config import RunConfig
-from giveway.config.tables.crowd import DESIRED_SPEEDS
 from giveway.crowd.generation.groups import facing, of_parties, parties_per_person, party_size
 from giveway.crowd.generation.kinds import desired_speeds, draw_kinds
 from giveway.crowd.generation.spawn import has_room
@@ -69,7 +68,7 @@ class Flow:
         self._headway = _HOUR / parties
         self._random = np.random.default_rng(self._seed)
         # People who are due earlier have arrived already. A Poisson process may begin at any time.
-        begin = max(flow.begin, -longest_way(flow) / DESIRED_SPEEDS[0])
+        begin = max(flow.begin, -longest_way(flow) / crowd.desired_speed_bounds[0])
         self._next = begin + self._random.exponential(self._headway)
         self._parties = self._persons = 0
         self._gates, self._lit = gates_of(flow), lit

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from giveway.config.tables.crowd import DESIRED_SPEEDS, CrowdConfig
+from giveway.config.tables.crowd import CrowdConfig
 from giveway.config.tables.people import ADULT, PeopleConfig
 from giveway.geometry.kernel import Array
 
@@ -49,7 +49,7 @@ def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.
         kinds: Kind (n,) of each person; empty counts as adult.
         random: Generator of the draws.
     """
-    low, high = DESIRED_SPEEDS
+    low, high = config.desired_speed_bounds
     about = [_distribution(config, kind) for kind in kinds]
     mean, deviation = np.array(about, dtype=np.float64).reshape(-1, 2).T
     speeds = random.normal(mean, deviation)

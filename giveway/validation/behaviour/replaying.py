@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import RunConfig
-from giveway.config.tables.crowd import DESIRED_SPEEDS
 from giveway.crowd.generation.kinds import desired_speeds
 from giveway.crowd.models import model_of
 from giveway.crowd.motion.sway import sway_of
@@ -73,7 +72,7 @@ def replayed(
     seed, random = random_of(recording, config, draw)
     drawn = desired_speeds(config.crowd, ("",) * len(people.ids), random)
     begun = _begun(people, round(_SHORTEST * recording.frame_rate))
-    desired_speed = np.where(begun > _HARDLY, begun.clip(*DESIRED_SPEEDS), drawn)
+    desired_speed = np.where(begun > _HARDLY, begun.clip(*config.crowd.desired_speed_bounds), drawn)
     walks = Walks(desired_speed, _routes(people), _last(people))
     return walked(recording, config, walks, seed, parameters)
 

@@ -3,7 +3,6 @@
 import numpy as np
 
 from giveway.config import RunConfig
-from giveway.config.tables.crowd import DESIRED_SPEEDS
 from giveway.crowd.generation.kinds import desired_speeds
 from giveway.geometry.kernel import Array
 from giveway.recordings import Recording
@@ -42,7 +41,7 @@ def replayed_in(
     free = free_speeds(corridor, recording)
     route, passages = corridor.route()
     walks = Walks(
-        np.where(np.isnan(free), drawn, free.clip(*DESIRED_SPEEDS)),
+        np.where(np.isnan(free), drawn, free.clip(*config.crowd.desired_speed_bounds)),
         np.tile(route, (len(people.ids), 1, 1)),
         np.full(len(people.ids), round(LONGER * recording.frames)),
         passages,

@@ -105,6 +105,12 @@ def test_no_length_or_duration_or_force_may_be_a_billionth() -> None:
     ("values", "said"),
     [
         ({"vehicle": {"friction": 1e6}}, "friction alone would turn the vehicle round within one"),
+        (
+            {"crowd": {"desired_speed_bounds": (2, 1)}},
+            "bounds = 2,1: expected two speeds, the small",
+        ),
+        ({"crowd": {"desired_speed_bounds": (0.5, 9)}}, "from 0.1 to 2.5"),
+        ({"crowd": {"desired_speed_bounds": (1.4, 2)}}, "mean = 1.394: expected 1.4 to 2"),
         ({"crowd": {"spawn_area": (0, 0, 1e-9, 5)}}, "1e-09 by 5 m: expected sides of at least"),
         ({"crowd": {"walk": (1e-9, 0)}}, "a shorter way is not a walk"),
     ],

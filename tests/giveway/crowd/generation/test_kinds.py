@@ -44,3 +44,13 @@ def test_each_kind_walks_as_was_measured(kind: str, mean: float, slow: float) ->
     assert np.percentile(speeds, 15.0) == pytest.approx(slow, abs=0.02)
     assert speeds.min() >= 0.5
     assert speeds.max() <= 2.2
+
+
+def test_the_bounds_of_desired_speeds_are_an_option() -> None:
+    drawn = {}
+    for bounds in ((1.2, 1.5), (0.1, 2.5)):
+        config = CrowdConfig(desired_speed_bounds=bounds, desired_speed_sd=0.4)
+        drawn[bounds] = desired_speeds(config, ("",) * MANY, np.random.default_rng(2))
+    assert 1.2 <= drawn[1.2, 1.5].min() < drawn[1.2, 1.5].max() <= 1.5
+    assert drawn[0.1, 2.5].min() < 0.5
+    assert drawn[0.1, 2.5].max() > 2.2
