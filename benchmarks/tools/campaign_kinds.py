@@ -135,8 +135,7 @@ def _trajectories(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Wor
     dataset = ("--dataset", "mine.toml") if done.startswith("mine") else _AS_CITR
     if drawn.random() < 0.7:
         return ["validate", ".", *dataset, "--out", "out"], done
-    words: Words = ["calibrate", ".", *dataset, "--aim", "displacement", "--evaluations", 2]
-    return [*words, "--parameters", "repulsion_strength", "--out", "fitted.toml"], done
+    return ["data", "describe", ".", *dataset], done
 
 
 def _preset(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, str]:

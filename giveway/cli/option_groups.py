@@ -130,39 +130,20 @@ class StudyOutputs(NamedTuple):
 class FitSettings(NamedTuple):
     """The settings of a fit of the pedestrian model."""
 
-    aim: Annotated[
-        str,
-        typer.Option(
-            help="behaviour: people who behave as recorded near vehicles; displacement: the least "
-            "error of predictions."
-        ),
-    ] = "behaviour"
     parameters: Annotated[
         str,
         typer.Option(
-            help="What is fitted, comma-separated; by default what the aim needs: "
-            "docs/validation.md."
+            help="What is fitted, comma-separated; by default 14 parameters: docs/validation.md."
         ),
     ] = ""
     start: Annotated[
         str, typer.Option("--preset", help="Where the fit starts: a preset or a preset file.")
     ] = "SIM"
-    seed: Annotated[
-        int, typer.Option(help="Of the search, or of the choice of held-out clips.", min=0)
-    ] = 0
+    seed: Annotated[int, typer.Option(help="Of the search.", min=0)] = 0
     evaluations: Annotated[
         int | None,
-        typer.Option(help="At most; by default 1,500 for behaviour, 400 for displacement.", min=1),
+        typer.Option(help="At most; by default 1,500.", min=1),
     ] = None
-    held_out: Annotated[
-        float, typer.Option(help="displacement: share of the clips to judge the fit by.")
-    ] = 0.3
-    own_pace: Annotated[
-        bool,
-        typer.Option(
-            help="displacement: the desired speed is each one's present one, or the parameters'."
-        ),
-    ] = True
 
 
 class DryRun(NamedTuple):

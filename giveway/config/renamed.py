@@ -113,6 +113,14 @@ FLAGS: Final[Mapping[str, Location]] = {
 
 _OWN_FLAGS: Final[Mapping[Location, str]] = {("controller_options", "style"): "--style"}
 
+GONE_FLAGS: Final[Mapping[str, str]] = {
+    "aim": "leave it out: a fit is for behaviour; [perception] model = 'drift' predicts better than"
+    " a fit for displacement did",
+    "held-out": "leave it out: judge a fit on another site (giveway data behave)",
+    "own-pace": "leave it out: people's desired speeds are those that they show",
+}
+"""Removed flags that were never keys, each with what to do instead."""
+
 
 def renamed_in(values: Mapping[str, Any]) -> Iterator[tuple[Location, Location | str]]:
     """Yield each removed key in the settings or in a table of ``[[egos]]``, and its replacement.
@@ -147,6 +155,8 @@ def renamed_flag(word: str) -> str | None:
     name = word.partition("=")[0].removeprefix("--")
     positive = name.removeprefix("no-")
     derived = {"-".join(old).replace("_", "-"): old for old in RENAMED} | dict(FLAGS)
+    if positive in GONE_FLAGS:
+        return GONE_FLAGS[positive]
     if positive not in derived:
         return None
     said = advice(RENAMED[derived[positive]], as_flag=True)

@@ -1,7 +1,6 @@
-"""The validation of the pedestrian model with recorded tracks: ADE, FDE, contacts, calibration."""
+"""The validation of the pedestrian model with recorded tracks: ADE, FDE, contacts."""
 
 from giveway.recordings.dataset import CITR, DUT, Dataset, dataset_of
-from giveway.validation.calibrating import Calibration, calibrate
 from giveway.validation.clips import Clip, read_clip, read_clips
 from giveway.validation.protocol import Protocol
 from giveway.validation.validating import Validation, validate
@@ -9,12 +8,10 @@ from giveway.validation.validating import Validation, validate
 __all__ = [
     "CITR",
     "DUT",
-    "Calibration",
     "Clip",
     "Dataset",
     "Protocol",
     "Validation",
-    "calibrate",
     "dataset_of",
     "read_clip",
     "read_clips",

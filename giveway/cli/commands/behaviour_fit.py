@@ -11,7 +11,7 @@ from giveway.cli.option_groups import FitSettings
 from giveway.cli.screen.printing import escape, numbers_of
 from giveway.cli.screen.progress_bars import counting
 from giveway.cli.screen.recordings import read
-from giveway.config.files.presets import parameters_of
+from giveway.config.files.presets import parameters_of, require_steady_preset
 from giveway.precompile import compile_kernels_once
 from giveway.recordings import Dataset
 from giveway.validation.behaviour.comparison import Yardstick
@@ -25,7 +25,7 @@ from giveway.validation.behaviour.search import (
     Search,
     require_fittable,
 )
-from pedestrian_model import VciParameters
+from pedestrian_model import LONGEST_STEP, VciParameters
 
 _EVALUATIONS = 1500
 _JUDGES = 5  # Number of times that people are simulated to judge the fit
@@ -53,6 +53,7 @@ def fit_behaviour(
     Raises:
         GivewayError: one line that says what to do.
     """
+    require_steady_preset(fit.start, LONGEST_STEP, "--preset")
     start = parameters_of(fit.start)
     names = [name.strip() for name in fit.parameters.split(",")] if fit.parameters else [*DEFAULT]
     require_fittable(names)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,14 +9,11 @@ import pandas as pd
 import pytest
 
 from giveway.cli import main
-from giveway.config.files.presets import parameters_of
-from pedestrian_model import SIM
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 AS_CITR = ("--dataset", "citr")
-BY_DISPLACEMENT = ("--aim", "displacement")
 
 
 @pytest.fixture
@@ -79,44 +75,11 @@ def test_a_wrong_folder_is_one_line(tmp_path, capsys) -> None:
     assert "no such folder" in error
 
 
-def test_calibrate_writes_a_preset_that_can_be_validated_with(dataset, tmp_path, capsys) -> None:
-    file = tmp_path / "mine.toml"
-    words = (
-        "calibrate",
-        dataset,
-        *AS_CITR,
-        *BY_DISPLACEMENT,
-        "--parameters",
-        "repulsion_strength, navigation_strength",
-    )
-    assert giveway(*words, "--out", file, "--evaluations", 10) == 0
-    said = capsys.readouterr().out
-    assert "held-out error" in said
-    assert "The closest two people, centre to centre: " in said
-    assert "Not converged after 10 evaluations" in said
-    fitted = parameters_of(str(file))
-    assert fitted.repulsion_strength != SIM.repulsion_strength
-    assert fitted.mass == SIM.mass
-    origin = tomllib.loads(file.read_text())["provenance"]
-    assert origin["fitted"] == ["repulsion_strength", "navigation_strength"]
-    assert len(origin["training_clips"]) + len(origin["held_out_clips"]) == 3
-    assert origin["dataset"] == "CITR"
-    assert origin["closest_people_before"] > 0.0
-    assert origin["training_error_after"] <= origin["training_error_before"]
-    assert giveway(*words, "--out", file) == 2
-    assert "replace it with --force" in capsys.readouterr().err
-    assert (
-        giveway("validate", dataset, *AS_CITR, "--preset", file, "--out", tmp_path / "o", "-q") == 0
-    )
-
-
 def test_calibrate_refuses_an_unknown_parameter(dataset, tmp_path, capsys) -> None:
     out = tmp_path / "mine.toml"
     words = ("calibrate", dataset, *AS_CITR, "--parameters", "vehicle_force", "--out", out)
     assert giveway(*words) == 2
     assert "--parameters vehicle_force: cannot be fitted for behaviour" in capsys.readouterr().err
-    assert giveway(*words, *BY_DISPLACEMENT) == 2
-    assert "--parameters vehicle_force: unknown parameter" in capsys.readouterr().err
     assert giveway("calibrate", dataset, *AS_CITR, "--out", tmp_path / "mine.txt") == 2
     assert "expected the name of a preset file" in capsys.readouterr().err
 
@@ -152,10 +115,8 @@ def test_a_name_that_would_steer_the_terminal_is_shown_harmless(dataset, tmp_pat
     mine = tmp_path / "mine.toml"
     text = MINE.format(rate=29.97, rear=2).replace('"MINE"', '"\\u001b[31mRED"')
     mine.write_text(text)
-    out = ("--out", tmp_path / "m.toml", "--evaluations", 1, "--parameters", "mass")
-    out += BY_DISPLACEMENT
     assert giveway("validate", dataset, "--dataset", mine, "--out", tmp_path / "o") == 0
-    assert giveway("calibrate", dataset, "--dataset", mine, *out) == 0
+    assert giveway("data", "describe", dataset, "--dataset", mine) == 0
     said = capsys.readouterr().out
     assert "?[31mRED: 3 clips" in said
     assert "\x1b" not in said

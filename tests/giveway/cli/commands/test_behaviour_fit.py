@@ -59,9 +59,9 @@ def test_a_fit_that_loses_the_car_is_refused(recorded_crossing, tmp_path, capsys
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        (("--aim", "beauty"), "--aim beauty: expected behaviour or displacement"),
+        (("--aim", "displacement"), "--aim: no longer exists; leave it out: a fit is"),
+        (("--held-out", "0.3"), "--held-out: no longer exists; leave it out: judge a fit on anot"),
         (("--dataset", "citr"), "--dataset: given 2 times for 3 folders; expected one for each"),
-        (("--aim", "displacement"), "--aim displacement: expected one folder"),
     ],
 )
 def test_what_cannot_be_fitted_is_one_line(recorded_crossing, tmp_path, capsys, more, said) -> None:
@@ -70,4 +70,15 @@ def test_what_cannot_be_fitted_is_one_line(recorded_crossing, tmp_path, capsys, 
     assert giveway(*words, "--out", tmp_path / "mine.toml", *more) == 2
     error = capsys.readouterr().err
     assert said in error
+    assert error.count("\n") == 1
+
+
+def test_a_start_by_which_people_tremble_is_refused(recorded_crossing, tmp_path, capsys) -> None:
+    folder, description = recorded_crossing
+    shaky = tmp_path / "shaky.toml"
+    shaky.write_text("base = 'SIM'\n[parameters]\ndestination_gain = 2000\n")
+    words = ("calibrate", folder, "--dataset", description, "--preset", shaky)
+    assert giveway(*words, "--out", tmp_path / "mine.toml") == 2
+    error = capsys.readouterr().err
+    assert f"--preset {shaky}: destination_gain = 2000" in error
     assert error.count("\n") == 1
