@@ -7,7 +7,7 @@ quadratic in the coordinates. The bound is held by weights that grow where it is
 the solution each weight is its bound's multiplier.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,10 +16,14 @@ from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
 
 _SPACING = 1.0  # Distance [m] between the points of a smooth part
-_ROUNDING = 15.0  # Length [m] over which a corner is rounded where there is room for it
+_ROUNDING = 20.0  # Length [m] over which a corner is rounded where there is room for it
 _ROUNDS = 100  # Number of adaptations of the weights
 _FIXED = 1e6  # Weight of the two points at each end of a part, which stay where they are
+_ENDS = [0, 1, -2, -1]  # Indices of these points
 _FEWEST = 6  # Number of points below which a part stays as it is
+
+
+Room = Callable[[Array], tuple[Array, Array]]
 
 
 class SmoothPath(NamedTuple):
@@ -35,13 +39,14 @@ class SmoothPath(NamedTuple):
         return float(np.interp(known, self.before, self.after) + (station - known))
 
 
-def smooth(path: EgoPath, parts: Sequence[tuple[float, float]], room: Array) -> SmoothPath:
+def smooth(path: EgoPath, parts: Sequence[tuple[float, float]], room: Room) -> SmoothPath:
     """Return the path with smooth ``parts``, between which it stays as it is.
 
     Args:
         path: Polyline.
         parts: Begin and end [m] of each part, in order, apart from each other.
-        room: Stations [m] and the largest distance [m] from the polyline at each, (2, k).
+        room: Function that returns, for stations (n,) [m], the centres (n, 2) [m] and the radii
+            (n,) [m] of the circles in which the smooth path has to pass.
     """
     vertices, before, after = [], [], []
     driven, done = 0.0, 0.0  # stations up to which all is known, on the new path and the old one
@@ -51,8 +56,10 @@ def smooth(path: EgoPath, parts: Sequence[tuple[float, float]], room: Array) -> 
             continue
         stations = np.linspace(begin, end, count)
         drawn = path.points(stations)
-        points = drawn.copy()
-        _relax(points, np.interp(stations, *room), _SPACING / _ROUNDING)
+        centres, radii = room(stations)
+        centres[_ENDS] = drawn[_ENDS]
+        points = np.empty_like(drawn)
+        _relax(points, centres, radii, _SPACING / _ROUNDING)
         kept = (path.stations >= done) & (path.stations < begin)
         vertices += [path.vertices[kept], points]
         before += [path.stations[kept], stations]
@@ -72,31 +79,32 @@ def smooth(path: EgoPath, parts: Sequence[tuple[float, float]], room: Array) -> 
 
 
 @kernel
-def _relax(points: Array, room: Array, stiffness: float) -> None:
-    """Move ``points`` (n, 2) [m] to where their line bends least within ``room`` (n,) [m].
+def _relax(points: Array, centres: Array, radii: Array, stiffness: float) -> None:
+    """Fill ``points`` (n, 2) [m] with the line that bends least, n >= 6.
 
     Args:
-        points: Evenly spaced points of the polyline, n >= 6, overwritten.
-        room: Largest distance [m] of each point from where it was.
+        points: Array to be filled.
+        centres: Points (n, 2) [m] to which those of the line are near.
+        radii: Largest distance (n,) [m] of each point.
         stiffness: Spacing of the points over the length along which a corner is rounded.
     """
     n = len(points)
-    drawn, free = points.copy(), stiffness**4
+    free = stiffness**4
     weights = np.full(n, free)
     for i in (0, 1, n - 2, n - 1):
         weights[i] = _FIXED
     for _ in range(_ROUNDS):
-        _solve(weights, drawn, points)
+        _solve(weights, centres, points)
         for i in range(2, n - 2):
-            off = np.hypot(points[i, 0] - drawn[i, 0], points[i, 1] - drawn[i, 1])
-            weights[i] = max(free, weights[i] * (off / room[i]) ** 2)
+            off = np.hypot(points[i, 0] - centres[i, 0], points[i, 1] - centres[i, 1])
+            weights[i] = max(free, weights[i] * (off / radii[i]) ** 2)
     for i in (0, 1, n - 2, n - 1):
-        points[i] = drawn[i]
+        points[i] = centres[i]
 
 
 @inner
-def _solve(weights: Array, drawn: Array, points: Array) -> None:
-    """Solve (D'D + W) points = W drawn, with the second differences D, by Cholesky's method."""
+def _solve(weights: Array, centres: Array, points: Array) -> None:
+    """Solve (D'D + W) points = W centres, with the second differences D, by Cholesky's method."""
     n = len(weights)
     diagonal, first, second = np.empty(n), np.zeros(n), np.zeros(n)  # of the factor L
     for i in range(n):
@@ -110,7 +118,7 @@ def _solve(weights: Array, drawn: Array, points: Array) -> None:
             first[i] = beside / diagonal[i - 1]
         diagonal[i] = np.sqrt(own + weights[i] - first[i] ** 2 - second[i] ** 2)
         for k in range(2):
-            value = weights[i] * drawn[i, k]
+            value = weights[i] * centres[i, k]
             if i > 0:
                 value -= first[i] * points[i - 1, k]
             if i > 1:

@@ -14,7 +14,7 @@ import numpy as np
 from controller import LongitudinalModel, SafetyLayer
 from controller.driving_constants import COMFORTABLE, SIDE_FRICTION
 from giveway.config.option import LANE
-from giveway.ego.perception.path_ahead import HALF, PathView
+from giveway.ego.perception.path_ahead import PathView
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
@@ -31,6 +31,7 @@ _SHARPEST: Array = (
 )
 _ROUNDING = 1e-9  # rounding error [m^2/s^2] of squared speeds
 _SPACING = 0.5  # spacing [m] of the stations at which the profile is known
+_EARLY = 1.0  # Distance [m] before and behind a place, at which the curvature counts there too
 _PREVIEW = 0.3  # lag [s] of a controller behind a falling reference speed
 
 
@@ -179,12 +180,12 @@ def in_bends(path: EgoPath, length: float, stations: Array) -> Array:
 def _curvature(path: EgoPath, length: float, stations: Array) -> Array:
     """The curvature (k,) [1/m] of the front bumper's path or of the body's turn, if that is larger.
 
-    The means of a `PathView` begin to rise half a window before a bend, and reach only half of its
-    curvature where it begins. Their maximum over three shifts is therefore taken.
+    The means of a `PathView` reach only half of a bend's curvature where it begins. Their maximum
+    over three shifts is therefore taken.
     """
     headings = np.unwrap([path.pose(station, length).heading for station in stations])
     turning = np.abs(np.gradient(headings, stations))
     view = PathView(path)
-    means = [np.abs(view.curvature(stations + shift)) for shift in (-HALF, 0.0, HALF)]
+    means = [np.abs(view.curvature(stations + shift)) for shift in (-_EARLY, 0.0, _EARLY)]
     sharpest: Array = np.maximum.reduce([turning, *means])
     return sharpest

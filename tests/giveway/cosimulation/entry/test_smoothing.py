@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -96,6 +97,23 @@ def test_the_body_stays_in_a_narrow_lane() -> None:
         path, _ = smoothed(ego(), drawn, lane_path, 10.0, shape)
         _, aside = drawn.project(path.vertices)
         assert np.abs(aside).max() <= 1.02 * ((width - shape.width) / 2.0 - 0.1)
+
+
+def test_a_right_angle_turn_keeps_the_body_in_its_lane() -> None:
+    turn = np.linspace(-np.pi / 2, 0.0, 12)
+    bend = np.column_stack([100.0 + 9.0 * np.cos(turn), 9.0 + 9.0 * np.sin(turn)])
+    drawn = EgoPath.through([(0.0, 0.0), *bend, (109.0, 109.0)])
+    lane_path = replace(lanes(0.0)[1], points=drawn.vertices)
+    path, _ = smoothed(ego(), drawn, lane_path, 10.0, CAR)
+    stations = np.arange(60.0, 160.0, 0.5)
+    for share in (0.0, 0.5, 1.0):  # rear, middle and front of the body
+        poses = [path.pose(station, CAR.length) for station in stations]
+        back = (1.0 - share) * CAR.length
+        points = [(x - back * math.cos(h), y - back * math.sin(h)) for x, y, h in poses]
+        _, aside = drawn.project(points)
+        assert np.abs(aside).max() + CAR.width / 2.0 < 1.6
+    slowest = in_bends(drawn, 5.0, stations).min()
+    assert in_bends(path, 5.0, stations).min() > slowest - 0.1
 
 
 def test_the_place_of_the_departure_is_kept() -> None:
