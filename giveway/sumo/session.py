@@ -102,7 +102,7 @@ class SumoSession:
         self._light_state = direct(self._sumo, "trafficlight", "getRedYellowGreenState")
         self.signal_plans = SignalPlans(self._sumo)
         self._moves_pending = False
-        self.lanes = Lanes(self._sumo, self._config_file)
+        self.lanes = Lanes(self._sumo, self._config_file, scenario.net_file)
         self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())

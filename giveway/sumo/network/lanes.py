@@ -12,6 +12,7 @@ import numpy as np
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at, stations_of
+from giveway.scenario_files.right_of_way import stop_offsets
 from giveway.sumo.network.heights import Height, heights_of
 from giveway.sumo.network.internal_lanes import lanes_inside
 from giveway.sumo.network.lane_path import (
@@ -42,6 +43,7 @@ class Lanes:
     Args:
         sumo: The libsumo module, as ``SumoSession`` owns it.
         config_file: The scenario, for messages.
+        net_file: File of the network, or None if no stop line is before its lane's end.
 
     Attributes:
         shape: Function that returns the centre line (k, 2) [m] of a lane.
@@ -50,9 +52,8 @@ class Lanes:
             towards an edge.
     """
 
-    def __init__(self, sumo: Any, config_file: Path) -> None:
-        self._sumo = sumo
-        self._config_file = config_file
+    def __init__(self, sumo: Any, config_file: Path, net_file: Path | None = None) -> None:
+        self._sumo, self._config_file, self._net_file = sumo, config_file, net_file
         self._edges = frozenset(sumo.edge.getIDList())
         self.shape = cache(self._shape)
         self.length = cache(self._length)
@@ -109,7 +110,8 @@ class Lanes:
                 link = links[number]
                 light = self.signals.get((f"{edges[number]}_{leave}", link.lane))
                 if light is not None:
-                    lights.append(Light(driven, *light))
+                    offset = self.stop_offset(f"{edges[number]}_{leave}", kind)
+                    lights.append(Light(driven - offset, *light))
                 begins_inside = self._begins_inside(link, driven, shape[-1:])
                 speeds = map(self.speed_limit, link.via)
                 limits.extend(map(SpeedLimit, begins_inside, speeds))
@@ -161,6 +163,14 @@ class Lanes:
     def speed_limit(self, lane: str) -> float:
         """Return the speed limit [m/s] of a lane, for any vehicle."""
         return float(self._sumo.lane.getMaxSpeed(lane))
+
+    def stop_offset(self, lane: str, kind: str = "passenger") -> float:
+        """Return the distance [m] of a lane's stop line for a vehicle class from the lane's end."""
+        offsets = {} if self._net_file is None else stop_offsets(self._net_file)
+        offset = offsets.get(lane) or offsets.get(lane.rpartition("_")[0])
+        if offset is None or not offset.holds_for(kind):
+            return 0.0
+        return offset.value * self.length(lane) / float(self._sumo.lane.getLength(lane))
 
     def point(self, lane: str, position: float) -> tuple[float, float]:
         """Return x, y [m] of a ``position`` [m] in SUMO's metres along a lane."""

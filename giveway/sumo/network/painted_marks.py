@@ -24,6 +24,7 @@ def stop_lines(lanes: Lanes) -> tuple[SignalHead, ...]:
         before, end = lanes.shape(lane)[-2:]
         length = max(float(np.hypot(*(end - before))), 1e-9)
         along = (end - before) / length
+        end = end - lanes.stop_offset(lane) * along
         aside = lanes.width(lane) / 2 * np.array((-along[1], along[0]))
         ends = _ends(end + aside, end - aside)
         found.append(SignalHead(ends, system, tuple(sorted(links))))

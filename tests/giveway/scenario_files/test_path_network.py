@@ -31,5 +31,6 @@ def test_the_ego_drives_along_the_path(tmp_path: Path) -> None:
     apart = places[:, None] - np.vstack([PATH, [20.0, 30.0]])
     nearest = np.hypot(apart[..., 0], apart[..., 1]).min(axis=1)
     on_the_bend = places[:, 1] < 20.0
-    assert nearest[on_the_bend].max() < 1.1  # half of the distance between two points
-    assert places[-1][0] == pytest.approx(20.0, abs=0.1)
+    # half of the distance between two points, and the smooth path's distance of up to 0.5 m
+    assert nearest[on_the_bend].max() < 1.25
+    assert places[-1][0] == pytest.approx(20.0, abs=0.5)
