@@ -22,7 +22,7 @@ NARROW_SPEED = 1.0
 
 
 class Clearances(NamedTuple):
-    """The smallest clearance [m] of each person (n,), above each speed; infinite without a row.
+    """The smallest clearance [m] of each person (n,), above each speed; nan without a row.
 
     Attributes:
         least: Clearance at any speed.
@@ -75,7 +75,7 @@ def clearances(
     for smallest, least in zip(found, above, strict=True):
         fast = speed > least
         np.minimum.at(smallest, person[fast], clearance[fast])
-    return Clearances(*found)
+    return Clearances(*np.where(np.isfinite(found), found, np.nan))
 
 
 def passes(found: Clearances) -> Passes:

@@ -160,18 +160,13 @@ def pedestrian_columns(
         "post_encroachment_time": missed.time,
         "maximum_drac": -groups.at(-drac, groups.first_minimum(-drac)),
         "passed_first": missed.first,
-        "clearance_moving": _finite(passed.moving),
-        "clearance_above_1": _finite(passed.above_1),
-        "clearance_above_2": _finite(passed.above_2),
-        "clearance_above_3": _finite(passed.above_3),
+        "clearance_moving": passed.moving,
+        "clearance_above_1": passed.above_1,
+        "clearance_above_2": passed.above_2,
+        "clearance_above_3": passed.above_3,
         "time_to_accident": conflict.time_to_accident,
         "conflicting_speed": conflict.conflicting_speed,
     }
-
-
-def _finite(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the values with nan in place of infinity."""
-    return np.where(np.isfinite(values), values, np.nan)
 
 
 def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":

@@ -199,6 +199,7 @@ def _measured(drive: Drive) -> tuple[DriveRow, list[PersonRow]]:
     clearance = found.clearances(count)
     moving = np.where(found.speed > STANDING, found.time_to_collision, np.inf)
     collision = found.smallest(moving, count)
+    collision[np.isinf(collision)] = np.nan
     passed = passes(clearance)
     near = passed.near
     time, first = encroachments(drive, near)
@@ -209,10 +210,10 @@ def _measured(drive: Drive) -> tuple[DriveRow, list[PersonRow]]:
             vehicle=drive.id,
             person=ids[who],
             clearance=float(clearance.least[who]),
-            clearance_moving=_finite(clearance.moving[who]),
-            clearance_above_2=_finite(clearance.above_2[who]),
-            clearance_above_3=_finite(clearance.above_3[who]),
-            time_to_collision=_finite(collision[who]),
+            clearance_moving=float(clearance.moving[who]),
+            clearance_above_2=float(clearance.above_2[who]),
+            clearance_above_3=float(clearance.above_3[who]),
+            time_to_collision=float(collision[who]),
             post_encroachment_time=float(signed[who]) + 0.0,
             first=VEHICLE if first[who] == EGO else str(first[who]),
         )
@@ -237,10 +238,6 @@ def _drive_row(drive: Drive, track: EgoTrack, passed: Passes) -> DriveRow:
         close=int(passed.close.sum()),
         tight=int(passed.tight.sum()),
     )
-
-
-def _finite(value: float) -> float:
-    return float(value) if np.isfinite(value) else np.nan
 
 
 def _table(rows: Sequence[Any], fields: Sequence[Any]) -> pd.DataFrame:

@@ -69,10 +69,9 @@ def replayed(
         PedestrianModelError: a person's state is not finite.
     """
     people = recording.people
-    seed, random = random_of(recording, config, draw)
-    drawn = desired_speeds(config.crowd, ("",) * len(people.ids), random)
     begun = _begun(people, round(_SHORTEST * recording.frame_rate))
-    desired_speed = np.where(begun > _HARDLY, begun.clip(*config.crowd.desired_speed_bounds), drawn)
+    shown = np.where(begun > _HARDLY, begun, np.nan)
+    seed, desired_speed = drawn(recording, config, draw, shown)
     walks = Walks(desired_speed, _routes(people), _last(people))
     return walked(recording, config, walks, seed, parameters)
 
@@ -162,12 +161,20 @@ def walked(
     return replace(recording, people=_walked(people, (first, last), start, position, velocity))
 
 
-def random_of(
-    recording: Recording, config: RunConfig, draw: int
-) -> tuple[int, np.random.Generator]:
-    """Return the seed of a draw's sway, and its generator of desired speeds."""
+def drawn(recording: Recording, config: RunConfig, draw: int, shown: Array) -> tuple[int, Array]:
+    """Return the seed of a draw's sway, and the desired speeds (n,) [m/s] of its people.
+
+    Args:
+        recording: Recording of n people.
+        config: Configuration that names the distribution and bounds of desired speeds, and a seed.
+        draw: Number of the draw.
+        shown: Desired speed (n,) [m/s] that each person shows, or nan: it is drawn as in any crowd.
+    """
     seed = zlib.crc32(f"{recording.name} {config.seed} {draw}".encode())
-    return seed, np.random.default_rng((seed, _STREAM))
+    random = np.random.default_rng((seed, _STREAM))
+    any_speeds = desired_speeds(config.crowd, ("",) * len(shown), random)
+    bounds = config.crowd.desired_speed_bounds
+    return seed, np.where(np.isnan(shown), any_speeds, shown.clip(*bounds))
 
 
 def _routes(people: Tracks) -> Array:

@@ -3,10 +3,9 @@
 import numpy as np
 
 from giveway.config import RunConfig
-from giveway.crowd.generation.kinds import desired_speeds
 from giveway.geometry.kernel import Array
 from giveway.recordings import Recording
-from giveway.validation.behaviour.replaying import Walks, random_of, walked
+from giveway.validation.behaviour.replaying import Walks, drawn, walked
 from giveway.validation.corridors.geometry import StraightCorridor
 
 LONGER = 1.5
@@ -35,15 +34,13 @@ def replayed_in(
         GivewayError: the model cannot be made.
         PedestrianModelError: a person's state is not finite.
     """
-    people = recording.people
-    seed, random = random_of(recording, config, draw)
-    drawn = desired_speeds(config.crowd, ("",) * len(people.ids), random)
-    free = free_speeds(corridor, recording)
+    count = len(recording.people.ids)
+    seed, desired_speed = drawn(recording, config, draw, free_speeds(corridor, recording))
     route, passages = corridor.route()
     walks = Walks(
-        np.where(np.isnan(free), drawn, free.clip(*config.crowd.desired_speed_bounds)),
-        np.tile(route, (len(people.ids), 1, 1)),
-        np.full(len(people.ids), round(LONGER * recording.frames)),
+        desired_speed,
+        np.tile(route, (count, 1, 1)),
+        np.full(count, round(LONGER * recording.frames)),
         passages,
         corridor.surroundings(),
         lambda position: corridor.along(position) > corridor.length + _BEHIND,
