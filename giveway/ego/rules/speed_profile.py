@@ -63,18 +63,28 @@ class SpeedProfile:
     ) -> None:
         self._deceleration = deceleration
         stations: Array = _SPACING * np.arange(math.ceil(path.length / _SPACING) + 1.0)
-        capped = np.minimum(of_lanes(limits, stations), in_bends(path, length, stations))
-        capped = np.maximum(np.minimum(capped, capable), _SLOWEST)
+        self._stations, self._capable = stations, capable
+        self._in_bends = in_bends(path, length, stations)
+        self.change(limits)
+        self.fastest = float(self.speeds[int(max(0.0, departure) / _SPACING) :].max())
+
+    def change(self, limits: Sequence[SpeedLimit]) -> None:
+        """Take over other speed limits of the lanes; ``fastest`` stays as it is.
+
+        Args:
+            limits: Speed limits of the lanes along the path, in order.
+        """
+        stations = self._stations
+        capped = np.minimum(of_lanes(limits, stations), self._in_bends)
+        capped = np.maximum(np.minimum(capped, self._capable), _SLOWEST)
         # Braking reduces v^2 by 2 b per metre, so v^2 + 2 b s must not decrease along the path.
-        braking = 2.0 * deceleration * stations
+        braking = 2.0 * self._deceleration * stations
         squares = np.minimum.accumulate((capped**2 + braking)[::-1])[::-1] - braking
         squares = np.where(squares < capped**2 - _ROUNDING, squares, capped**2)
         self.speeds: Array = np.sqrt(squares)
-        self.fastest = float(self.speeds[int(max(0.0, departure) / _SPACING) :].max())
         self._squares: list[float] = squares.tolist()
         durations = 2.0 * _SPACING / (self.speeds[1:] + self.speeds[:-1])
         self._times: Array = np.concatenate([[0.0], np.cumsum(durations)])
-        self._stations = stations
 
     def at(self, station: float) -> float:
         """The speed [m/s] at ``station`` [m]; the last one beyond the path's end."""

@@ -32,6 +32,7 @@ class SpeedLimit(NamedTuple):
 
     station: float  # [m] station along the lane path
     speed: float  # [m/s] limit
+    lanes: tuple[str, ...] = ()  # lanes whose limit it is
 
 
 class LaneWidth(NamedTuple):

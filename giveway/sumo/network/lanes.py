@@ -56,7 +56,7 @@ class Lanes:
         self._sumo, self._config_file, self._net_file = sumo, config_file, net_file
         self._edges = frozenset(sumo.edge.getIDList())
         self.shape = cache(self._shape)
-        self.length = cache(self._length)
+        self.length = cache(lambda lane: _length(self.shape(lane)))
         self.onwards = cache(self._onwards)
 
     def along(
@@ -102,7 +102,7 @@ class Lanes:
             points.append(shape)
             begins.append(driven)
             own = {f"{edges[number]}_{i}" for i in (entry, leave)}
-            limits.append(SpeedLimit(driven, min(map(self.speed_limit, own))))
+            limits.append(SpeedLimit(driven, min(map(self.speed_limit, own)), tuple(sorted(own))))
             widths.append(LaneWidth(driven, min(map(self.width, own))))
             heights += self._heights(f"{edges[number]}_{entry}", driven, _length(shape))
             driven += _length(shape)
@@ -114,7 +114,7 @@ class Lanes:
                     lights.append(Light(driven - offset, *light))
                 begins_inside = self._begins_inside(link, driven, shape[-1:])
                 speeds = map(self.speed_limit, link.via)
-                limits.extend(map(SpeedLimit, begins_inside, speeds))
+                limits.extend(map(SpeedLimit, begins_inside, speeds, [(v,) for v in link.via]))
                 widths.extend(map(LaneWidth, begins_inside, map(self.width, link.via)))
                 inside = [self.shape(name) for name in link.via]
                 for name, begin in zip(link.via, begins_inside, strict=True):
@@ -157,12 +157,14 @@ class Lanes:
     def _shape(self, lane: str) -> Array:
         return np.array(self._sumo.lane.getShape(lane), dtype=np.float64)
 
-    def _length(self, lane: str) -> float:
-        return _length(self.shape(lane))
-
     def speed_limit(self, lane: str) -> float:
         """Return the speed limit [m/s] of a lane, for any vehicle."""
         return float(self._sumo.lane.getMaxSpeed(lane))
+
+    @cached_property
+    def limits_change(self) -> bool:
+        """True if the network has variable speed signs or calibrators, which change limits."""
+        return any(d.getIDList() for d in (self._sumo.variablespeedsign, self._sumo.calibrator))
 
     def stop_offset(self, lane: str, kind: str = "passenger") -> float:
         """Return the distance [m] of a lane's stop line for a vehicle class from the lane's end."""

@@ -54,7 +54,8 @@ def made_up_route(config: EgoRunConfig | None = None, time_step: float = 0.05) -
     ego: Any = SimpleNamespace(
         config=config or EgoRunConfig(), id="ego", safety=None, horizon=60, recorded=False
     )
-    session: Any = SimpleNamespace(time=_MORNING)
+    network = SimpleNamespace(limits_change=False)
+    session: Any = SimpleNamespace(time=_MORNING, lanes=network)
     path = EgoPath.through(points)
     return RouteContext(ego, session, path, lane_path, 10.0, BODY, time_step)
 
