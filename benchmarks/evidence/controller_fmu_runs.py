@@ -3,7 +3,8 @@
 Run: python benchmarks/evidence/controller_fmu_runs.py --runs 20
 
 Each seed of shared_space is driven twice: by ``--controller mpc-paper``, and by its export as a
-controller FMU with the same safety layer, priority and perception (none of the three).
+controller FMU with the same safety layer, priority and perception (none of the three), people and
+prediction (SIM).
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ LIKE_THE_PAPER = {
     "safety.enabled": False,
     "rules": {"crossings": False, "right_of_way": False, "merging": False},
     "perception.tracker": False,
+    "crowd.preset": "SIM",
+    "perception.preset": "SIM",
 }
 MOTION = ("time", "position", "front_x", "front_y", "heading", "speed", "acceleration")
 DIGITS = 6  # of ego.csv
