@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.cosimulation.traffic.bends import Bends
+from giveway.cosimulation.traffic.slowing import Slowing, slow_down
 from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.errors import CrowdError, VehicleError
@@ -62,6 +63,8 @@ class Mirror:
         self._since = 0  # control steps since SUMO's last step
         self._egos = 0
         self._driven: list[Ego] = []
+        self._slowing = Slowing(substeps * time_step)
+        self._news, self._slows = np.zeros((0, 7)), np.zeros(0)  # of the vehicles that have rows
         self._near = _NONE  # indices of the background vehicles that have rows
         self._angles = np.zeros(0)
         self._row = np.zeros(0)
@@ -99,7 +102,10 @@ class Mirror:
             self._require_finite(background)
             drives = [(*ego.pose[:2], ego.vehicle.speed) for ego in egos]
             near = _relevant(background, pedestrians, drives, self._span)
-        self._near = near
+        slows = self._slowing.read(background.ids, background.speed)
+        if any(ego.config.defaults.buffered for ego in egos):
+            slows[:] = 0.0  # the paper's controllers expect constant speeds
+        self._near, self._slows = near, slows[near]
         if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
             self._allocate(egos, len(near))
         self._since = 0
@@ -113,7 +119,9 @@ class Mirror:
         now[:, 3] = background.speed[near]
         now[:, 4] = now[:, 5] = half_length
         now[:, 6] = background.width[near]
+        self._news = now.copy()
         extrapolate(self.poses, self._egos, self._time_step)
+        self._slow_down(0)
         close = None if self._long else _close(background, near, egos)
         self._bends.read(background, near, close)
         self._bends.fill(self.poses, self._egos, 0)
@@ -160,8 +168,15 @@ class Mirror:
         """Move background vehicles on by one control step in which SUMO itself does not step."""
         if self.poses.shape[1] > self._egos:
             carry_on(self.poses, self._egos, self._time_step)
+            self._slow_down(self._since + 1)
             self._bends.fill(self.poses, self._egos, self._since + 1)
         self._since += 1
+
+    def _slow_down(self, since: int) -> None:
+        """Let the vehicles that slow down go on doing so, ``since`` steps after the news."""
+        if self._slows.any():
+            times = since * self._time_step, self._time_step, self._slowing.step
+            slow_down(self.poses, self._news, self._egos, self._slows, times)
 
     # --- to SUMO ------------------------------------------------------------------------------
 

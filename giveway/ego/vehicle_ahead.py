@@ -26,6 +26,7 @@ class VehicleNews:
         self._names: Sequence[str] = ()
         self._braking: Array | Sequence[float] = _NO_BRAKING
         self._last = "", 0.0  # the vehicle followed, and its speed [m/s]
+        self._station = 0.0  # its station [m] at the last news
         self._decelerates = 0.0
 
     def tell(self, names: Sequence[str], braking: Array, step: float) -> None:
@@ -58,11 +59,19 @@ class VehicleNews:
         new = name != self._last[0]
         if new:
             self._last, self._decelerates = (name, speed), 0.0
+            self._station = station - speed * age
         elif age == 0.0:
             self._decelerates = max(0.0, self._last[1] - speed) / step
-            self._last = name, speed
+            self._last, self._station = (name, speed), station
+        speed = self._last[1]
         return VehicleAhead(
-            station - front, speed, float(braking), self._decelerates, float(age), new, step
+            self._station + speed * age - front,
+            speed,
+            float(braking),
+            self._decelerates,
+            float(age),
+            new,
+            step,
         )
 
     def estimated(self, leader: Leader, ahead: VehicleAhead, front: float) -> Leader:
@@ -75,6 +84,8 @@ class VehicleNews:
         """
         if leader.station - front > ahead.gap or ahead.decelerates == 0.0:
             return leader
+        if leader.speed < ahead.speed:
+            return leader  # its pose is that of a vehicle that slows down
         falls = min(ahead.decelerates * ahead.age, leader.speed)
         return Leader(leader.station - falls * ahead.step, leader.speed - falls)
 
