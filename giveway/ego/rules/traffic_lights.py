@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from controller.driving_constants import COMFORTABLE, FIRM
+from controller.driving_constants import COMFORTABLE
 from giveway.ego.rules.junctions import RED, YELLOW
 from giveway.ego.rules.protocol import LIGHT, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
@@ -20,7 +20,7 @@ from giveway.sumo.signal_plans import Greens, GreensOf
 
 _ARROW = frozenset("s")  # letter of red with a green arrow: a turn is allowed after a stop
 _SLOWED = 0.8  # share of the speed at the decision to pass at yellow, below which the ego stops
-_IMMINENT = 0.8  # time [s] to the line within which no slowed ego brakes harder than firmly
+_LASTS = 3.0  # shortest time [s] of yellow at 50 km/h (RiLSA 2015; netconvert's default)
 _SLOWEST = 5.0  # lowest advisory speed [m/s], as of SUMO's device.glosa.min-speed
 _KEPT_UP = 4.0  # pace [m/s] below which advice that was begun ends
 _FAR = 150.0  # distance [m] within which the ego receives a signal plan
@@ -66,6 +66,7 @@ class TrafficLights:
         self._comfortable = comfortable
         self._hardest = hardest
         self._colours = ["g"] * len(lights)
+        self._began = [-math.inf] * len(lights)  # times [s] at which yellow began
         self._passing = [0.0] * len(lights)  # speeds [m/s] at decisions to pass; 0 without one
         self._red = RED if arrows else RED | _ARROW
         self._next = 0
@@ -108,12 +109,14 @@ class TrafficLights:
                 self._passing[i] = 0.0
             elif self._colours[i] not in YELLOW:
                 self._passing[i] = speed if needed > self._comfortable else 0.0
+                self._began[i] = situation.time
             elif (
                 speed < _SLOWED * self._passing[i]
                 and needed <= self._hardest
-                and (needed <= FIRM or light.station - front > _IMMINENT * speed)
+                and light.station - front
+                > _SLOWED * speed * (self._began[i] + _LASTS - situation.time)
             ):
-                # An ego that was slowed down would pass too late, unless it is about to pass.
+                # An ego that was slowed down, and may be slowed further, would pass too late.
                 self._passing[i] = 0.0
             self._colours[i] = colour
         self._greens = ()

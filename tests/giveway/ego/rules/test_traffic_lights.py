@@ -58,16 +58,22 @@ def test_the_decision_at_yellow_holds_while_it_is_yellow() -> None:
     assert stop("y", 76.5, 10.0, braking) == STOP  # a little late with its brakes
 
 
-def test_an_ego_that_is_slowed_at_yellow_stops_after_all() -> None:
+@pytest.mark.parametrize(
+    ("front", "speed", "time", "stops"),
+    [
+        (90.0, 7.9, 2.0, True),  # 3.1 m/s^2; it would pass 0.3 s after the yellow's end
+        (90.0, 7.9, 1.0, False),  # it passes in time
+        (90.0, 8.1, 2.5, False),  # it is hardly slower
+        (97.0, 7.9, 2.8, False),  # 10.4 m/s^2
+    ],
+)
+def test_an_ego_that_is_slowed_at_yellow_stops_if_it_would_pass_late(
+    front: float, speed: float, time: float, stops: bool
+) -> None:
     watch = lights()
     assert stop("y", 76.0, 10.0, watch) == math.inf
-    assert stop("y", 90.0, 7.9, watch) == STOP  # 3.1 m/s^2
-    about = lights()
-    assert stop("y", 76.0, 10.0, about) == math.inf
-    assert stop("y", 97.0, 5.0, about) == math.inf  # 4.2 m/s^2, 0.6 s before it passes
-    late = lights()
-    assert stop("y", 76.0, 10.0, late) == math.inf
-    assert stop("y", 97.0, 7.9, late) == math.inf  # 10.4 m/s^2
+    tell(watch, front, speed, time, signals={"tls": "y"})
+    assert stop_of(watch, front, speed) == (STOP if stops else math.inf)
 
 
 def test_a_passed_light_is_forgotten_and_the_next_one_counts() -> None:
