@@ -159,7 +159,8 @@ class Following:
         needed = _URGENCY * needed_behind(speed, followed, _LEAST)
         falls = max(RESTORING, needed) * self._time_step
         self._last = max(wanted, min(self._last - falls, speed))
-        return self._last
+        # What is urgent is asked for earlier by the lag with which controllers follow a limit.
+        return self._last - _LAG * max(0.0, needed - RESTORING)
 
 
 def gap_kept(leader: Leader, ahead: Array, station: float, speed: float, usual: float) -> float:
