@@ -41,9 +41,10 @@ from giveway.sumo.vehicles import SumoVehicles
 # Largest difference [m] between giveway's positions and SUMO's after each step
 POSITION_TOLERANCE = 1e-6
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
-_KEEP_ROUTE = 2  # libsumo's constant for a move exactly to x, y, independently of lanes
+_EXACT = 2  # libsumo's flag for a move exactly to x, y, independently of lanes
+_ON_ROUTE = 1  # its flag for a move that keeps the route, which SUMO may replace without it
 _NO_EDGE = itertools.repeat("")
-_EXACTLY = itertools.repeat(_KEEP_ROUTE)
+_EXACTLY = itertools.repeat(_EXACT)
 # libsumo's "ghost" mode, in which no lane is searched for (issue 17257)
 _WITHOUT_MATCHING = itertools.repeat(-1.0)
 
@@ -249,7 +250,7 @@ class SumoSession:
             with self._stderr:
                 for name, pose in egos:
                     angle = heading_to_angle(pose.heading)
-                    self._move_vehicle(name, "", -1, pose.x, pose.y, angle, _KEEP_ROUTE)
+                    self._move_vehicle(name, "", -1, pose.x, pose.y, angle, _EXACT | _ON_ROUTE)
                 moves = map(
                     self._move_person, ids, _NO_EDGE, x, y, angles, _EXACTLY, _WITHOUT_MATCHING
                 )

@@ -21,6 +21,7 @@ CITIES = {
     "signals": [*GRID, *PAVED, "--default-junction-type", "traffic_light"],
     "priority": [*GRID, *PAVED, "--default-junction-type", "priority"],
     "islands": [*GRID, "--sidewalks.guess", "--walkingareas"],  # corners that no crossing joins
+    "turnarounds": ["--grid", "--grid.number", "3", "--grid.length", "100", *PAVED[:2]],
     "bare": [*GRID, "--sidewalks.guess"],  # no crossings, no walkingareas
 }
 

@@ -1,14 +1,23 @@
 """A session of SUMO: what is mirrored into it, and that there is one per process."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
 import pytest
 
 from giveway.errors import GivewayError, SumoError
 from giveway.geometry.bodies import VehicleShape
-from giveway.geometry.path import Pose
+from giveway.geometry.path import EgoPath, Pose
 from giveway.scenario_files import StartOptions, read_scenario
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type
 from sumo_scenarios import find
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
 
 PLAZA = find("shared_space").config_file
 
@@ -30,6 +39,30 @@ def test_sumo_stands_where_we_do() -> None:
         assert libsumo.person.getAngle("b") == pytest.approx(271.0)
         assert libsumo.vehicle.getPosition("ego") == pytest.approx((2.7, 0.0), abs=1e-9)
         assert libsumo.vehicle.getAngle("ego") == pytest.approx(90.0)
+
+
+@pytest.mark.parametrize("aside", [-0.45, -0.3, 0.3, 0.45])
+@pytest.mark.parametrize("edges", ["A1B1 B1B2 B2A2", "A1B1 B1B0 B0C0", "A1B1 B1C1 C1C2"])
+def test_an_ego_beside_its_line_keeps_its_route(
+    city: Callable[[str], Path], tmp_path: Path, edges: str, aside: float
+) -> None:
+    import libsumo
+
+    config = tmp_path / "grid.sumocfg"
+    config.write_text(f'<configuration><net-file value="{city("turnarounds")}"/></configuration>')
+    types, way = all_types({inserted_type("ego"): VehicleShape()}), tuple(edges.split())
+    with SumoSession(read_scenario(config), StartOptions(step_length=0.1), types) as sumo:
+        lane_path = sumo.lanes.along(way, None)
+        path = EgoPath.through(lane_path.points)
+        sumo.vehicles.insert("ego", way, lane=1, position=5.0, speed=7.0)
+        for station in np.arange(6.0, 115.0, 0.7):
+            x, y, heading = path.pose(station, 5.0)
+            along = path.pose(station + 0.5, 1.0).heading
+            there = Pose(x - aside * np.sin(along), y + aside * np.cos(along), heading)
+            sumo.mirror([("ego", there)], [], [], [], [])
+            assert libsumo.vehicle.getPosition("ego") == pytest.approx(there[:2], abs=1e-9)
+            assert libsumo.vehicle.getRoute("ego") == way
+            assert libsumo.vehicle.getLaneID("ego")
 
 
 def test_sumo_disagreeing_is_an_error() -> None:

@@ -121,7 +121,7 @@ def mirror_ego(config: str, step_length: float | None, ego: dict[str, Any]) -> d
         points = along(libsumo.lane.getShape(lane), ego["depart_position"], last, spacing)
         off_position, off_angle, collisions = 0.0, 0.0, 0
         for x, y, angle in points:
-            libsumo.vehicle.moveToXY("ego", "", -1, x, y, angle, keepRoute=2)
+            libsumo.vehicle.moveToXY("ego", "", -1, x, y, angle, keepRoute=3)
             libsumo.simulationStep()
             off_position = max(off_position, math.dist((x, y), libsumo.vehicle.getPosition("ego")))
             difference = libsumo.vehicle.getAngle("ego") - angle
