@@ -29,7 +29,7 @@ RIVALS = {
     "pid-tuned": ("pid-tuned", None),
     "idm": ("idm", None),
     "careful-driver": ("careful-driver", None),
-    "bilevel": ("controller.reference_drivers.bilevel:BilevelMpc", 30),
+    "bilevel": ("controller.reference_drivers.bilevel:BilevelMpc", 20),
 }
 """Controller of each rival, and its drives of each scene if they are fewer than the benchmark's."""
 KEPT = HOUSE / "giveway" / "studies" / "benchmark" / "rivals.csv"
