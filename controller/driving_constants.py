@@ -9,14 +9,13 @@ from typing import Final
 STANDING: Final = 0.2
 """Speed [m/s] below which a vehicle counts as standing (Yang & Özgüner 2019: an obstacle)."""
 
-PASSING_NEAR: Final = 0.4, 2.2
-"""Speed [m/s] beside a person at contact, and its rise [1/s] with the clearance, up to 1.2 m. The
-recorded drivers of DUT (Yang et al., IEEE IV 2019) pass people at 0 to 0.3 m with 1.0 m/s in the
-median (85 %: 1.6), at 0.5 to 1 m with 1.6 (2.7)."""
+PASSING_NEAR: Final = 0.6, 2.8
+"""Speed [m/s] beside a person at contact, and its rise [1/s] with the clearance. Together with
+``PASSING_FAR`` it is near what 85 % of the recorded drivers of DUT (Yang et al., IEEE IV 2019) do
+not exceed: 1.6 m/s at 0 to 0.3 m, 2.7 m/s at 0.5 to 1 m."""
 
-PASSING_FAR: Final = 1.6, 1.2
-"""The same beyond 1.2 m: the recorded drivers of DUT pass people at 2 to 3 m with 2.3 m/s in the
-median (85 %: 4.6)."""
+PASSING_FAR: Final = 2.4, 1.3
+"""The same for more than 1.2 m. The faster site of DUT, the roundabout, has 5 to 6 m/s there."""
 
 PASSING_KERB: Final = 1.0, 30.0 / 3.6
 """Clearance [m] from which on people who do not head for the way are passed with at least this
@@ -26,9 +25,20 @@ PASSING_TAIL: Final = 0.5, 1.5
 """Clearance [m] of people beside the rear half up to which this speed [m/s] is kept. People walk
 behind a car that has passed them: all close passes in DUT's roundabout clips are there."""
 
-AT_REST: Final = 1.1
+AT_REST: Final = 1.3
 """Distance [m] from the middle of a person in front at which the ego comes to rest; giveway's own
 choice."""
+
+CREEPING: Final = 0.8
+"""Highest speed [m/s] towards people in front who let nobody through; giveway's own choice. Drivers
+creep into shared space at walking speed or less."""
+
+CREEPS_NEARER: Final = 0.45
+"""Distance [m] by which a creeping ego comes nearer to who sees it than it otherwise stops: 0.5 m
+to the body; giveway's own choice."""
+
+PATIENCE: Final = 5.0
+"""Time [s] for which an ego waits for people before it creeps; giveway's own choice."""
 
 COMFORTABLE: Final = 2.0
 """Deceleration [m/s²] of a driver who is not surprised; giveway's own choice."""

@@ -80,8 +80,14 @@ class Evaluation(NamedTuple):
 class Foresight(Protocol):
     """Predicts the crowd under any manoeuvre of the ego."""
 
-    def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
-        """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
+    def evaluate(self, manoeuvre: Manoeuvre, *, creeps: bool = False) -> Evaluation:
+        """Return the predicted outcome of a manoeuvre, which is valid until the next call.
+
+        Args:
+            manoeuvre: Motion of the ego.
+            creeps: Whether the ego creeps towards people. Those who may not see it then count as
+                nearer.
+        """
 
     def prefer(self) -> None:
         """Remember that the latest manoeuvre is the best so far, with its outcome."""

@@ -6,6 +6,7 @@ The types belong to the search over manoeuvres, which a compiled foresight perfo
 from controller.foresight import Batches, SearchResult, Trials
 from controller.planning.costs import add_cost_of_others, later_cost, own_cost
 from controller.planning.motions import branch_off
+from controller.planning.parameters import Weights
 from controller.safety.layer import largest_safe_force
 from controller.safety.stopping import towards_kerb
 from controller.safety.vehicle_layer import needed_behind, safe_speed_behind
@@ -14,6 +15,7 @@ __all__ = [
     "Batches",
     "SearchResult",
     "Trials",
+    "Weights",
     "add_cost_of_others",
     "branch_off",
     "largest_safe_force",

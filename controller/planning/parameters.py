@@ -14,7 +14,7 @@ from controller.defaults import (
     SAFE_DISTANCE,
     SPEED_MAX,
 )
-from controller.driving_constants import AT_REST, FIRM
+from controller.driving_constants import AT_REST, CREEPS_NEARER, FIRM
 from controller.parameters import require, require_not_negative, require_positive
 
 
@@ -38,7 +38,7 @@ class ManoeuvreParameters:
     acceleration_weight: float = 0.05  # weight of the squared acceleration [(m/s^2)^2]
     closeness_weight: float = 100.0  # weight of the missing stopping distance [m], times v / v_r
     threat_weight: float = 1.5  # weight of the speed above the threat-free one, over v_r
-    precaution_weight: float = 5.0  # weight of the speed above the passing one, over v_r
+    precaution_weight: float = 25.0  # weight of the speed above the passing one, over v_r
     final_weight: float = 1.3  # weight [s] of the missing share of speed at the horizon's end
     later_weight: float = 0.8  # weight of the time that is lost beyond the horizon
     persistence: float = 0.02  # cost [s] by which another manoeuvre must beat the last plan
@@ -81,7 +81,7 @@ StyleName = Literal["careful", "normal", "assertive"]
 #: Precaution weight by driving style: points on the Pareto front of the ego's time against close
 #: passes and people's delay (docs/controllers.md).
 STYLES: Final[Mapping[StyleName, float]] = MappingProxyType(
-    {"careful": 10.0, "normal": 5.0, "assertive": 2.5}
+    {"careful": 50.0, "normal": 25.0, "assertive": 10.0}
 )
 
 
@@ -147,6 +147,7 @@ class Weights(NamedTuple):
     precaution: float
     final: float
     later: float
+    unaware: float = 0.0  # distance [m] by which people who may not see the ego count as nearer
 
     @classmethod
     def of(cls, p: PlannerParameters, m: ManoeuvreParameters) -> Self:
@@ -165,3 +166,8 @@ class Weights(NamedTuple):
             m.final_weight,
             m.later_weight,
         )
+
+    def creeping(self) -> Self:
+        """The weights of an ego that comes nearer to people in front who see it."""
+        nearer = min(CREEPS_NEARER, self.minimum_distance)
+        return self._replace(minimum_distance=self.minimum_distance - nearer, unaware=nearer)

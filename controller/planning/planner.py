@@ -1,12 +1,13 @@
 """The planning MPC: it chooses a manoeuvre, smooths it by a QP, and remembers the plan."""
 
 from math import inf, isfinite
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from controller._jit import Array
 from controller.defaults import STANDSTILL
+from controller.driving_constants import CREEPING, PATIENCE
 from controller.errors import ParameterError
 from controller.foresight import Foresight, Manoeuvre
 from controller.model import LongitudinalModel
@@ -90,16 +91,17 @@ class Planner:
             problem.speeds_of,
             problem.gradients,
         )
-        soon = round(parameters.calm_time / model.time_step)
-        self._rules = soon, parameters.calm_braking, self._search.weights
+        self._soon = round(parameters.calm_time / model.time_step)
+        self._waited = 0.0  # time [s] for which the ego has waited for people
         self._plan = plan = Manoeuvre.empty(N)
         self._to = (plan.distance, plan.speed, plan.acceleration)
         self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
 
     def reset(self) -> None:
-        """Forget the last plan."""
+        """Forget the last plan, and for how long the ego has waited."""
         self._solver.reset()
         self._search.reset()
+        self._waited = 0.0
 
     def plan(
         self,
@@ -128,11 +130,35 @@ class Planner:
             )
         before = self._acceleration(speed, previous_force)
         search, allowed = self._search, road.allowed
+        if search.creeps:
+            fastest = min(fastest, CREEPING)
         end = float(allowed[-1])
         if speed <= STANDSTILL:
             end = min(end, road.gap - self.parameters.safe_distance)
         name = search.choose(speed, before, fastest, allowed, foresight, end, road.to_clear)
-        return self._smooth((speed, before, previous_force, fastest), road, name)
+        plan = self._smooth((speed, before, previous_force, fastest), road, name)
+        self._wait(speed, road, name)
+        return plan
+
+    def _wait(self, speed: float, road: Road, name: str) -> None:
+        """Creep from the next step on if people have let nobody through for ``PATIENCE``.
+
+        A creeping ego comes nearer to people in front, and they make way: between driving through
+        them and waiting without end. It ends as soon as nobody is in front any more.
+        """
+        search = self._search
+        waits = name != "clear" and float(road.allowed[-1]) > CREEPING
+        if search.creeps:
+            search.creep(waits or road.gap < self.parameters.safe_distance)
+        elif speed > CREEPING:
+            self._waited = 0.0
+        elif waits:
+            self._waited += self.model.time_step
+            search.creep(self._waited >= PATIENCE)
+
+    def _rules(self) -> tuple[int, float, tuple[Any, ...]]:
+        """The number of calm steps, the calm braking [m/s^2], and the weights of the cost."""
+        return self._soon, self.parameters.calm_braking, self._search.weights
 
     def _acceleration(self, speed: float, force: float) -> float:
         """The acceleration [m/s^2] that ``force`` [N] causes at this speed; 0 at standstill."""
@@ -154,7 +180,7 @@ class Planner:
         lane_speeds = self._any_speed if road.lane_speeds is None else road.lane_speeds
         bounds = road.allowed, lane_speeds, self._corridor
         corrections, itself, holds = follow(
-            state, chosen, bounds, self._arrays, self._solver.memory, to, self._rules
+            state, chosen, bounds, self._arrays, self._solver.memory, to, self._rules()
         )
         outcome = _SOLVED
         if corrections == UNSOLVED:

@@ -30,6 +30,7 @@ class Search:
 
     Attributes:
         weights: Weights of the cost, a plain tuple of the fields of :class:`Weights`.
+        creeps: Whether the ego may come nearer to people in front, :meth:`creep`.
         best: Distance, speed and acceleration of the manoeuvre of least cost. This and what
             follows is valid until the next search.
         gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Evaluation`.
@@ -42,8 +43,8 @@ class Search:
     def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
         N, m, v_r = parameters.horizon, parameters.manoeuvres, parameters.reference_speed
         self._manoeuvres, self._time_step = m, model.time_step
-        self._weights = Weights.of(parameters, m)
-        self.weights = tuple(self._weights)
+        usual = Weights.of(parameters, m)
+        self._weights = tuple(usual), tuple(usual.creeping())
         # Lost time refers to at least half of v_r, also where a bend or a light allows less.
         self._slowest = 0.5 * v_r
         self._kinds = [
@@ -78,8 +79,13 @@ class Search:
 
     def reset(self) -> None:
         """Forget the last plan and the results."""
+        self.creep(False)
         self._planned, self._holds, self._drives_on = False, True, True
         self._turn, self.tried, self.missing = 0, 0, inf
+
+    def creep(self, creeps: bool) -> None:
+        """Let the ego stop nearer to people in front from now on, or no longer."""
+        self.creeps, self.weights = creeps, self._weights[creeps]
 
     def keep(self, plan: Manoeuvre, holds: bool) -> None:
         """Remember a plan, which is tried again at the next step.
@@ -209,7 +215,7 @@ class Search:
                 manoeuvre = self._trials.of(trial)
                 evaluation = Evaluation(self._free, self._free, self._free)
                 if foresight is not None:
-                    evaluation = foresight.evaluate(Manoeuvre(*manoeuvre))
+                    evaluation = foresight.evaluate(Manoeuvre(*manoeuvre), creeps=self.creeps)
                 whole, disturbed, missing = cost(
                     manoeuvre,
                     evaluation,

@@ -65,7 +65,7 @@ def walkers(g, path, count=25):
     return start + DT * np.arange(1, N + 1)[:, None, None] * velocity
 
 
-def assessed(path, people, m, *, alarm=ALARM, every=EVERY):
+def assessed(path, people, m, *, alarm=ALARM, every=EVERY, unaware=0.0):
     out = np.empty(N), np.empty(N), np.empty(N)
     assess(
         (path.vertices, path.stations, path.headings),
@@ -73,7 +73,7 @@ def assessed(path, people, m, *, alarm=ALARM, every=EVERY):
         (2.0 * people[0] - people[1], np.ascontiguousarray(people[every - 1 :: every])),
         FRONT,
         (m.distance, m.speed),
-        (View(LENGTH, WIDTH, HALF_WIDTH, DT, every), alarm),
+        (View(LENGTH, WIDTH, HALF_WIDTH, DT, every), alarm, unaware),
         out,
     )
     return out

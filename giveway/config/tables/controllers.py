@@ -230,7 +230,7 @@ class PlannerOptions(Section):
         because="with a larger weight, a plan depends on this term alone",
     )
     minimum_distance: float = option(
-        1.1,
+        1.3,
         "m",
         "Least distance to the middle of a person in front, at standstill",
         ge=0,

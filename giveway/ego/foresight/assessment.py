@@ -29,7 +29,7 @@ def assess(
     crowd: tuple[Array, Array],
     front: float,
     manoeuvre: tuple[Array, Array],
-    sight: tuple[tuple[float, ...], tuple[Any, ...]],
+    sight: tuple[tuple[float, ...], tuple[Any, ...], float],
     evaluation: tuple[Array, Array, Array],
 ) -> None:
     """Fill gaps in front, threat-free and passing speeds at steps 1 ... N.
@@ -42,7 +42,8 @@ def assess(
         crowd: Positions now, (n, 2) [m], and at each ``every``-th step, (M, n, 2).
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
-        sight: Fields of a :class:`View` and of an :class:`Alarm`.
+        sight: Fields of a :class:`View` and of an :class:`Alarm`; distance [m] by which people who
+            may not see the ego count as nearer.
         evaluation: Gaps [m], threat-free and passing speeds [m/s], (N,) each, filled.
     """
     now, predicted = crowd
@@ -74,7 +75,7 @@ def assess_step(
     which: tuple[int, int],
     front: float,
     manoeuvre: tuple[Array, Array],
-    sight: tuple[tuple[float, ...], tuple[Any, ...]],
+    sight: tuple[tuple[float, ...], tuple[Any, ...], float],
     evaluation: tuple[Array, Array, Array],
 ) -> None:
     """Fill as :func:`assess` does, for one prediction step only.
@@ -85,13 +86,14 @@ def assess_step(
         which: Index of the prediction step, and the number of prediction steps.
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
-        sight: Fields of a :class:`View` and of an :class:`Alarm`.
+        sight: Fields of a :class:`View` and of an :class:`Alarm`; distance [m] by which people who
+            may not see the ego count as nearer.
         evaluation: Gaps [m], threat-free and passing speeds [m/s], (N,) each, filled.
     """
     (vertices, stations, headings), (before, after, between) = path, people
     (j, predicted), (distance, speeds) = which, manoeuvre
     gap, threat_free, passing = evaluation
-    view, alarm = sight
+    view, alarm, unaware = sight
     v, limits = View(*view), Alarm(*alarm)
     length, time_step, every = v.length, v.time_step, int(v.every)
     first, last = window(stations, front, PASSED + length)
@@ -105,6 +107,13 @@ def assess_step(
         closest, _ = closest_in_front(
             vertices, stations, (first, last), between, at - PASSED, v.half_width, 0.0
         )
+        for p in range(limits.unaware.shape[0] if unaware > 0.0 else 0):
+            if limits.unaware[p]:
+                alone = between[p : p + 1]
+                station, _ = closest_in_front(
+                    vertices, stations, (first, last), alone, at - PASSED, v.half_width, 0.0
+                )
+                closest = min(closest, station - unaware)
         gap[i] = closest - at
         if i > begin:
             threat_free[i], passing[i] = threat_free[begin], passing[begin]

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller.kernels import add_cost_of_others, later_cost, own_cost
+from controller.kernels import Weights, add_cost_of_others, later_cost, own_cost
 from giveway.ego.foresight.assessment import View, assess_step, interval_of
 from giveway.ego.foresight.intent import keep_on, step_yielding
 from giveway.ego.foresight.later_crossings import fill_later_crossings
+from giveway.ego.foresight.threats import Alarm
 from giveway.ego.foresight.workspace import Arrays
 from giveway.ego.perception.corridor import set_pose
 from giveway.geometry.kernel import Array, inlined, inner, kernel
@@ -242,7 +243,8 @@ def advance(
                 return bad
         if j > 0:  # step 0 is the walking model's: intent estimation compares people with it
             step_yielding(law[-1], 4 * (here - n), state, scene, x, v)
-            keep_on(law[-1], j, people, x, v)
+            creeps, unaware = Weights(*weights).unaware > 0.0, Alarm(*sight[1]).unaware
+            keep_on(law[-1], j, people, (creeps, unaware), x, v)
         for p in range(n):
             base = 4 * (here + p)
             state[base], state[base + 1] = x[p, 0], x[p, 1]
@@ -266,7 +268,7 @@ def advance(
             (j, M),
             front,
             (distance[k], speed[k]),
-            sight,
+            (sight[0], sight[1], Weights(*weights).unaware),
             (evaluations[0, k], evaluations[1, k], evaluations[2, k]),
         )
     for i in range(begin, end):

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import Evaluation, Manoeuvre, WorstMotion
+from controller.driving_constants import CREEPS_NEARER
 from controller.kernels import Batches, SearchResult, Trials
 from giveway.ego.foresight.assessment import View, assess
 from giveway.ego.foresight.branch_and_bound import branch_and_bound
 from giveway.ego.foresight.contingency import BRANCHES, hedged
 from giveway.ego.foresight.intent import AlternativeHypothesis, IntentEstimator, Yielding
 from giveway.ego.foresight.later_crossings import fill_later_crossings
-from giveway.ego.foresight.threats import Alarm
+from giveway.ego.foresight.threats import ALL_SEE, Alarm
 from giveway.ego.foresight.workspace import Workspace
 from giveway.ego.perception.corridor import fill_poses
 from giveway.ego.perception.kerbs import NO_KERBS, kerb_lines
@@ -157,15 +158,16 @@ class CrowdForesight:
         if off != self._off:
             self._off = off
             self._limits = self._limits._replace(clearance=self._clearance + off)
-        self._alarm = (*self._limits[:-1], kerb_lines(pedestrians.position, kerbs))
         if self._estimator is not None and numbers is not None:
             self._alternative = self._estimator.update_both(
                 pedestrians, numbers, ego[2], self._soon
             )
             self._yielding, self._soon = self._estimator.yielding, self._soon[:0]
+            unaware = self._estimator.unaware
         else:
-            self._alternative = None
+            self._alternative, unaware = None, ALL_SEE
             self._yielding = np.zeros(len(pedestrians), dtype=np.int8), 0.0, 1.0, 0.0
+        self._alarm = (*self._limits[:-2], kerb_lines(pedestrians.position, kerbs), unaware)
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front = ego
         self._copied, self._preferred = False, False
@@ -187,15 +189,20 @@ class CrowdForesight:
         share = (after - before)[:, None, None]
         return np.asarray((1.0 - share) * known[before] + share * known[before + 1])
 
-    def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
-        """Return the predicted outcome of a manoeuvre, which is valid until the next call."""
+    def evaluate(self, manoeuvre: Manoeuvre, *, creeps: bool = False) -> Evaluation:
+        """Return the predicted outcome of a manoeuvre, which is valid until the next call.
+
+        Args:
+            manoeuvre: Motion of the ego.
+            creeps: Whether it creeps towards people, who count as nearer if they may not see it.
+        """
         self._predict(manoeuvre.distance, manoeuvre.speed)
         assess(
             self._way,
             (self._pedestrians.position, self._predicted),
             self._front,
             (manoeuvre.distance, manoeuvre.speed),
-            (self._view, self._alarm),
+            (self._view, self._alarm, CREEPS_NEARER if creeps else 0.0),
             self._evaluation[:3],
         )
         wishes = self._predictor.desired_velocities(self._pedestrians, self._surroundings)

@@ -35,6 +35,8 @@ _EDGE = 0.05  # distance [m] to the corridor's edge at which people who yield st
 _SWAY = 0.1  # distance [m] that people may walk beyond the stopping point of their speed
 _OPEN = 2.0  # absolute log odds below which a person's intent is uncertain
 _STANDS = 0.25  # speed [m/s] below which a person is predicted to go on standing
+_SEES = -0.17  # cosine of 100 degrees, the half angle about a person's course that they see
+_TURNED = 0.1  # share of a change of velocity that changes the course of a person, per look
 _NEVER = -1  # number of a look that never took place
 
 WALKS, YIELDS, KEEPS_ON = 0, 1, 2
@@ -80,10 +82,19 @@ class IntentEstimator:
         self._told = np.zeros((0, every), dtype=np.int64)
         self._expected = np.zeros((0, every, 3))
         self._numbers, self._yield = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int8)
+        self._course, self._unaware = np.zeros((0, 2)), np.zeros(0, dtype=np.bool_)
 
     def odds(self, number: int) -> float:
         """Return the log odds that the person of this number yields."""
         return float(self._odds[number]) if number < len(self._odds) else _PRIOR
+
+    @property
+    def unaware(self) -> NDArray[np.bool_]:
+        """The marks (n,) of people who may not see the ego at the latest look.
+
+        People see what is within 100 degrees of the direction in which they walk, or walked last.
+        """
+        return self._unaware
 
     @property
     def yielding(self) -> Yielding:
@@ -115,8 +126,9 @@ class IntentEstimator:
         odds[numbers[uncertain]] *= -1.0
         seen = (*other.state, other.desired_speed, *other.routes)
         none = _NEVER, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int8), np.zeros(0)
-        memory = odds, self._told, self._expected
-        _update(self._way, front, seen, (numbers, yields), none, memory, self._law)
+        marks = numbers, yields, np.empty_like(self._unaware)
+        memory = odds, self._told, self._expected, self._course
+        _update(self._way, front, seen, marks, none, memory, self._law)
         differ = yields != self._yield
         if not differ.any():
             return None
@@ -136,16 +148,17 @@ class IntentEstimator:
             expected: States (4 m,), x, y [m], v_x, v_y [m/s], of the m people of the latest look
                 one prediction step later, as predicted then; (0,) without a prediction.
         """
-        yields = np.zeros(len(numbers), dtype=np.int8)
+        yields, unaware = np.zeros(len(numbers), np.int8), np.zeros(len(numbers), np.bool_)
         seen = (*people.state, people.desired_speed, *people.routes)
         latest = (self._look, self._numbers, self._yield, expected)
         while True:
-            memory = (self._odds, self._told, self._expected)
-            new = _update(self._way, front, seen, (numbers, yields), latest, memory, self._law)
+            memory = (self._odds, self._told, self._expected, self._course)
+            marks = numbers, yields, unaware
+            new = _update(self._way, front, seen, marks, latest, memory, self._law)
             if new < 0:
                 break
             self._grow(2 * (new + 1) - len(self._odds))
-        self._numbers, self._yield = numbers, yields
+        self._numbers, self._yield, self._unaware = numbers, yields, unaware
         self._look += 1
 
     def _grow(self, more: int) -> None:
@@ -154,6 +167,7 @@ class IntentEstimator:
         never = np.full((more, self._every), _NEVER)
         self._told = np.concatenate([self._told, never])
         self._expected = np.concatenate([self._expected, np.zeros((more, self._every, 3))])
+        self._course = np.concatenate([self._course, np.zeros((more, 2))])
 
 
 @kernel
@@ -161,9 +175,9 @@ def _update(
     path: tuple[Array, Array],
     front: float,
     people: tuple[Any, ...],
-    marked: tuple[NDArray[np.int64], NDArray[np.int8]],
+    marked: tuple[NDArray[np.int64], NDArray[np.int8], NDArray[np.bool_]],
     latest: tuple[int, NDArray[np.int64], NDArray[np.int8], Array],
-    memory: tuple[Array, NDArray[np.int64], Array],
+    memory: tuple[Array, NDArray[np.int64], Array, Array],
     law: tuple[float, float, float],
 ) -> int:
     """Update the log odds as :meth:`IntentEstimator.update` does.
@@ -174,18 +188,19 @@ def _update(
         path: Vertices of the path, and their stations [m].
         front: Station of the front bumper [m].
         people: State, desired speeds and routes of the n people.
-        marked: Numbers (n,) that identify the people, and marks (n,) of those who yield by the
-            estimate, filled.
+        marked: Numbers (n,) that identify the people; marks (n,) of their motions by the
+            estimate, and of those who may not see the ego, both filled.
         latest: Number of this look. Of the latest look: numbers of the people, marks of those who
             yielded by the estimate, and predicted states.
         memory: Log odds by number. By number and look: the look in which velocities were
-            predicted, these velocities [m/s], and 1 if the person was predicted to yield.
+            predicted, these velocities [m/s], and 1 if the person was predicted to yield. By
+            number: velocity [m/s] with which the person walked last.
         law: Half width of the corridor [m], share of a desired change of velocity in one step,
             s_des [m].
     """
     position, velocity, index, desired_speed, waypoints, passage, signal, start = people
-    (vertices, stations), (numbers, yields) = path, marked
-    odds, told, expected = memory
+    (vertices, stations), (numbers, yields, unaware) = path, marked
+    odds, told, expected, course = memory
     half_width, taken_up, smoothing = law
     for i in range(len(numbers)):
         if numbers[i] >= len(odds):
@@ -206,6 +221,13 @@ def _update(
         station, lateral, e_x, e_y = abreast(vertices, stations, first, last, x, y)
         ahead, aside = station - front, abs(lateral) - half_width
         stands = velocity[i, 0] ** 2 + velocity[i, 1] ** 2 < _STANDS * _STANDS
+        for axis in range(0 if stands else 2):
+            course[n, axis] += _TURNED * (velocity[i, axis] - course[n, axis])
+        c_x, c_y = course[n, 0], course[n, 1]
+        off = np.copysign(max(aside, 0.0), lateral)  # to the nearest point of the ego's front
+        facing = off * (c_x * e_y - c_y * e_x) - ahead * (c_x * e_x + c_y * e_y)
+        far = np.sqrt((c_x * c_x + c_y * c_y) * (ahead * ahead + off * off))
+        unaware[i] = ahead > 0.0 and facing <= _SEES * far
         near = ahead <= _REACH
         if ahead > 0.0 and ((aside <= 0.0 and (near or stands)) or (near and stands)):
             yields[i] = KEEPS_ON
@@ -283,20 +305,28 @@ def step_yielding(
 
 @inlined
 def keep_on(
-    yielding: tuple[Any, ...], step: int, people: Arrays, position: Array, velocity: Array
+    yielding: tuple[Any, ...],
+    step: int,
+    people: Arrays,
+    creeping: tuple[bool, NDArray[np.bool_]],
+    position: Array,
+    velocity: Array,
 ) -> None:
     """Move people who keep their velocity to where they are after a prediction step; in place.
+
+    Only those who may not see the ego keep it before one that creeps. The others make way.
 
     Args:
         yielding: Yielding state, see :attr:`IntentEstimator.yielding`.
         step: Index of the prediction step.
         people: Positions (n, 2) [m] and velocities (n, 2) [m/s] of all people now, and more.
+        creeping: Whether the ego creeps, and marks (n,) of people who may not see it.
         position: Positions (n, 2) [m] of all people after the step; changed.
         velocity: Velocities (n, 2) [m/s] of all people after the step; changed.
     """
-    yields, _, _, dt = yielding
+    (yields, _, _, dt), (creeps, unaware) = yielding, creeping
     for p in range(position.shape[0]):
-        if yields[p] == KEEPS_ON:
+        if yields[p] == KEEPS_ON and not (creeps and not unaware[p]):
             for axis in range(2):
                 velocity[p, axis] = people[1][p, axis]
                 position[p, axis] = people[0][p, axis] + (step + 1) * dt * velocity[p, axis]

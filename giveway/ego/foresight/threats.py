@@ -1,8 +1,9 @@
 """The speeds at which no pedestrian could force a hard stop, and at which drivers pass them."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller.driving_constants import (
     PASSING_FAR,
@@ -25,6 +26,9 @@ _TOWARDS = 0.3  # speed [m/s] towards the ego's way, above which a person heads 
 _SPARE = 0.05  # margin [m] beyond the safety layer's need, for errors of the prediction
 _NOT_BEHIND_ONE = 0.0, 0.0, 0.0  # kerb of a person who is not on a sidewalk
 
+ALL_SEE: Final = np.zeros(0, dtype=np.bool_)
+"""Marks of people who may not see the ego, if everybody sees it."""
+
 
 class Alarm(NamedTuple):
     """The limits of people and brakes that define a threat, as the kernels take them."""
@@ -37,6 +41,7 @@ class Alarm(NamedTuple):
     heeded: bool  # whether there is a safety layer that would act
     setting_out: float = np.inf  # largest acceleration [m/s^2] from a sidewalk towards the kerb
     kerbs: Array = NO_KERBS  # kerb lines (n, 3), a x + b y = c [m]; 0 for people not on sidewalks
+    unaware: NDArray[np.bool_] = ALL_SEE  # marks (n,) of people who may not see the ego
 
 
 @inner
