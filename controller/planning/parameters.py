@@ -38,7 +38,7 @@ class ManoeuvreParameters:
     acceleration_weight: float = 0.05  # weight of the squared acceleration [(m/s^2)^2]
     closeness_weight: float = 100.0  # weight of the missing stopping distance [m], times v / v_r
     threat_weight: float = 1.5  # weight of the speed above the threat-free one, over v_r
-    precaution_weight: float = 25.0  # weight of the speed above the passing one, over v_r
+    precaution_weight: float = 30.0  # weight of the speed above the passing one, over v_r
     final_weight: float = 1.3  # weight [s] of the missing share of speed at the horizon's end
     later_weight: float = 0.8  # weight of the time that is lost beyond the horizon
     persistence: float = 0.02  # cost [s] by which another manoeuvre must beat the last plan
@@ -81,7 +81,7 @@ StyleName = Literal["careful", "normal", "assertive"]
 #: Precaution weight by driving style: points on the Pareto front of the ego's time against close
 #: passes and people's delay (docs/controllers.md).
 STYLES: Final[Mapping[StyleName, float]] = MappingProxyType(
-    {"careful": 50.0, "normal": 25.0, "assertive": 10.0}
+    {"careful": 60.0, "normal": 30.0, "assertive": 12.0}
 )
 
 

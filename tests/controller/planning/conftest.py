@@ -139,7 +139,7 @@ class Bystanders:
         there = (self.until > self.step) & (self.at > self.front - 0.3)
         return float(np.min(self.at[there] - self.front, initial=np.inf))
 
-    def evaluate(self, manoeuvre):
+    def evaluate(self, manoeuvre, *, creeps=False):
         gap = self.at - self.front - manoeuvre.distance[1:, None]
         there = (self.until > self.step + self._steps[:, None]) & (gap > -0.3)
         closest = np.where(there, gap, np.inf).min(axis=1, initial=np.inf)

@@ -34,7 +34,7 @@ class Fixed:
     def __init__(self, room):
         self.room = room
 
-    def evaluate(self, manoeuvre):
+    def evaluate(self, manoeuvre, *, creeps=False):
         gap = self.room + FOLLOWING.safe_distance - manoeuvre.distance[1:]
         return Evaluation(gap, FREE, FREE)
 
@@ -66,7 +66,7 @@ def test_the_corridor_always_leaves_a_plan(speed, force, room, threat_free):
 class Beside:
     """People beside the way whatever is driven: a plan once made goes on for its cost."""
 
-    def evaluate(self, manoeuvre):
+    def evaluate(self, manoeuvre, *, creeps=False):
         return Evaluation(FREE, FREE, np.full(N, 5.9))
 
     def prefer(self):
@@ -95,7 +95,7 @@ class StepsOut:
         self.threat_free = np.full(horizon, np.inf)
         self.threat_free[24:30] = threat_free
 
-    def evaluate(self, manoeuvre):
+    def evaluate(self, manoeuvre, *, creeps=False):
         return Evaluation(self.nobody, self.threat_free, self.nobody)
 
     def prefer(self):
@@ -132,7 +132,7 @@ class BesideTheWay:
             left > 0.0, np.sqrt(self.CALM**2 + 2.0 * self.FULLY * np.maximum(left, 0.0)), np.inf
         )
 
-    def evaluate(self, manoeuvre):
+    def evaluate(self, manoeuvre, *, creeps=False):
         threat_free = self.fastest(self.driven + manoeuvre.distance[1:])
         heeded = np.where(manoeuvre.speed[1:] > threat_free, threat_free, np.inf)
         return Evaluation(self.nobody, heeded, self.nobody)

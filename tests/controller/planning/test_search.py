@@ -24,7 +24,7 @@ class Wall:
     def __init__(self, distance: float) -> None:
         self.distance = distance
 
-    def evaluate(self, manoeuvre: Manoeuvre) -> Evaluation:
+    def evaluate(self, manoeuvre: Manoeuvre, *, creeps: bool = False) -> Evaluation:
         return Evaluation(self.distance - manoeuvre.distance[1:], FREE, FREE)
 
     def prefer(self) -> None:

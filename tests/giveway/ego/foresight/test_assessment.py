@@ -88,7 +88,7 @@ def test_passing_speeds_are_those_of_the_nearest_clearances(name, seed):
             if x < -LENGTH / 2 and np.hypot(w_x, w_y) > 0.3:
                 pace = 1.5 if d < 0.5 else np.inf
             else:
-                pace = min(0.4 + 2.2 * d, 1.6 + 1.2 * d)
+                pace = min(0.6 + 2.8 * d, 2.4 + 1.3 * d)
                 heads = -w_y * np.sign(y) > 0.3 or abs(y) < WIDTH / 2
                 pace = max(pace, 30.0 / 3.6) if d >= 1.0 and not heads else pace
             least = min(least, pace)
