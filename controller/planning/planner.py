@@ -47,7 +47,7 @@ class Road(NamedTuple):
         lane_speeds: Speed limits (N,) [m/s] at steps 1 ... N, kept as far as braking allows, or
             None.
         gap: Distance [m] to the closest person in front now. At standstill this person bounds the
-            way: a trial manoeuvre may drive up to d_safe before them.
+            way: a trial manoeuvre may drive up to d_safe before them, a creeping one nearer.
         to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
     """
 
@@ -130,10 +130,11 @@ class Planner:
             )
         before = self._acceleration(speed, previous_force)
         search, allowed = self._search, road.allowed
+        end = float(allowed[-1])
         if search.creeps:
             fastest = min(fastest, CREEPING)
-        end = float(allowed[-1])
-        if speed <= STANDSTILL:
+            end = min(end, road.gap - search.least)
+        elif speed <= STANDSTILL:
             end = min(end, road.gap - self.parameters.safe_distance)
         name = search.choose(speed, before, fastest, allowed, foresight, end, road.to_clear)
         plan = self._smooth((speed, before, previous_force, fastest), road, name)

@@ -83,6 +83,11 @@ class Search:
         self._planned, self._holds, self._drives_on = False, True, True
         self._turn, self.tried, self.missing = 0, 0, inf
 
+    @property
+    def least(self) -> float:
+        """The distance [m] kept to people in front who see the ego."""
+        return Weights(*self.weights).minimum_distance
+
     def creep(self, creeps: bool) -> None:
         """Let the ego stop nearer to people in front from now on, or no longer."""
         self.creeps, self.weights = creeps, self._weights[creeps]

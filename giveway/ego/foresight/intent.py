@@ -314,7 +314,7 @@ def keep_on(
 ) -> None:
     """Move people who keep their velocity to where they are after a prediction step; in place.
 
-    Only those who may not see the ego keep it before one that creeps. The others make way.
+    Before an ego that creeps, those who walk and see it make way.
 
     Args:
         yielding: Yielding state, see :attr:`IntentEstimator.yielding`.
@@ -326,7 +326,9 @@ def keep_on(
     """
     (yields, _, _, dt), (creeps, unaware) = yielding, creeping
     for p in range(position.shape[0]):
-        if yields[p] == KEEPS_ON and not (creeps and not unaware[p]):
+        v_x, v_y = people[1][p, 0], people[1][p, 1]
+        walks = v_x * v_x + v_y * v_y >= _STANDS * _STANDS
+        if yields[p] == KEEPS_ON and not (creeps and walks and not unaware[p]):
             for axis in range(2):
                 velocity[p, axis] = people[1][p, axis]
                 position[p, axis] = people[0][p, axis] + (step + 1) * dt * velocity[p, axis]

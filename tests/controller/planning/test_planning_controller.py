@@ -25,6 +25,7 @@ from controller import (
 )
 from controller._jit import kernel
 from controller.defaults import STANDSTILL
+from controller.driving_constants import CREEPING, CREEPS_NEARER, PATIENCE
 from controller.planning.costs import stopping_need
 from controller.planning.motions import aim
 from controller.planning.parameters import Weights
@@ -35,7 +36,7 @@ aim = kernel(aim)
 MODEL = LongitudinalModel()
 N, DT, V_R = PlannerParameters().horizon, MODEL.time_step, 4.0
 LEAST = ManoeuvreParameters().minimum_distance
-STEPS = 200  # 10 s
+STEPS = round(PATIENCE / DT)  # before it creeps
 FREE = np.full(N, np.inf)  # no vehicle, no light
 BOUGHT = 0.2  # [m]
 
@@ -50,7 +51,7 @@ class Drive:
 
 
 def drive(bystanders, speed, at, until, **changes):
-    """Ten seconds behind people at stations ``at`` [m] from a first step that can still stop."""
+    """Five seconds behind people at stations ``at`` [m] from a first step that can still stop."""
     parameters = PlannerParameters(manoeuvres=ManoeuvreParameters(**changes))
     weights = Weights.of(parameters, parameters.manoeuvres)
     controller = PlanningController(Planner(MODEL, parameters))
@@ -108,9 +109,25 @@ def test_with_the_usual_weight_some_centimetres_are_bought(bystanders, case):
 @pytest.mark.parametrize("speed", [0.0, 2.0, 4.0])
 def test_it_drives_up_to_who_stays_and_past_who_leaves(bystanders, speed):
     waits = drive(bystanders, speed, [10.0], [np.inf])
-    passes = drive(bystanders, speed, [10.0], [60])
+    passes = drive(bystanders, speed, [10.0], [20])
     assert LEAST - 0.1 < waits.closest < PlannerParameters().safe_distance
-    assert passes.driven > 30.0
+    assert passes.driven > waits.driven + 3.0
+
+
+def test_an_ego_that_has_waited_creeps_and_stops_nearer(bystanders):
+    """After ``PATIENCE`` it comes nearer to who stays than it otherwise does, slowly."""
+    controller = PlanningController(Planner(MODEL, PlannerParameters()))
+    crowd = bystanders(np.array([LEAST + 0.5]), [np.inf], N)
+    x, v, fastest, waited = 0.0, 0.0, 0.0, np.inf
+    for k in range(6 * STEPS):
+        crowd.step, crowd.front = k, x
+        force = controller.control(Observation(x, v, crowd.gap(), FREE, foresight=crowd)).force
+        x += DT * v
+        v = max(0.0, MODEL.decay * v + MODEL.speed_per_force * force)
+        waited, fastest = x if k == STEPS else waited, max(fastest, v)
+    assert waited < 0.1
+    assert x == pytest.approx(0.5 + CREEPS_NEARER, abs=0.05)
+    assert fastest <= CREEPING
 
 
 def test_a_plan_may_end_too_fast_for_full_braking():
@@ -158,4 +175,4 @@ def test_it_drives_on_from_where_it_would_block_others(bystanders):
     assert driven.any()
     assert (elsewhere[driven] == 0.0).all(), "it stands where nobody is blocked"
     np.testing.assert_allclose(blocking[driven], places[driven] - LEAST, atol=0.1)
-    np.testing.assert_allclose(blocking[~driven], elsewhere[~driven], atol=0.1)
+    assert (blocking[~driven] >= elsewhere[~driven] - 0.1).all()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from support.manoeuvres import (
+    ALARM,
     DT,
     FRONT,
     HALF_WIDTH,
@@ -56,6 +57,19 @@ def test_the_gap_is_to_the_closest_person_in_the_corridor(name, seed):
         inside = (aside < HALF_WIDTH) & (station > at - PASSED)
         expected = np.min(station[inside] - at, initial=np.inf)
         assert gaps[i] == pytest.approx(expected, abs=1e-9 if name == "straight" else 5e-2)
+
+
+def test_to_a_creeping_ego_who_may_not_see_it_is_nearer():
+    path, m = PATHS["straight"], manoeuvre(0.5, 0.0)
+    middle = np.array(path.pose(FRONT + 4.0)[:2])
+    there = np.repeat(np.array([middle + (0.3, 0.0), middle])[None], N, axis=0)
+    some = ALARM._replace(unaware=np.array([True, False]))
+    seen, usual, creeping = (
+        assessed(path, there, m, alarm=alarm, unaware=nearer)[0]
+        for alarm, nearer in ((ALARM, 0.5), (some, 0.0), (some, 0.5))
+    )
+    assert np.array_equal(seen, usual)
+    np.testing.assert_allclose(usual - creeping, 0.2)
 
 
 def test_who_is_predicted_at_each_step_is_looked_at_at_each_step():

@@ -82,6 +82,24 @@ def test_who_is_on_the_way_or_stands_is_not_pushed_aside(y, pace, expected):
     assert seen.yielding[0].tolist() == [expected]
 
 
+@pytest.mark.parametrize(
+    ("course", "sees"),
+    [
+        ((-1.2, 0.0), True),  # towards the ego
+        ((0.0, 1.2), True),  # across
+        ((0.5, 1.2), False),  # across and away, 113 degrees off
+        ((1.2, 0.0), False),  # away
+        ((0.0, 0.0), False),  # never seen walking
+    ],
+)
+def test_people_see_what_they_walk_towards_or_past(course, sees):
+    seen = estimator()
+    for velocity in (course, course, (0.0, 0.0)):
+        crowd = Crowd.create([(14.0, 0.3)], [velocity], PACE, [[(14.0, 20.0)]])
+        seen.update(crowd, np.array([3]), FRONT, np.empty(0))
+    assert seen.unaware.tolist() == [not sees]
+
+
 def test_who_goes_on_after_all_is_believed():
     seen = estimator()
     odds, _ = watch(seen, lambda room: min(PACE, max(room, 0.0) / 2.0), steps=50)
