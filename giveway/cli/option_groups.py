@@ -82,6 +82,28 @@ class StudyChoice(NamedTuple):
     ] = None
 
 
+class BenchmarkChoice(NamedTuple):
+    """The controllers that the user wants to compare, and the part of the benchmark."""
+
+    controllers: Annotated[
+        list[str],
+        typer.Argument(metavar="CONTROLLER...", help="Bundled controllers, plug-ins or FMUs."),
+    ]
+    config: Annotated[
+        Path | None, typer.Option(help="TOML file with the options that the controller needs.")
+    ] = None
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FACTOR=LEVEL",
+            help="This scene or these people alone, like people=MIXED; repeatable.",
+        ),
+    ] = None
+    runs: Annotated[
+        int | None, typer.Option("--runs", help="Drives per scene (default 100).", min=1)
+    ] = None
+
+
 class StudySeeds(NamedTuple):
     """The seeds of a study's runs."""
 
@@ -222,7 +244,10 @@ def _fields(group: Any) -> list[inspect.Parameter]:
     kinds, defaults = group.__annotations__, group._field_defaults
     return [
         inspect.Parameter(
-            name, inspect.Parameter.KEYWORD_ONLY, default=defaults[name], annotation=kinds[name]
+            name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=defaults.get(name, inspect.Parameter.empty),
+            annotation=kinds[name],
         )
         for name in group._fields
     ]

@@ -7,6 +7,7 @@ import typer
 
 from giveway.cli.help import Commands, JsonFlag
 from giveway.cli.option_groups import (
+    BenchmarkChoice,
     NoTables,
     RerunOutputs,
     StudyChoice,
@@ -79,29 +80,10 @@ def _study(
 
 
 def _benchmark(
-    controllers: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="CONTROLLER...",
-            help="Bundled controllers, plug-ins or FMUs.",
-        ),
-    ],
     *,
+    choice: BenchmarkChoice,
     out: Annotated[
         Path | None, typer.Option(help="Folder (default results/benchmark_CONTROLLER).")
-    ] = None,
-    config: Annotated[
-        Path | None, typer.Option(help="TOML file with the options that the controller needs.")
-    ] = None,
-    only: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="FACTOR=LEVEL",
-            help="This scene or these people alone, like people=MIXED; repeatable.",
-        ),
-    ] = None,
-    runs: Annotated[
-        int | None, typer.Option("--runs", help="Drives per scene (default 100).", min=1)
     ] = None,
     computation: StudyComputation,
     dry_run: Annotated[
@@ -114,8 +96,14 @@ def _benchmark(
     from giveway.cli.commands.benchmark_command import BenchmarkRequest, benchmark_command
     from giveway.studies.study_options import StudyOptions
 
+    shown = {"dry_run": dry_run, "quiet": quiet, "as_json": as_json}
     request = BenchmarkRequest(
-        tuple(controllers), config, tuple(only or ()), runs, out, dry_run, quiet, as_json
+        tuple(choice.controllers),
+        choice.config,
+        tuple(choice.only or ()),
+        choice.runs,
+        out,
+        **shown,
     )
     options = StudyOptions(**computation._asdict())
     raise typer.Exit(benchmark_command(request, options))
