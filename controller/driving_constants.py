@@ -37,6 +37,10 @@ CREEPS_NEARER: Final = 0.45
 """Distance [m] by which a creeping ego comes nearer to who sees it than it otherwise stops: 0.5 m
 to the body; giveway's own choice."""
 
+CREEPS_PAST: Final = 0.2
+"""Distance [m] at which a creeping ego passes people beside its way; giveway's own choice. Others
+count as in front, as they do within the wider corridor of an ego that does not creep."""
+
 PATIENCE: Final = 5.0
 """Time [s] for which an ego waits for people before it creeps; giveway's own choice."""
 

@@ -207,7 +207,7 @@ class PlannerOptions(Section):
         None,
         None,
         "Weight of precaution: seconds of delay for one second at v_r where a person is so near "
-        "that drivers would stand. By default the style sets it: 10, 5 or 2.5",
+        "that drivers would stand. By default the style sets it: 60, 30 or 12",
         ge=0,
         le=1e3,
         because="with a larger weight, a plan depends on this term alone",

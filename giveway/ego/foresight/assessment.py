@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from controller.driving_constants import CREEPS_PAST
 from giveway.ego.foresight.threats import Alarm, threat_free_and_passing
 from giveway.ego.perception.corridor import closest_in_front
 from giveway.geometry.kernel import Array, inlined, kernel
@@ -43,7 +44,7 @@ def assess(
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
         sight: Fields of a :class:`View` and of an :class:`Alarm`; distance [m] by which people who
-            may not see the ego count as nearer.
+            may not see a creeping ego count as nearer, 0 if it does not creep.
         evaluation: Gaps [m], threat-free and passing speeds [m/s], (N,) each, filled.
     """
     now, predicted = crowd
@@ -87,16 +88,19 @@ def assess_step(
         front: Station of the front bumper [m].
         manoeuvre: Distances [m] and speeds [m/s] of the manoeuvre, (N + 1,) each.
         sight: Fields of a :class:`View` and of an :class:`Alarm`; distance [m] by which people who
-            may not see the ego count as nearer.
+            may not see a creeping ego count as nearer, 0 if it does not creep.
         evaluation: Gaps [m], threat-free and passing speeds [m/s], (N,) each, filled.
     """
     (vertices, stations, headings), (before, after, between) = path, people
     (j, predicted), (distance, speeds) = which, manoeuvre
     gap, threat_free, passing = evaluation
-    view, alarm, unaware = sight
+    view, alarm, creeps = sight
     v, limits = View(*view), Alarm(*alarm)
     length, time_step, every = v.length, v.time_step, int(v.every)
     first, last = window(stations, front, PASSED + length)
+    half_width = v.half_width
+    if creeps > 0.0:
+        half_width = min(half_width, v.width / 2.0 + limits.radius + CREEPS_PAST)
     begin, end = interval_of(j, every, predicted, len(gap))
     for i in range(begin, end):
         share = min((i + 1 - begin) / every, 1.0)
@@ -105,15 +109,15 @@ def assess_step(
             between[p, 1] = before[p, 1] + share * (after[p, 1] - before[p, 1])
         at = front + distance[i + 1]
         closest, _ = closest_in_front(
-            vertices, stations, (first, last), between, at - PASSED, v.half_width, 0.0
+            vertices, stations, (first, last), between, at - PASSED, half_width, 0.0
         )
-        for p in range(limits.unaware.shape[0] if unaware > 0.0 else 0):
+        for p in range(limits.unaware.shape[0] if creeps > 0.0 else 0):
             if limits.unaware[p]:
                 alone = between[p : p + 1]
                 station, _ = closest_in_front(
-                    vertices, stations, (first, last), alone, at - PASSED, v.half_width, 0.0
+                    vertices, stations, (first, last), alone, at - PASSED, half_width, 0.0
                 )
-                closest = min(closest, station - unaware)
+                closest = min(closest, station - creeps)
         gap[i] = closest - at
         if i > begin:
             threat_free[i], passing[i] = threat_free[begin], passing[begin]
