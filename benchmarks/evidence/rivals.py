@@ -25,21 +25,30 @@ from giveway.studies.study import run_study
 from giveway.studies.study_options import StudyOptions
 
 RIVALS = {
-    "mpc": ("mpc", None),
-    "pid-tuned": ("pid-tuned", None),
-    "idm": ("idm", None),
-    "careful-driver": ("careful-driver", None),
-    "bilevel": ("controller.reference_drivers.bilevel:BilevelMpc", 20),
+    "mpc": ("mpc", None, ""),
+    "mpc careful": ("mpc", None, "careful"),
+    "mpc assertive": ("mpc", None, "assertive"),
+    "pid-tuned": ("pid-tuned", None, ""),
+    "idm": ("idm", None, ""),
+    "careful-driver": ("careful-driver", None, ""),
+    "bilevel": ("controller.reference_drivers.bilevel:BilevelMpc", 20, ""),
 }
-"""Controller of each rival, and its drives of each scene if they are fewer than the benchmark's."""
+"""Controller of each rival, its drives of each scene if they are fewer than the benchmark's, and
+its driving style if it has one."""
 KEPT = HOUSE / "giveway" / "studies" / "benchmark" / "rivals.csv"
 PAGE, BLOCK = HOUSE / "docs" / "benchmark.md", "rivals"
+FRONT = HOUSE / "README.md", "front"
 
 
 def made(name: str, out: Path, jobs: int, runs: int | None) -> pd.DataFrame:
     """The rows of one rival, with the commit of the code that drove."""
-    controller, few = RIVALS[name]
-    definition = benchmark_of([controller])
+    controller, few, style = RIVALS[name]
+    settings = None
+    if style:
+        settings = out / f"{style}.toml"
+        out.mkdir(parents=True, exist_ok=True)
+        settings.write_text(f'[controller_options]\nstyle = "{style}"\n', encoding="utf-8")
+    definition = benchmark_of([controller], settings)
     runs = runs or few
     if runs is not None:
         definition = changed(definition, {"replications": runs}, ORIGIN)
@@ -92,6 +101,21 @@ def table(rivals: pd.DataFrame) -> list[str]:
     return lines
 
 
+def front(rivals: pd.DataFrame) -> list[str]:
+    """Markdown: closeness, time and people's delay of each driver among people of MIXED."""
+    lines = header(["driver", "close passes [%]", "time [s]", "people's delay [s]", "RMS jerk"])
+    wanted = rivals[(rivals["scene"] == ALL_SCENES) & (rivals["people"] == "MIXED")]
+    wanted = wanted.sort_values("close_pass_share", kind="stable")
+    for one in wanted.to_dict("records"):
+        bounded = [
+            _bounded(one, "close_pass_share", 100.0, 1),
+            _bounded(one, "time", 1.0, 1),
+            _bounded(one, "people_delay", 1.0, 2),
+        ]
+        lines.append(row([f"`{one['controller']}`", *bounded, _text(one["rms_jerk"], 1)]))
+    return lines
+
+
 def _bounded(one: dict[str, float], name: str, scale: float, digits: int) -> str:
     low, high = (_text(scale * one[f"{name}_{end}"], digits) for end in ("low", "high"))
     text = _text(scale * one[name], digits)
@@ -109,6 +133,7 @@ def write_page(rivals: pd.DataFrame, lines: list[str]) -> None:
     of_each = "; ".join(f"`{name}`: {text}" for name, text in made_with.items())
     command = "`python benchmarks/evidence --kept benchmark`"
     write_block(PAGE, BLOCK, lines, f"Kept: {command}. Commit {commit} ({date}); {of_each}.")
+    write_block(*FRONT, front(rivals), f"Kept: {command}. Commit {commit} ({date}).")
 
 
 def main() -> int:

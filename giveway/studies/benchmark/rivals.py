@@ -1,4 +1,4 @@
-"""The kept numbers of the rivals: four controllers of giveway, and drivers who were recorded."""
+"""The kept numbers of the rivals: controllers of giveway, and drivers who were recorded."""
 
 from importlib.resources import files
 

@@ -4,7 +4,15 @@ from itertools import product
 
 from giveway.studies.benchmark import ALL_SCENES, RECORDED, VERSION, rivals, scenes
 
-CONTROLLERS = {"mpc": 100, "pid-tuned": 100, "idm": 100, "careful-driver": 100, "bilevel": 20}
+CONTROLLERS = {
+    "mpc": 100,
+    "mpc careful": 100,
+    "mpc assertive": 100,
+    "pid-tuned": 100,
+    "idm": 100,
+    "careful-driver": 100,
+    "bilevel": 20,
+}
 
 
 def test_each_rival_has_a_row_for_each_scene_and_people():
