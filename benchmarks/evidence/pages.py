@@ -384,6 +384,23 @@ PAGES: dict[str, Page] = {
             kept=True,
         ),
         Page(
+            "front",
+            "README.md",
+            (
+                Block(
+                    "front",
+                    Command(
+                        "evidence/rivals.py --out {out} --front",
+                        "seeds 701 to 800",
+                        "--out {out} --front",
+                    ),
+                    printed,
+                ),
+            ),
+            (*DRIVING, "giveway/studies/benchmark"),
+            kept=True,
+        ),
+        Page(
             "paper",
             "docs/reproduction.md",
             (Block("table 2", samples.PAPER, comparisons.situations),),

@@ -144,7 +144,11 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--runs", type=int, help="drives of each scene; then nothing is written")
     parser.add_argument("--page", action="store_true", help="write docs/benchmark.md, too")
+    parser.add_argument("--front", action="store_true", help="print README's table of kept rows")
     asked = parser.parse_args()
+    if asked.front:
+        print("\n".join(front(kept_rivals())))
+        return 0
     wanted = asked.controller or RIVALS
     new = pd.concat([made(name, asked.out, asked.jobs, asked.runs) for name in wanted])
     kept = kept_rivals()

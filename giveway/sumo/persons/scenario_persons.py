@@ -26,8 +26,21 @@ from giveway.sumo.persons.walk_speeds import WalkSpeeds
 
 _WALKING = 2  # SUMO's number of the walking stage type
 _SLOWEST = 0.1  # Smallest desired speed [m/s]
+_JUMPED = 2.0  # Share of the desired speed above which SUMO has moved a person, who has not walked
 # Largest extra distance [m] to the person's own route, up to which it goes on along it
 _DETOUR = 5.0
+
+
+def walked(speed: float, usual: float) -> float:
+    """Return the speed [m/s] with which a person walks, whatever speed SUMO reports.
+
+    SUMO reports up to 9,999 m/s in the step in which it puts a person onto another lane.
+
+    Args:
+        speed: Speed [m/s] that SUMO reports.
+        usual: Desired speed [m/s] of the person.
+    """
+    return speed if speed <= _JUMPED * usual else usual
 
 
 class Arrival(enum.Enum):
@@ -183,7 +196,8 @@ class ScenarioPersons:
         current = self._paths.index(name, edges, lane, arrival)
         own_speed = self._speeds.speed(name, stage, person.getRemainingStages(name))
         x, y = self._position(name)
-        speed = float(person.getSpeed(name))
+        usual = own_speed or float(person.getMaxSpeed(name))
+        speed = walked(float(person.getSpeed(name)), usual)
         taken = Person(
             id=name,
             type=person.getTypeID(name),
@@ -191,7 +205,7 @@ class ScenarioPersons:
             y=y,
             heading=angle_to_heading(person.getAngle(name)),
             speed=speed,
-            desired_speed=max(own_speed or float(person.getMaxSpeed(name)), speed, _SLOWEST),
+            desired_speed=max(usual, speed, _SLOWEST),
             edges=edges[current:],
             lane=lane,
             arrival_position=arrival,

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from giveway.sumo.persons.scenario_persons import walked
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -283,3 +285,8 @@ def test_a_trip_that_sumo_splits_into_stages_starts_at_its_start(look: Look) -> 
             <stop busStop="far" duration="10" until="60"/></flow>"""
     seen = look("arrive", "signals", bus + person(plan), time=5.0, seconds=5.0)
     assert seen["again"]["stages_left"] >= 1  # walks to the bus, and has more to do then
+
+
+@pytest.mark.parametrize(("told", "walks"), [(9999.3, 1.4), (1.6, 1.6), (0.0, 0.0)])
+def test_a_persons_jump_in_sumo_is_no_speed(told: float, walks: float) -> None:
+    assert walked(told, 1.4) == walks
