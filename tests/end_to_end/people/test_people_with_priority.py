@@ -35,7 +35,7 @@ def cross(tmp_path_factory):
     (folder / "one.rou.xml").write_text(ROUTES)
     (folder / "one.sumocfg").write_text(CONFIG)
 
-    def run(position, controller="mpc", priority="road", preset="MIXED", **own):
+    def run(position, controller="mpc", priority="road", preset="MIXED"):
         ego = {"none": True}
         if position is not None:
             ego = {"route": ["east_out", "far_east_out"], "lane": 1, "depart_time": 1.0}
@@ -44,7 +44,6 @@ def cross(tmp_path_factory):
             {
                 "scenario": str(folder / "one.sumocfg"),
                 "controller": controller,
-                "controller_options": own,
                 "regulation": {"reference_speed": 4.0},
                 "rules": rules_of(priority),
                 "crowd": {"zone": "everywhere", "preset": preset},
@@ -71,10 +70,13 @@ def test_she_walks_on_before_an_ego_that_gives_way(cross, controller, position):
     assert before_ego.time == pytest.approx(alone.time, abs=0.3)
 
 
-def test_without_the_law_of_the_road_she_is_pushed_back(cross):
-    pushed = cross(8.0, "mpc", priority="none", preset="SIM", precaution_weight=0.0)
-    assert pushed.pushed_back > 0.2
-    assert pushed.time > cross(None).time + 2.0
+@pytest.mark.parametrize("controller", ["mpc-paper", "pid-tuned"])
+def test_without_the_law_of_the_road_she_is_pushed_back(cross, controller):
+    """The ego reaches the zebra when she is half across its lane."""
+    pushed = cross(9.5, controller, priority="none", preset="SIM")
+    assert pushed.pushed_back > 0.5
+    assert pushed.time > cross(None, preset="SIM").time + 3.0
+    assert cross(9.5, controller, preset="SIM").pushed_back < 0.01
 
 
 def test_same_bytes_in_both_runs():
