@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from rich.console import Console
 
-from giveway.cli.commands.study_command import study_progress
+from giveway.cli.commands.study_session import make_study
 from giveway.cli.screen.benchmark_table import print_benchmark
 from giveway.cli.screen.printing import print_json, print_place
-from giveway.cli.screen.study_summary import print_plan, print_runs
-from giveway.precompile import compile_kernels_once
-from giveway.processes.processors import processors
+from giveway.cli.screen.study_summary import print_runs
 from giveway.studies.benchmark import FILE, ORIGIN, benchmark_of, rivals, write_benchmark
 from giveway.studies.definition import changed
-from giveway.studies.plan import plan
-from giveway.studies.study import StudyOptions, estimate, run_study
+from giveway.studies.study_options import StudyOptions
 from giveway.studies.varying import chosen
 
 
@@ -51,29 +47,21 @@ def benchmark_command(request: BenchmarkRequest, options: StudyOptions) -> int:
         changes["replications"] = request.runs
     definition = changed(definition, changes, ORIGIN)
     out = request.out or Path("results") / definition.name
-    planned = plan(definition, ORIGIN)
-    compile_kernels_once(console)
-    if request.dry_run:
-        with console.status("Trying one run of each cell ..."):
-            seconds, by_cell = estimate(planned, options)
-        print_plan(console, planned, seconds, by_cell, out)
+    session = make_study(console, definition, ORIGIN, out, options, dry_run=request.dry_run)
+    if session is None:
         return 0
-    began = time.monotonic()
-    with study_progress(console, definition.name) as watcher:
-        study = run_study(definition, ORIGIN, out, options, watcher)
-    elapsed = time.monotonic() - began
+    study = session.study
     table = write_benchmark(study)
     kept = rivals()
     print_benchmark(console, table, kept)
-    workers = None if options.cluster else options.jobs or processors()
-    print_runs(console, study, made=watcher.made, elapsed=elapsed, workers=workers)
+    print_runs(console, study, session.effort)
     print_place(console, "Table", out / FILE)
     if request.as_json:
         print_json(
             {
                 "study": str(out),
                 "failed": len(study.failures),
-                "seconds": elapsed,
+                "seconds": session.effort.elapsed,
                 "table": table.to_dict("records"),
                 "rivals": kept.to_dict("records"),
             }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rich import box
 from rich.padding import Padding
@@ -74,18 +74,16 @@ def _trial(seconds: float) -> str:
     return "failed" if math.isnan(seconds) else f"{seconds:.3f}"
 
 
-def print_summary(
-    console: Console, study: StudyFolder, *, made: int, elapsed: float, workers: int | None
-) -> None:
-    """Print the main results of the study, its failures, and the places of the files.
+class Effort(NamedTuple):
+    """The number of runs that a session has made, and what they took."""
 
-    Args:
-        console: Console to print on.
-        study: Folder of the study.
-        made: Number of runs that this session has made.
-        elapsed: Time [s] that making them took.
-        workers: Number of processes that made them, or None if a cluster made them.
-    """
+    made: int
+    elapsed: float  # time [s]
+    workers: int | None  # number of processes, or None if a cluster made them
+
+
+def print_summary(console: Console, study: StudyFolder, effort: Effort) -> None:
+    """Print the main results of the study, its failures, and the places of the files."""
     if study.definition.reference:
         _print_reference(console, study)
     elif study.definition.table == "levels":
@@ -95,21 +93,12 @@ def print_summary(
     if study.definition.primary_outcome is not None and len(study.comparison):
         console.print(escape(primary_outcome(study)), highlight=False)
     _print_precision(console, study)
-    print_runs(console, study, made=made, elapsed=elapsed, workers=workers)
+    print_runs(console, study, effort)
 
 
-def print_runs(
-    console: Console, study: StudyFolder, *, made: int, elapsed: float, workers: int | None
-) -> None:
-    """Print the number of runs, the time that they took, and those without a result.
-
-    Args:
-        console: Console to print on.
-        study: Folder of the study.
-        made: Number of runs that this session has made.
-        elapsed: Time [s] that making them took.
-        workers: Number of processes that made them, or None if a cluster made them.
-    """
+def print_runs(console: Console, study: StudyFolder, effort: Effort) -> None:
+    """Print the number of runs, the time that they took, and those without a result."""
+    made, elapsed, workers = effort
     by = "" if workers is None else f" on {counted(workers, 'worker')}"
     there = len(study.records)
     new = "" if made == there else f", {made:,} of them made now,"

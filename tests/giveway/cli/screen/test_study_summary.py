@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from giveway.cli.screen.study_summary import print_summary
+from giveway.cli.screen.study_summary import Effort, print_summary
 from giveway.reports.findings_in_words import findings
 from giveway.reports.tables.level_table import level_table, levels_section
 
@@ -21,7 +21,7 @@ def printed():
     def print_(study, *, width=80, made=20):
         text = io.StringIO()
         console = Console(file=text, width=width)
-        print_summary(console, study, made=made, elapsed=3.0, workers=2)
+        print_summary(console, study, Effort(made, 3.0, 2))
         return text.getvalue()
 
     return print_
