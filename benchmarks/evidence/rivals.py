@@ -18,7 +18,17 @@ from blocks import present_version, write_block
 from digests import HOUSE
 from tables import header, row
 
-from giveway.studies.benchmark import ALL_SCENES, COLUMNS, ORIGIN, benchmark_of, write_benchmark
+from giveway.studies.benchmark import (
+    ALL_SCENES,
+    COLUMNS,
+    ORIGIN,
+    Notation,
+    benchmark_of,
+    bounded,
+    number,
+    texts,
+    write_benchmark,
+)
 from giveway.studies.benchmark import rivals as kept_rivals
 from giveway.studies.definition import changed
 from giveway.studies.study import run_study
@@ -38,6 +48,7 @@ its driving style if it has one."""
 KEPT = HOUSE / "giveway" / "studies" / "benchmark" / "rivals.csv"
 PAGE, BLOCK = HOUSE / "docs" / "benchmark.md", "rivals"
 FRONT = HOUSE / "README.md", "front"
+OF_PAGE = Notation(", ", " of ", "-")
 
 
 def made(name: str, out: Path, jobs: int, runs: int | None) -> pd.DataFrame:
@@ -78,26 +89,7 @@ def table(rivals: pd.DataFrame) -> list[str]:
     lines = header(titles)
     wanted = rivals[(rivals["scene"] == ALL_SCENES) | (rivals["people"] == "recorded")]
     for one in wanted.sort_values("people", kind="stable").to_dict("records"):
-        passes = (one["close_passes"], one["tight_passes"], one["narrow_passes"])
-        contacts = (one["frontal_contacts"], one["side_contacts"])
-        lines.append(
-            row(
-                [
-                    one["people"],
-                    one["controller"],
-                    _bounded(one, "close_pass_share", 100.0, 1),
-                    _bounded(one, "close_pass_share_moving", 100.0, 1),
-                    ", ".join(_text(value, 2) for value in passes),
-                    _bounded(one, "people_delay", 1.0, 2),
-                    _text(one["conflicts"], 2),
-                    _bounded(one, "time", 1.0, 1),
-                    _text(one["hard_brakes"], 2),
-                    _text(one["rms_jerk"], 2),
-                    ", ".join(_text(value, 0) for value in contacts),
-                    f"{_text(one['arrived'], 0)} of {one['drives']}",
-                ]
-            )
-        )
+        lines.append(row([one["people"], one["controller"], *texts(one, OF_PAGE)]))
     return lines
 
 
@@ -107,23 +99,11 @@ def front(rivals: pd.DataFrame) -> list[str]:
     wanted = rivals[(rivals["scene"] == ALL_SCENES) & (rivals["people"] == "MIXED")]
     wanted = wanted.sort_values("close_pass_share", kind="stable")
     for one in wanted.to_dict("records"):
-        bounded = [
-            _bounded(one, "close_pass_share", 100.0, 1),
-            _bounded(one, "time", 1.0, 1),
-            _bounded(one, "people_delay", 1.0, 2),
-        ]
-        lines.append(row([f"`{one['controller']}`", *bounded, _text(one["rms_jerk"], 1)]))
+        columns = ("close_pass_share", 100.0), ("time",), ("people_delay", 1.0, 2)
+        told = [bounded(one, *column, missing=OF_PAGE.missing) for column in columns]
+        jerk = number(one["rms_jerk"], 1, OF_PAGE.missing)
+        lines.append(row([f"`{one['controller']}`", *told, jerk]))
     return lines
-
-
-def _bounded(one: dict[str, float], name: str, scale: float, digits: int) -> str:
-    low, high = (_text(scale * one[f"{name}_{end}"], digits) for end in ("low", "high"))
-    text = _text(scale * one[name], digits)
-    return text if low == "-" else f"{text} [{low}, {high}]"
-
-
-def _text(value: float, digits: int) -> str:
-    return "-" if pd.isna(value) else f"{value:.{digits}f}"
 
 
 def write_page(rivals: pd.DataFrame, lines: list[str]) -> None:

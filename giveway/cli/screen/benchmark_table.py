@@ -1,6 +1,5 @@
 """The table of the benchmark in a terminal: a block per scene and people, close passes first."""
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,7 +9,7 @@ from rich.console import Console
 from giveway.cli.screen.printing import escape
 from giveway.cli.screen.study_levels import print_level_table
 from giveway.reports.tables.level_table import LevelTable, Mean, Row
-from giveway.studies.benchmark import RECORDED, VERSION
+from giveway.studies.benchmark import RECORDED, VERSION, texts
 
 _HEADINGS = (
     ("close", "%"),
@@ -61,30 +60,4 @@ def print_benchmark(console: Console, table: pd.DataFrame, kept: pd.DataFrame) -
 
 
 def _row(context: str, row: Mapping[Any, Any], mark: str) -> Row:
-    passes = (row["close_passes"], row["tight_passes"], row["narrow_passes"])
-    texts = (
-        _bounded(row, "close_pass_share", 100.0, 1),
-        _bounded(row, "close_pass_share_moving", 100.0, 1),
-        "/".join(_number(value, 2) for value in passes),
-        _bounded(row, "people_delay", 1.0, 2),
-        _number(row["conflicts"], 2),
-        _bounded(row, "time", 1.0, 1),
-        _number(row["hard_brakes"], 2),
-        _number(row["rms_jerk"], 2),
-        "/".join(_number(row[f"{side}_contacts"], 0) for side in ("frontal", "side")),
-        f"{_number(row['arrived'], 0)}/{_number(row['drives'], 0)}",
-    )
-    return Row(context, f"{row['controller']}{mark}", tuple(Mean(text) for text in texts))
-
-
-def _bounded(row: Mapping[Any, Any], name: str, scale: float, digits: int) -> str:
-    """Return a number with its interval, if it has one."""
-    text = _number(scale * row[name], digits)
-    low, high = scale * row[f"{name}_low"], scale * row[f"{name}_high"]
-    if not math.isfinite(low):
-        return text
-    return f"{text} [{_number(low, digits)}, {_number(high, digits)}]"
-
-
-def _number(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if math.isfinite(value) else "–"
+    return Row(context, f"{row['controller']}{mark}", tuple(map(Mean, texts(row))))

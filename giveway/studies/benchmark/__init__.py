@@ -9,6 +9,7 @@ from giveway.studies.benchmark.definition import (
 )
 from giveway.studies.benchmark.rivals import RECORDED, rivals
 from giveway.studies.benchmark.table import COLUMNS, FILE, benchmark_table, write_benchmark
+from giveway.studies.benchmark.texts import Notation, bounded, number, texts
 
 __all__ = [
     "ALL_SCENES",
@@ -17,9 +18,13 @@ __all__ = [
     "ORIGIN",
     "RECORDED",
     "VERSION",
+    "Notation",
     "benchmark_of",
     "benchmark_table",
+    "bounded",
+    "number",
     "rivals",
     "scenes",
+    "texts",
     "write_benchmark",
 ]

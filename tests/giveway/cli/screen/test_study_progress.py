@@ -42,8 +42,6 @@ def test_a_file_gets_lines_with_the_time_left(shown):
     lines = shown().splitlines()
     counts = [line.split("  ")[0] for line in lines]
     assert counts == [f"study small: {done}/8 runs" for done in (3, 4, 5)]
-        f"study small: {n}/8 runs" for n in (3, 4, 5)
-    ]
     assert all("1 failed, about 0 min left" in line for line in lines)
 
 
