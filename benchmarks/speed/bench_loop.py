@@ -1,11 +1,12 @@
 """The cost of the whole loop at 30 pedestrians, part by part, next to SUMO and the FMU alone.
 
-Run: python benchmarks/speed/bench_loop.py [--pairs N] [--controller NAME] [--perception-model NAME]
-     [--horizon SECONDS] [--people] [--largest RUNS]
+Run: python benchmarks/speed/bench_loop.py [--seeds N] [--pairs N] [--controller NAME]
+     [--perception-model NAME] [--horizon SECONDS] [--people] [--largest RUNS]
 
 The baseline makes the same moves, SUMO steps and FMU steps as a recorded run, with nothing in
-between. Both are timed in turn in one process; the ratio is what counts. ``--people`` compares 60
-people with 30, and ``--largest`` looks for the longest control steps of many runs, instead.
+between. Both are timed in turn in one process, by the thread's CPU time, which other processes
+disturb little; the ratio over all drives is what counts. ``--people`` compares 60 people with 30,
+and ``--largest`` looks for the longest control steps of many runs, instead.
 """
 
 from __future__ import annotations
@@ -56,14 +57,14 @@ def baseline(result: RunResult) -> float:
         vehicle = parts.egos[0].vehicle
         parts.departures.due()  # inserts the ego and starts its FMU
         move_ego, move_person = libsumo.vehicle.moveToXY, libsumo.person.moveToXY
-        began = perf_counter()
+        began = thread_time()
         for (x, y), ids, rows, force in steps:
             vehicle.step(force)
             move_ego("ego", "", -1, x, y, 90.0, 2)
             for name, (p_x, p_y, p_angle) in zip(ids, rows, strict=True):
                 move_person(name, "", p_x, p_y, p_angle, 2, -1.0)
             libsumo.simulationStep()
-        return perf_counter() - began
+        return thread_time() - began
 
 
 def ready(
@@ -139,37 +140,42 @@ def osqp_share(checked: CheckedRun) -> float:
     return spent[0] / result.elapsed
 
 
-def show(controller: str, seed: int, pairs: int, believed: str, horizon: float | None) -> None:
-    """Loop and baseline in turn, and the parts of the loop."""
-    checked = ready(controller, seed, believed=believed, horizon=horizon)
-    simulate(checked)  # loads the kernels, and warms the file cache
-    results, ratios, busy = [], [], []
-    for _ in range(pairs):
-        began = process_time()
-        result = simulate(checked)
-        busy.append(process_time() - began)
-        results.append(result)
-        ratios.append(result.elapsed / baseline(result))
-    elapsed = statistics.median(r.elapsed for r in results)
-    steps = len(results[0].ego_track.time) - 1
-    seconds = float(results[0].time[-1] - results[0].time[0])
-    factor = seconds / elapsed
+def show(controller: str, seeds: range, pairs: int, believed: str, horizon: float | None) -> None:
+    """Loop and baseline in turn, and the parts of the loop, over the drives of several seeds."""
+    simulate(ready(controller, seeds[0], believed=believed, horizon=horizon))  # loads the kernels
+    vars(loop)["perf_counter"] = thread_time
+    parts, alone, busy, steps, seconds, osqp = np.zeros(len(Timings.NAMES)), 0.0, 0.0, 0, 0.0, 0.0
+    for seed in seeds:
+        checked = ready(controller, seed, believed=believed, horizon=horizon)
+        rows, times, whole = [], [], []
+        for _ in range(pairs):
+            began = process_time()
+            result = simulate(checked)
+            whole.append(process_time() - began)
+            rows.append(result.timings.seconds[1:].sum(axis=0))
+            times.append(baseline(result))
+        parts += np.median(rows, axis=0)
+        alone += statistics.median(times)
+        busy += min(whole)
+        steps += len(result.ego_track.time) - 1
+        seconds += float(result.time[-1] - result.time[0])
+        osqp += osqp_share(checked) / len(seeds)
+    vars(loop)["perf_counter"] = perf_counter
+    total = parts[Timings.NAMES.index("total")]
     print(f"{controller}, 30 pedestrians, {steps} steps of {seconds / steps:.2f} s")
-    print(f"  loop / (SUMO moves and steps + FMU steps): {statistics.median(ratios):.2f}")
-    print(f"  per step: {elapsed / steps * 1e6:.0f} us; real-time factor {factor:.0f}")
-    print(f"  processor time, start included: {min(busy) / steps * 1e6:.0f} us per step at least")
-    for name in Timings.NAMES[:-1]:
-        share = statistics.median(r.timing_summary["shares"][name] for r in results)
-        print(f"  {name:10} {100 * share:5.1f} %")
-    osqp = statistics.median(osqp_share(checked) for _ in range(pairs))
+    print(f"  loop / (SUMO moves and steps + FMU steps): {total / alone:.2f}")
+    print(f"  per step: {total / steps * 1e6:.0f} us; real-time factor {seconds / total:.0f}")
+    print(f"  processor time, start included: {busy / steps * 1e6:.0f} us per step at least")
+    for name, spent in zip(Timings.NAMES[:-1], parts, strict=False):
+        print(f"  {name:10} {100 * spent / total:5.1f} %")
     if osqp > 0.0:
         print(f"  of control, OSQP itself {100 * osqp:5.1f} %")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seed", type=int, default=4, help="4 meets the crowd and keeps moving")
-    parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
+    parser.add_argument("--seeds", type=int, default=8, help="drives of the seeds 1, 2, ...")
+    parser.add_argument("--pairs", type=int, default=5, help="loop and baseline, in turn, of each")
     parser.add_argument("--controller", action="append", choices=CONTROLLERS, help="these only")
     parser.add_argument("--perception-model", default="vci", help="that is believed in")
     parser.add_argument("--horizon", type=float, help="of mpc's plans [s]; none: the default")
@@ -188,7 +194,8 @@ def main() -> None:
             print(f"  longest, the {AGAIN} runs with the longest made again: {each:.2f} ms")
             print(f"  wall clock's 99.99th percentile: {wall:.2f} ms")
         else:
-            show(controller, options.seed, options.pairs, options.perception_model, options.horizon)
+            seeds = range(1, options.seeds + 1)
+            show(controller, seeds, options.pairs, options.perception_model, options.horizon)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ TOLERANCE = 1.6  # times the kept ratio, either way: another machine, and a busy
 PACKAGES = ("numpy", "numba", "llvmlite", "osqp", "libsumo", "fmpy", "pandas")
 #: Short runs, and where their ratios stand in what they print.
 QUICK = {
-    "bench_loop.py --pairs 3": r"^(?P<name>[\w-]+), 30 .*\n.*moves and steps.*: (?P<ratio>[\d.]+)",
+    "bench_loop.py --seeds 4": r"^(?P<name>[\w-]+), 30 .*\n.*moves and steps.*: (?P<ratio>[\d.]+)",
     "bench_fmu.py --ticks 1000 --rounds 5": r"^(?P<name>FMI \d\.0) .*us +(?P<ratio>[\d.]+)$",
     "bench_start.py --rounds 3": r"^(?P<name>ratio, \w+).* (?P<ratio>[\d.]+)$",
     "bench_study.py --runs 10 --crowds 6": r"^ *(?P<name>mpc over \S+): +(?P<ratio>[\d.]+)",

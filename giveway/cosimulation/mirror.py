@@ -24,6 +24,7 @@ _SHORT = 0.15  # Step [s] of SUMO in which no car turns noticeably: 0.1 m sidewa
 _MEET = 1.5  # Time [s] within which a vehicle beside an ego's path may come into it
 _BODIES = 15.0  # Allowance [m] for the lengths of the two vehicles
 _NONE = np.empty(0, dtype=np.int64)
+_NO_NEWS = np.empty(0)
 _STANDING = 1e-6  # Speed [m/s] below which a pedestrian keeps the last angle
 
 
@@ -97,14 +98,14 @@ class Mirror:
             VehicleError: a position in SUMO is not finite.
         """
         self.background = background = self._session.vehicles.background()
-        near = _NONE
+        near, slows = _NONE, _NO_NEWS
         if background.ids:
             self._require_finite(background)
             drives = [(*ego.pose[:2], ego.vehicle.speed) for ego in egos]
             near = _relevant(background, pedestrians, drives, self._span)
-        slows = self._slowing.read(background.ids, background.speed)
-        if any(ego.config.defaults.buffered for ego in egos):
-            slows[:] = 0.0  # the paper's controllers expect constant speeds
+            slows = self._slowing.read(background.ids, background.speed)
+            if any(ego.config.defaults.buffered for ego in egos):
+                slows[:] = 0.0  # the paper's controllers expect constant speeds
         self._near, self._slows = near, slows[near]
         if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
             self._allocate(egos, len(near))

@@ -24,6 +24,7 @@ CELL_LIST_FROM = 100
 THREADS_FROM = 1000
 #: Largest number of threads that is accepted.
 MOST_THREADS = 256
+_DOUBLE = 2.0 * LONGEST_STEP + 1e-9  # longest step [s] that ``pack`` makes as steady as the crowd's
 _NOWHERE: Final = np.empty((1, 0, 2))  # output (1, 0, 2) of one step without recorded positions
 
 
@@ -40,6 +41,9 @@ def require_steady(
     2 - z - z W/2 and the determinant 1 - z + z W/2 with W = v0 dt/s_des. For z <= 1 it is stable
     without a negative eigenvalue exactly if W < 2.
 
+    A predictor's step of up to two of the crowd's has a larger mass (``pack``), so that the speed
+    settles in it if it settles in the crowd's.
+
     Args:
         parameters: Parameters of the model.
         time_step: Time step [s], which is divided into sub-steps.
@@ -49,13 +53,13 @@ def require_steady(
         ParameterError: speeds would oscillate.
     """
     dt = time_step / substeps(time_step, longest)
-    p = parameters
-    steady = p.mass / dt
+    p, step = parameters, dt if dt > _DOUBLE else min(dt, LONGEST_STEP)
+    steady = p.mass / step
     if p.destination_gain > steady:
         raise ParameterError(
             f"destination_gain = {p.destination_gain:g} N s/m: people's speeds swing from step to "
             f"step, k_des dt/m = {p.destination_gain / steady:.2g} > 1; expected at most m/dt = "
-            f"{steady:g} N s/m for {p.mass:g} kg and steps of {dt:.4g} s"
+            f"{steady:g} N s/m for {p.mass:g} kg and steps of {step:.4g} s"
         )
     nearest = 0.5 * p.max_speed * dt
     if p.destination_smoothing <= nearest:

@@ -7,6 +7,7 @@ import pytest
 from crowd_forces import constant_speed
 
 from pedestrian_model import (
+    PRESETS,
     Crowd,
     CrowdModel,
     DivergenceError,
@@ -102,15 +103,21 @@ def test_alone_one_long_step_leads_where_two_short_ones_do(walkers):
     assert error < 0.3 * np.abs(long.predict(crowd, poses) - fine).max()
 
 
+@pytest.mark.parametrize("preset", ["SIM", "MIXED"])
 @pytest.mark.parametrize("speed", [0.0, 2.0, 4.0])
-def test_among_others_one_long_step_is_near_two_short_ones(walkers, speed):
+def test_among_others_one_long_step_is_near_two_short_ones(walkers, speed, preset):
+    """Also people of MIXED, k_des dt/m = 1.8 in a long step, whose speeds settle in two short ones.
+
+    The long step's larger mass makes it 0.98.
+    """
+    law = PRESETS[preset]
     car, g = Vehicles.create(-6.0, 0.0, 0.0, speed), np.random.default_rng(0)
     x, y = (a.ravel() + g.uniform(-0.5, 0.5, 20) for a in np.mgrid[0.0:10.0:2.5, -5.0:5.0:2.0])
     crowd = walkers(np.column_stack([x, y]), np.column_stack([x, -3.0 * y]))
-    fine = Predictor(horizon=60).predict(crowd, constant_speed(car, 0.05, 60))[1::2]
+    fine = Predictor(law, horizon=60).predict(crowd, constant_speed(car, 0.05, 60))[1::2]
     poses = constant_speed(car, 0.1, 30)
     poses[:, :, 0] += 0.025 * speed  # where the car is on the average in two steps
-    long = Predictor(time_step=0.1, horizon=30, longest_step=0.1)
+    long = Predictor(law, time_step=0.1, horizon=30, longest_step=0.1)
     error = np.abs(long.predict(crowd, poses) - fine).max(axis=2)
     assert error[9].mean() < 0.015
     assert error[-1].mean() < 0.08
