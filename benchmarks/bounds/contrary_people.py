@@ -85,7 +85,6 @@ def drive(
     """One drive at the person."""
     crosses = does in {"stops", "turns back"}
     away = PACE * (PLACE / speed + later) if crosses else SIDE if does == "stands beside" else 0.0
-    place = 30.0 if does == "walks along" else PLACE
     return giveway.run(
         {
             "scenario": "shared_space",
@@ -98,7 +97,7 @@ def drive(
             "crowd": {
                 "pedestrians": 1,
                 "model": "contrary_people:ContraryPerson",
-                "spawn_area": [place, -away, place + 0.02, 0.02 - away],
+                "spawn_area": [PLACE, -away, PLACE + 0.02, 0.02 - away],
                 "walk": [0.0, 2.0 * away + 10.0],
             },
         }

@@ -229,7 +229,7 @@ def _update(
         far = np.sqrt((c_x * c_x + c_y * c_y) * (ahead * ahead + off * off))
         unaware[i] = ahead > 0.0 and facing <= _SEES * far
         near = ahead <= _REACH
-        if ahead > 0.0 and ((aside <= 0.0 and (near or stands)) or (near and stands)):
+        if ahead > 0.0 and (aside <= 0.0 or (near and stands)):
             yields[i] = KEEPS_ON
         to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
         far = np.sqrt(to_x * to_x + to_y * to_y)
