@@ -3,7 +3,10 @@
 Run: python benchmarks/bounds/first_runs.py [--seeds 20] [--controller mpc]
 
 Alarming is a clearance below 0.3 m at more than 1 m/s or below 0.5 m at more than 2 m/s, a braking
-of more than 3 """
+of more than 3 m/s^2, a stand of more than 20 s with the way free, or a contact. Drives in which
+people come so near only at the last tenth of the body or behind it are counted apart: they walk
+closely behind a car that drives away.
+"""
 
 from __future__ import annotations
 
