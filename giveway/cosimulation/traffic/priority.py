@@ -4,7 +4,8 @@ SUMO's drivers look for vehicles that approach a junction on a lane. They do not
 ego that is moved from outside (SUMO issues 6140, 6152, 10952), so that a car from a side road would
 drive into its path. Therefore the vehicles that have to yield to an ego, by the network's
 ``request`` rows and the current signal state, stop at their line until it has gone. A vehicle that
-is in the junction already stops before the two paths cross.
+is in the junction already stops before the two paths cross. A vehicle that stands does not start
+into the way of an ego that is driving through the junction, whichever has priority.
 """
 
 from collections.abc import Mapping
@@ -15,6 +16,7 @@ from controller.driving_constants import (
     PULL_AWAY_USUAL,
     SAFE_TIME,
     SAFE_TIME_BEHIND,
+    STANDING,
     UNHURRIED,
 )
 from giveway.ego.ego import Ego
@@ -73,11 +75,13 @@ def _gives_way(
     its = letter_of(movement, states)
     named = place.movement.number in movement.yields_to
     mutual = other.number in place.movement.yields_to
-    if its in RED or its == "G" or not named or (mutual and not inside):
-        return False
     speed, front = ego.vehicle.speed, ego.front
     comes = travel_time(where.enter - front, speed, PULL_AWAY, max(USUAL_SPEED, speed))
     goes = travel_time(where.leave + ego.shape.length - front, speed, UNHURRIED, max(speed, 4.0))
+    owes = its != "G" and named and (inside or not mutual)
+    lets = inside and speed >= STANDING and other.standing > 0.0
+    if its in RED or not (owes or lets):
+        return False
     fastest = max(USUAL_SPEED, other.speed)
     enters, clears = (
         travel_time(other.distance + station, other.speed, PULL_AWAY_USUAL, fastest)

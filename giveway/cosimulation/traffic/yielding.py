@@ -19,9 +19,15 @@ from types import MappingProxyType
 
 import numpy as np
 
-from controller.driving_constants import STANDING
+from controller.driving_constants import CREEPING, STANDING
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
-from giveway.cosimulation.traffic.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
+from giveway.cosimulation.traffic.lane_paths import (
+    Indices,
+    LanePaths,
+    gaps_ahead,
+    sort_pedestrians,
+)
+from giveway.cosimulation.traffic.waits import Waits
 from giveway.ego.ego import Ego
 from giveway.ego.rules.merge_points import FollowingConstraint
 from giveway.geometry.kernel import Array
@@ -34,6 +40,7 @@ _LOOK_AHEAD = 1.0  # Time [s] for which pedestrians are expected to keep their v
 # Times [s] ahead at which people with priority are expected on their route
 _WALKING_ON = (1.0, 2.0)
 _DISTANCE = 2.0  # Distance [m] before a pedestrian at which vehicles want to stop
+_CREEPS_TO = 0.8  # Distance [m] before a person who stands, to which a stuck vehicle creeps
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # Smallest lateral distance [m] that vehicles keep from an ego
 _BEHIND_EGO = 0.5  # Distance [m] behind an ego at which vehicles stand
@@ -60,6 +67,7 @@ class Yielding:
         self._vehicles = vehicles
         self._reaction = max(step_length, _REACTION)
         self._distance = _DISTANCE
+        self._waits = Waits(step_length)
         self.limited = {}
         self._lane_paths = LanePaths(vehicles)
         self._ever: set[str] = set()
@@ -119,27 +127,35 @@ class Yielding:
         sight = (
             background.speed * self._reaction + background.speed**2 / 4.0 + self._distance + 10.0
         )
-        pedestrians = _expected(crowd)
         numbers, positions = self._lane_paths.of(background.ids, sight.tolist())
         self._lane_paths.forget(background.ids)
-        gaps = np.full(len(background.ids), np.inf)
-        if (numbers >= 0).any():
-            gaps_ahead(
-                (np.column_stack([background.x, background.y]), positions, numbers),
-                self._lane_paths.pool,
-                sight,
-                background.width / 2 + CORRIDOR_MARGIN,
-                pedestrians,
-                sort_pedestrians(pedestrians),
-                gaps,
-            )
+        found = (np.column_stack([background.x, background.y]), positions, numbers)
+        half_width = background.width / 2 + CORRIDOR_MARGIN
+        gaps = self._gaps(found, sight, half_width, _expected(crowd))
+        near = np.flatnonzero(gaps <= sight)
+        stuck = self._waits.stuck(background, near, crowd, self._vehicles)
+        here = gaps if not stuck else self._gaps(found, sight, half_width, crowd.position)
         limits = {}
-        for i in np.flatnonzero(gaps <= sight):
-            b = self._vehicles.deceleration(background.ids[i])
+        for i in near:
+            name = background.ids[i]
+            b = self._vehicles.deceleration(name)
             safe = _safe_speed(float(gaps[i]) - self._distance, 0.0, b, self._reaction)
+            if name in stuck:
+                nearer = _safe_speed(float(here[i]) - _CREEPS_TO, 0.0, b, self._reaction)
+                safe = max(safe, min(CREEPING, nearer))
             if safe < background.speed[i] + b * self._step_length:
-                limits[background.ids[i]] = safe
+                limits[name] = safe
         return limits
+
+    def _gaps(
+        self, found: tuple[Array, Array, Indices], sight: Array, half_width: Array, people: Array
+    ) -> Array:
+        """The distance (m,) [m] of each vehicle to the first person on its way; inf without one."""
+        gaps = np.full(len(sight), np.inf)
+        if (found[2] >= 0).any():
+            pool, order = self._lane_paths.pool, sort_pedestrians(people)
+            gaps_ahead(found, pool, sight, half_width, people, order, gaps)
+        return gaps
 
     def _separate(
         self, background: BackgroundVehicles, egos: Sequence[Ego], held: Collection[str]

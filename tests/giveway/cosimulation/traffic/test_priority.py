@@ -46,8 +46,8 @@ def ego(
     )
 
 
-def other(distance: float = 6.0, speed: float = 3.0) -> Approach:
-    return Approach("car", OTHER, distance, speed, 4.5, 0.0)
+def other(distance: float = 6.0, speed: float = 3.0, standing: float = 0.0) -> Approach:
+    return Approach("car", OTHER, distance, speed, 4.5, standing)
 
 
 def rooms(which: Any, *others: Approach, lights: str = "") -> dict[str, float]:
@@ -90,3 +90,20 @@ def test_at_lights_the_letters_decide(lights: str, waits: bool) -> None:
 
 def test_a_vehicle_inside_goes_first_though_its_light_is_red() -> None:
     assert rooms(ego(52.0, 3.0, lights=True), other(), lights="rg") == {"car": 6.0}
+
+
+@pytest.mark.parametrize(
+    ("front", "speed", "standing", "waits"),
+    [
+        (52.0, 3.0, 1.0, True),
+        (52.0, 3.0, 0.0, False),  # the car drives, and has priority
+        (52.0, 0.0, 1.0, False),  # the ego stands: the car goes first
+        (48.0, 3.0, 1.0, False),  # the ego is still before its line
+        (66.0, 3.0, 1.0, False),  # the ego has left
+    ],
+)
+def test_who_stands_does_not_start_into_the_ego_s_way(
+    front: float, speed: float, standing: float, waits: bool
+) -> None:
+    which = ego(front, speed, its=())  # the car need not let it go first
+    assert bool(rooms(which, other(-1.0, 0.0, standing))) == waits
