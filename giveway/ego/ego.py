@@ -21,7 +21,7 @@ from giveway.ego.rules.following import Following
 from giveway.ego.rules.protocol import Told
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.traffic_lights import FOLLOWED
-from giveway.ego.safety_layer import EgoSafetyLayer, vehicle_layer_of
+from giveway.ego.safeguards import Safeguards
 from giveway.ego.stop_cause import waits_for
 from giveway.ego.vehicle_ahead import VehicleNews
 from giveway.ego.waiting_ego import WaitingEgo
@@ -95,11 +95,8 @@ class Ego:
         )
         self._origin = -shape.length / 2 if gap.gap_from == "centre" else 0.0
         self._kept = self._origin + regulation.safe_distance  # distance [m] kept by the bumper
-        safety = waiting.safety
-        self._safety_layer = (
-            None if safety is None else EgoSafetyLayer(safety, config, path, shape, time_step)
-        )
-        self._kerbs = kerbs if self._safety_layer is not None else None
+        self._safeguards = Safeguards(waiting, self.corridor, shape, time_step)
+        self._kerbs = kerbs if self._safeguards.watch_people else None
         self._people = PeopleInFront(waiting, self.corridor, shape, self._kerbs)
         self.systems = rules.systems | (frozenset() if kerbs is None else kerbs.systems)
         self._force, self._eases_off, self.beside = 0.0, False, NOBODY_BESIDE
@@ -119,7 +116,6 @@ class Ego:
             paper=config.defaults.buffered,
         )
         self.news = VehicleNews(time_step)
-        self._vehicle_layer = vehicle_layer_of(config, time_step)
 
     @property
     def foresees(self) -> bool:
@@ -239,21 +235,9 @@ class Ego:
                 "run's config.toml"
             )
         asked = decision.force
-        if self._vehicle_layer is not None:
-            force = self._vehicle_layer.filter(asked, self.vehicle.speed, seen.followed)
-            if force < asked:
-                reason = self._vehicle_layer.REASON
-                decision = decision._replace(force=force, acting="safety", reason=reason)
-        if self._safety_layer is not None:
-            there = self.front, self.vehicle.speed
-            people, _, _, bound = seen.percept
-            safe = self._safety_layer.overrule(decision, *there, people, bound, seen.kerbs)
-            if safe is not None:
-                decision = safe
+        decision = self._safeguards.decide(decision, self.front, self.vehicle.speed, seen)
         if decision.force != asked:
             controller.applied(decision.force)
-        if self._vehicle_layer is not None:
-            self._vehicle_layer.applied(decision.force)
         self._eases_off = decision.force > self._force
         self._force = decision.force
         return decision

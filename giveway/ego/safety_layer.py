@@ -90,6 +90,10 @@ class EgoSafetyLayer:
             return None
         return decision._replace(force=safe, acting="safety", reason=layer.REASONS[verdict])
 
+    def applied(self, force: float) -> None:
+        """Remember a force [N] that acts in this step instead of the layer's."""
+        self._layer.memory[1][-1] = force
+
 
 def vehicle_layer_of(config: EgoRunConfig, time_step: float) -> VehicleLayer | None:
     """The safety layer for vehicles ahead, or None if it is off.
