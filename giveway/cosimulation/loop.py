@@ -58,10 +58,6 @@ class Loop:
         followed: Notes for :meth:`follow_up`, or None without ``follow``.
     """
 
-    endings: dict[str, Ending]
-    remarks: list[str]
-    followed: Followed | None
-
     def __init__(self, parts: Parts, recorder: Recorder, *, follow: bool = False) -> None:
         self._parts = parts
         self._recorder = recorder
@@ -74,8 +70,8 @@ class Loop:
         self._roster = parts.roster
         self._egos: list[Ego] = []
         self._ways: list[Array] = []  # (k, 2) [m] driven path of each ego that has departed
-        self.endings = {}
-        self.remarks = []
+        self.endings: dict[str, Ending] = {}
+        self.remarks: list[str] = []
         self._standstill = Standstill()
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
         self._meetings = Meetings(parts.sumo, parts.yielding)

@@ -84,7 +84,10 @@ def _histograms(study: StudyFolder) -> Iterator[Picture]:
     pairs = paired(study)
     time = deciding_metric(pairs)
     names = {"general": time, "stop-and-wait": "longest_wait", "non-stop": time}
-    columns = [_difference_column(situation, name) for situation, name in names.items()]
+    columns = [
+        DifferenceColumn(situation, quantity.label, quantity.unit, quantity.better)
+        for situation, quantity in zip(names, map(metric, names.values()), strict=True)
+    ]
     reported = _estimates(study)
     printed = published_numbers(study)
     number = 0
@@ -121,11 +124,6 @@ def _histograms(study: StudyFolder) -> Iterator[Picture]:
                 alt=f"Histograms of the differences {what}: {_in_words(part, names)}",
                 figure=differences_figure(columns, part, title=what, source=SOURCE),
             )
-
-
-def _difference_column(situation: str, name: str) -> DifferenceColumn:
-    quantity = metric(name)
-    return DifferenceColumn(situation, quantity.label, quantity.unit, quantity.better)
 
 
 def _panel(

@@ -151,14 +151,9 @@ class SumoVehicles:
         """Return the stops that are ahead of the vehicle, in order."""
         return [
             PlannedStop(
-                stop.lane,
-                stop.startPos,
-                stop.endPos,
-                stop.duration,
-                stop.until,
-                bool(stop.stopFlags & _PARKING_AREA),
+                s.lane, s.startPos, s.endPos, s.duration, s.until, bool(s.stopFlags & _PARKING_AREA)
             )
-            for stop in self._vehicle.getStops(name)
+            for s in self._vehicle.getStops(name)
         ]
 
     def parked(self, name: str) -> bool:

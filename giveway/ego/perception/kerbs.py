@@ -14,7 +14,8 @@ import shapely.ops
 from numpy.typing import NDArray
 
 from giveway.crowd.crossings import is_open
-from giveway.geometry.kernel import Array, inner, kernel
+from giveway.ego.perception.kerb_kernels import LOOK, LOOKS, NEAR, drop_kerbs, fill_kerbs
+from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.signal_plans import ChangeOf, SignalChange, untold
@@ -23,16 +24,10 @@ from pedestrian_model import Crowd
 NO_KERBS: Array = np.zeros((0, 3))
 """The kerbs (0, 3) if nobody is on a sidewalk."""
 
-_NEAR = 10.0  # distance [m] from the path, within which kerbs matter
 _PIECE = 2.0  # largest length [m] of a piece of kerb
 _STRETCH = 20.0  # length [m] of the stretches of path that are searched for kerbs
 _FACING = 0.5  # least cosine of the angle between the direction to the path and a kerb's normal
 _BESIDE = 0.25  # distance [m] from the ego's side, within which nobody counts as on a sidewalk
-_MOUTH = 1.5  # distance [m] to a crossing, within which people are about to enter it
-_ON_LINE = 0.05  # tolerance [m] of a point on a kerb's line
-_SETS_OUT = 0.6  # acceleration [m/s^2] of a person towards a kerb: a_k of docs/safety.md
-_DEEPEST = _NEAR  # largest width [m] of a sidewalk
-_LOOK, _LOOKS = 0.5, 3  # spacing [s] and number of the instants ahead that are examined
 _SOON = 3.0  # time [s] before green, within which people are about to use a crossing
 _BEHIND, _AHEAD = 10.0, 60.0  # stretch [m] behind and ahead of the bumper on which people matter
 
@@ -62,10 +57,10 @@ class Kerbs:
     ) -> None:
         line = shapely.LineString(path.vertices)
         strip = line.buffer(width / 2.0 + _BESIDE, cap_style="flat")
-        area = sidewalks(line.buffer(_NEAR)).difference(strip)
+        area = sidewalks(line.buffer(NEAR)).difference(strip)
         pieces = [_pieces(np.asarray(ring.coords)[:, :2]) for ring in _rings(area)]
         edges = np.concatenate([*pieces, np.empty((0, 4))])
-        edges = edges[line.distance(shapely.linestrings(edges.reshape(-1, 2, 2))) <= _NEAR]
+        edges = edges[line.distance(shapely.linestrings(edges.reshape(-1, 2, 2))) <= NEAR]
         passed, stations = _passed(line, edges)
         edges = edges[passed]
         middle = (edges[:, :2] + edges[:, 2:]) / 2.0
@@ -98,7 +93,7 @@ class Kerbs:
                 [_closed_for(each, states, changes.get(each.system)) for each in self._crossings]
             )
             self._open = self._mouths[closed <= _SOON]
-            self._opening = self._mouths[closed <= _SOON + _LOOKS * _LOOK]
+            self._opening = self._mouths[closed <= _SOON + LOOKS * LOOK]
 
     def of(self, position: Array, velocity: Array, front: float) -> Array:
         """The kerbs (n, 3) of people: unit vector to the kerb and distance [m]; 0 off sidewalks.
@@ -182,7 +177,7 @@ def _passed(line: shapely.LineString, edges: Array) -> tuple[NDArray[np.int64], 
     for begin in np.arange(0.0, line.length, _STRETCH):
         first, last = max(0.0, begin - _STRETCH), begin + 2.0 * _STRETCH
         part = shapely.ops.substring(line, first, min(last, line.length))
-        near = np.sort(lines.query(part, predicate="dwithin", distance=_NEAR))
+        near = np.sort(lines.query(part, predicate="dwithin", distance=NEAR))
         stations = first + shapely.line_locate_point(part, middles[near])
         end = math.inf if begin + _STRETCH >= line.length else begin + _STRETCH
         here = (begin <= stations) & (stations < end)
@@ -194,7 +189,7 @@ def _passed(line: shapely.LineString, edges: Array) -> tuple[NDArray[np.int64], 
 def _near(crossings: Sequence[Crossing], line: shapely.LineString) -> list[Crossing]:
     """The crossings near a path."""
     ways = [(crossing, shapely.LineString(crossing.ends)) for crossing in crossings]
-    return [crossing for crossing, way in ways if way.length > 0.0 and line.distance(way) <= _NEAR]
+    return [crossing for crossing, way in ways if way.length > 0.0 and line.distance(way) <= NEAR]
 
 
 def _mouths(crossings: Sequence[Crossing]) -> Array:
@@ -220,138 +215,3 @@ def _closed_for(
     if change is None or not is_open(change.state, crossing.link, zebra=crossing.zebra):
         return math.inf  # no change to green is known
     return change.time
-
-
-@kernel
-def fill_kerbs(
-    position: Array,
-    velocity: Array,
-    edges: Array,
-    is_kerb: NDArray[np.bool_],
-    mouths: Array,
-    found: Array,
-) -> None:
-    """Fill ``found`` as :meth:`Kerbs.of` returns it.
-
-    Args:
-        position: Positions (n, 2) [m] of the people.
-        velocity: Velocities (n, 2) [m/s] of the people.
-        edges: Edges (k, 4) [m] of sidewalks, which are on the left of each edge.
-        is_kerb: Whether the road is on the right of each edge, (k,).
-        mouths: Crossings (c, 6), as :func:`_mouths` returns them.
-        found: Kerbs (n, 3), filled.
-    """
-    for p in range(position.shape[0]):
-        x, y = position[p, 0], position[p, 1]
-        closest = nearest_kerb = np.inf
-        inside, nearest, beside = False, -1, False
-        to_x = to_y = 0.0
-        for i in range(edges.shape[0]):
-            x_0, y_0 = edges[i, 0], edges[i, 1]
-            e_x, e_y = edges[i, 2] - x_0, edges[i, 3] - y_0
-            share = ((x - x_0) * e_x + (y - y_0) * e_y) / (e_x * e_x + e_y * e_y)
-            share = min(1.0, max(0.0, share))
-            d_x, d_y = x_0 + share * e_x - x, y_0 + share * e_y - y
-            distance = np.sqrt(d_x * d_x + d_y * d_y)
-            left = e_x * d_y - e_y * d_x < 0.0
-            if distance < closest or (distance == closest and not left):
-                closest, inside = distance, left
-            if is_kerb[i] and distance < nearest_kerb:
-                nearest_kerb, to_x, to_y = distance, d_x, d_y
-                nearest, beside = i, 0.0 < share < 1.0
-        if not inside or nearest_kerb > _DEEPEST or in_mouth(x, y, mouths):
-            continue
-        found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
-        found[p, 2] = nearest_kerb
-        if not beside:
-            heed_line(nearest, edges, is_kerb, position[p], velocity[p], found[p])
-
-
-@inner
-def heed_line(
-    i: int, edges: Array, is_kerb: NDArray[np.bool_], here: Array, velocity: Array, kerb: Array
-) -> None:
-    """Replace ``kerb`` (3,) by the line of edge ``i`` if that line counts, see :meth:`Kerbs.of`."""
-    e_x, e_y = edges[i, 2] - edges[i, 0], edges[i, 3] - edges[i, 1]
-    length = np.sqrt(e_x * e_x + e_y * e_y)
-    n_x, n_y = e_y / length, -e_x / length
-    depth = n_x * (edges[i, 0] - here[0]) + n_y * (edges[i, 1] - here[1])
-    pace = n_x * velocity[0] + n_y * velocity[1]
-    its_pace = kerb[0] * velocity[0] + kerb[1] * velocity[1]
-    if depth <= _ON_LINE or arrival(depth, pace) <= arrival(kerb[2], its_pace):
-        return
-    for k in range(edges.shape[0]):
-        for end in (0, 2):
-            d_x, d_y = edges[k, end] - here[0], edges[k, end + 1] - here[1]
-            near = is_kerb[k] and d_x * d_x + d_y * d_y <= _NEAR * _NEAR
-            if near and n_x * d_x + n_y * d_y < depth - _ON_LINE:
-                return
-    kerb[0], kerb[1], kerb[2] = n_x, n_y, depth
-
-
-@kernel
-def drop_kerbs(
-    people: tuple[Array, Array, Array],
-    ways: tuple[Array, NDArray[np.int64], NDArray[np.int64]],
-    mouths: Array,
-    kerbs: Array,
-) -> None:
-    """Set the row of ``kerbs`` to 0 for people who are on or about to enter a crossing.
-
-    Args:
-        people: Positions (n, 2) [m], velocities (n, 2) [m/s] and desired speeds (n,) [m/s].
-        ways: Way-points (w, 2) [m] of all people, one after the other; index (n + 1,) of each
-            person's first one, and number (n,) of the next one.
-        mouths: Crossings (c, 6), as :func:`_mouths` returns them.
-        kerbs: Kerbs (n, 3), changed.
-    """
-    (position, velocity, desired_speed), (waypoints, start, index) = people, ways
-    for p in range(len(kerbs)):
-        if kerbs[p, 2] <= 0.0:
-            continue
-        x, y = position[p, 0], position[p, 1]
-        at, last = start[p] + index[p], start[p + 1] - 1
-        if in_mouth(x, y, mouths):
-            kerbs[p] = 0.0
-            continue
-        for look in range(1, _LOOKS + 1):
-            left = desired_speed[p] * _LOOK
-            while left > 0.0:  # along the route, from one way-point to the next
-                to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
-                far = np.sqrt(to_x * to_x + to_y * to_y)
-                share = 1.0 if far <= left else left / far
-                x, y = x + share * to_x, y + share * to_y
-                left -= far
-                if at == last:
-                    break
-                if left >= 0.0:
-                    at += 1
-            t = look * _LOOK
-            s_x, s_y = position[p, 0] + t * velocity[p, 0], position[p, 1] + t * velocity[p, 1]
-            if in_mouth(x, y, mouths) or in_mouth(s_x, s_y, mouths):
-                kerbs[p] = 0.0
-                break
-
-
-@inner
-def arrival(depth: float, pace: float) -> float:
-    """The time [s] after which a person who starts towards a kerb reaches it.
-
-    Args:
-        depth: Distance [m] to the kerb.
-        pace: Speed [m/s] towards the kerb.
-    """
-    faster = np.sqrt(max(0.0, pace * pace + 2.0 * _SETS_OUT * depth))
-    return float((faster - pace) / _SETS_OUT)
-
-
-@inner
-def in_mouth(x: float, y: float, mouths: Array) -> bool:
-    """Return whether the point (x, y) [m] is beside, before or on a crossing."""
-    for i in range(mouths.shape[0]):
-        d_x, d_y = x - mouths[i, 0], y - mouths[i, 1]
-        u = d_x * mouths[i, 2] + d_y * mouths[i, 3]
-        w = d_y * mouths[i, 2] - d_x * mouths[i, 3]
-        if -_MOUTH <= u <= mouths[i, 4] + _MOUTH and abs(w) <= mouths[i, 5] + _MOUTH:
-            return True
-    return False
