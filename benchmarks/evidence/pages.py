@@ -6,16 +6,33 @@ its data are not in the repository.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import NamedTuple
 
 import comparisons
 import samples
-from tables import FRONTAL, SIDE, Column, Tables
+from makers import (
+    BELOW_TTC,
+    BRIEF,
+    CONTROLLER_COLUMNS,
+    JERK,
+    LAW_COLUMNS,
+    LAYER,
+    LIGHT_COLUMNS,
+    MODEL_COLUMNS,
+    ROAD_COLUMNS,
+    TIME,
+    WAIT,
+    Maker,
+    code,
+    drives_told,
+    less,
+    means,
+    part,
+    printed,
+)
+from tables import FRONTAL, SIDE, Column
 from work import Command, Study
 
-Maker = Callable[[Path], list[str]]
 DRIVING = (
     "controller", "fmus", "pedestrian_model", "sumo_scenarios",
     "giveway/config", "giveway/cosimulation", "giveway/crowd", "giveway/ego", "giveway/geometry",
@@ -51,58 +68,9 @@ class Page(NamedTuple):
     kept: bool = False
 
 
-TIME = Column("completion_time", "time [s]", 1)
-WAIT = Column("longest_wait", "longest wait [s]", 1)
-JERK = Column("rms_jerk", "RMS jerk [m/s³]", 1)
-BELOW_TTC = Column("people_below_ttc", "people below 1.5 s", 1)
-CLOSE = Column("close_passes", "close passes", 2)
-TTC = Column("share_below_ttc", "TTC < 1.5 s", 2)
-DELAY = Column("mean_people_delay", "people's mean delay [s]", 2)
-LAYER = Column("safety_share", "layer acts [%]", 2, scale=100.0)
-BRAKING = Column("peak_deceleration", "hardest braking [m/s²]", 1)
-
-
-def _with_interval(*columns: Column) -> tuple[Column, ...]:
-    return tuple(column._replace(show="interval") for column in columns)
-
-
-def _less(*columns: Column) -> tuple[Column, ...]:
-    return tuple(
-        column._replace(show="less", title=f"{column.title}, less the baseline")
-        for column in columns
-    )
-
-
-def means(*columns: Column) -> Maker:
-    """Maker of a study's table with these columns."""
-    return lambda folder: Tables(folder).means(columns)
-
-
-def printed(file: Path) -> list[str]:
-    """What a command printed, as Markdown."""
-    return _paragraphs(file.read_text(encoding="utf-8").rstrip("\n").split("\n"))
-
-
-def part(number: int) -> Maker:
-    """Maker of one of the parts that a command printed with a line of ``---`` between them."""
-    return lambda file: _paragraphs(
-        file.read_text("utf-8").split("\n---\n")[number].strip("\n").split("\n")
-    )
-
-
-def _paragraphs(lines: list[str]) -> list[str]:
-    """The lines with an empty one where a table ends."""
-    apart = []
-    for line, following in zip(lines, [*lines[1:], ""], strict=True):
-        apart.append(line)
-        if line.startswith("|") and following and not following.startswith("|"):
-            apart.append("")
-    return apart
-
-
-def code(command: str) -> Maker:
-    """Maker of a code block with a command and what it printed."""
-    return lambda file: ["```", f"$ python benchmarks/{command}", *printed(file), "```"]
+def _told(name: str, *command: str) -> Block:
+    """A block of what a command printed."""
+    return Block(name, Command(*command), printed)
 
 
 def _shell(name: str, words: str, quick: str = "") -> Block:
@@ -110,48 +78,6 @@ def _shell(name: str, words: str, quick: str = "") -> Block:
     return Block(name, Command(command, "one machine", quick), code(command))
 
 
-def drives_told(folder: Path) -> list[str]:
-    """The README's sentence about drives that succeed and drives that do not."""
-    runs = Tables(folder).runs
-    calm, free = runs[runs.people_below_ttc == 0], runs[runs.stops == 0]
-    worst = runs.loc[runs.people_below_ttc.idxmax()]
-    return [
-        f"Of {len(runs)} drives (seeds {runs.seed.min()} to {runs.seed.max()}) {len(free)} pass "
-        f"without a stop, and {len(calm)} without anybody less than 1.5 s from a "
-        f"collision. The worst has {int(worst.people_below_ttc)} such people (`--seed "
-        f"{int(worst.seed)}`)."
-    ]
-
-
-CONTROLLER_COLUMNS = (
-    *_with_interval(TIME, WAIT, JERK), BRAKING, *_with_interval(CLOSE, BELOW_TTC), TTC, DELAY,
-    LAYER, FRONTAL, SIDE,
-)  # fmt: skip
-ROAD_COLUMNS = tuple(column for column in CONTROLLER_COLUMNS if column is not DELAY)
-BRIEF = (*_with_interval(TIME, WAIT, JERK, CLOSE, BELOW_TTC), TTC, DELAY, FRONTAL, SIDE)
-LAW_COLUMNS = (
-    Column("encounters", "encounters per run"),
-    *(
-        Column(metric, title, 0, "sum")
-        for metric, title in (
-            ("failures_to_yield", "failures to yield"),
-            ("red_lights_run", "red lights run"),
-            ("vehicle_contacts", "contacts with vehicles"),
-            ("blocked_crossings", "blocked crossings"),
-            ("blocked_junctions", "blocked junctions"),
-            ("stops_without_cause", "stops without cause [s]"),
-            ("hard_brakes", "brakings above 4 m/s²"),
-            ("hard_brakes_without_cause", "of these without cause"),
-        )
-    ),
-    TIME,
-    FRONTAL,
-    SIDE,
-)
-LIGHT_COLUMNS = _less(
-    WAIT, Column("total_wait", "all waits [s]"), Column("stops", "stops", 2), TIME,
-    JERK._replace(digits=2), BELOW_TTC._replace(digits=2),
-)  # fmt: skip
 SPEED = (
     _shell("bench_loop.py", "bench_loop.py", "--pairs 1"),
     _shell("bench_scenario.py", "bench_scenario.py", "--walkers 100 --window 1"),
@@ -168,7 +94,7 @@ SPEED = (
     ),
     _shell("bench_start.py", "bench_start.py --cold", "--rounds 1"),
     _shell("bench_metrics.py", "bench_metrics.py", "--repetitions 1"),
-    Block("machine", Command("speed/performance.py --machine", quick="--machine"), printed),
+    _told("machine", "speed/performance.py --machine", "", "--machine"),
 )
 
 PAGES: dict[str, Page] = {
@@ -202,7 +128,7 @@ PAGES: dict[str, Page] = {
                         BELOW_TTC,
                         FRONTAL,
                         LAYER,
-                        *_less(TIME, WAIT, JERK, BELOW_TTC),
+                        *less(TIME, WAIT, JERK, BELOW_TTC),
                     ),
                 ),
             ),
@@ -211,16 +137,8 @@ PAGES: dict[str, Page] = {
             "models",
             "docs/models.md",
             (
-                Block(
-                    "drivers",
-                    samples.MODELS,
-                    means(TIME, WAIT, JERK, BELOW_TTC, DELAY, FRONTAL, SIDE),
-                ),
-                Block(
-                    "beliefs",
-                    samples.BELIEFS,
-                    means(TIME, WAIT, JERK, BELOW_TTC, DELAY, FRONTAL, SIDE),
-                ),
+                Block("drivers", samples.MODELS, means(*MODEL_COLUMNS)),
+                Block("beliefs", samples.BELIEFS, means(*MODEL_COLUMNS)),
             ),
         ),
         Page(
@@ -232,7 +150,7 @@ PAGES: dict[str, Page] = {
                     samples.ASSUMPTIONS,
                     means(
                         TIME,
-                        *_less(TIME),
+                        *less(TIME),
                         WAIT,
                         BELOW_TTC,
                         LAYER,
@@ -249,19 +167,14 @@ PAGES: dict[str, Page] = {
             "bounds",
             "docs/bounds.md",
             (
-                Block(
-                    "clairvoyant",
-                    Command("bounds/clairvoyant.py --seeds 60", "seeds 1 to 60", "--seeds 2"),
-                    printed,
+                _told(
+                    "clairvoyant", "bounds/clairvoyant.py --seeds 60", "seeds 1 to 60", "--seeds 2"
                 ),
-                Block(
+                _told(
                     "front",
-                    Command(
-                        "bounds/clairvoyant_front.py --seeds 30 --rows {out}.csv",
-                        "seeds 551 to 580",
-                        "--seeds 2 --rows {out}.csv",
-                    ),
-                    printed,
+                    "bounds/clairvoyant_front.py --seeds 30 --rows {out}.csv",
+                    "seeds 551 to 580",
+                    "--seeds 2 --rows {out}.csv",
                 ),
             ),
             (*DRIVING, "benchmarks/bounds"),
@@ -269,13 +182,7 @@ PAGES: dict[str, Page] = {
         Page(
             "encounter",
             "docs/encounter.md",
-            (
-                Block(
-                    "densities",
-                    Command("bounds/encounters.py --seeds 40", "seeds 1 to 40", "--seeds 2"),
-                    printed,
-                ),
-            ),
+            (_told("densities", "bounds/encounters.py --seeds 40", "seeds 1 to 40", "--seeds 2"),),
             (*DRIVING, "benchmarks/bounds"),
         ),
         Page(
@@ -293,14 +200,11 @@ PAGES: dict[str, Page] = {
                     ),
                     part(-1),
                 ),
-                Block(
+                _told(
                     "meeting roads",
-                    Command(
-                        "law/road_campaign.py --seeds 3 --out {out} --jobs {jobs}",
-                        "seeds 1 to 3",
-                        "--seeds 1 --place ramp --out {out} --jobs {jobs}",
-                    ),
-                    printed,
+                    "law/road_campaign.py --seeds 3 --out {out} --jobs {jobs}",
+                    "seeds 1 to 3",
+                    "--seeds 1 --place ramp --out {out} --jobs {jobs}",
                 ),
             ),
             (*DRIVING, "benchmarks/law"),
@@ -331,25 +235,18 @@ PAGES: dict[str, Page] = {
         Page(
             "gym",
             "docs/gym.md",
-            (
-                Block(
-                    "policy",
-                    Command("evidence/gym_policy.py --seeds 20", "seeds 1 to 20", "--seeds 1"),
-                    printed,
-                ),
-            ),
+            (_told("policy", "evidence/gym_policy.py --seeds 20", "seeds 1 to 20", "--seeds 1"),),
             (*DRIVING, "giveway/gym", "benchmarks/evidence/gym_policy.py"),
         ),
         Page(
             "controller-fmu",
             "docs/controller_fmu.md",
             (
-                Block(
+                _told(
                     "same motion",
-                    Command(
-                        "evidence/controller_fmu_runs.py --runs 20", "seeds 1 to 20", "--runs 1"
-                    ),
-                    printed,
+                    "evidence/controller_fmu_runs.py --runs 20",
+                    "seeds 1 to 20",
+                    "--runs 1",
                 ),
             ),
             (*DRIVING, "benchmarks/evidence/controller_fmu_runs.py"),
@@ -370,14 +267,11 @@ PAGES: dict[str, Page] = {
             "benchmark",
             "docs/benchmark.md",
             (
-                Block(
+                _told(
                     "rivals",
-                    Command(
-                        "evidence/rivals.py --out {out} --jobs {jobs}",
-                        "seeds 701 to 800",
-                        "--out {out} --runs 2",
-                    ),
-                    printed,
+                    "evidence/rivals.py --out {out} --jobs {jobs}",
+                    "seeds 701 to 800",
+                    "--out {out} --runs 2",
                 ),
             ),
             (*DRIVING, "giveway/studies/benchmark"),
@@ -387,14 +281,11 @@ PAGES: dict[str, Page] = {
             "front",
             "README.md",
             (
-                Block(
+                _told(
                     "front",
-                    Command(
-                        "evidence/rivals.py --out {out} --front",
-                        "seeds 701 to 800",
-                        "--out {out} --front",
-                    ),
-                    printed,
+                    "evidence/rivals.py --out {out} --front",
+                    "seeds 701 to 800",
+                    "--out {out} --front",
                 ),
             ),
             (*DRIVING, "giveway/studies/benchmark"),
@@ -416,14 +307,11 @@ PAGES: dict[str, Page] = {
             "sidewalks",
             "docs/law.md",
             (
-                Block(
+                _told(
                     "sidewalks",
-                    Command(
-                        "law/beside_sidewalks.py --seeds 30 --out {out}",
-                        "seeds 1 to 30",
-                        "--seeds 1 --out {out}",
-                    ),
-                    printed,
+                    "law/beside_sidewalks.py --seeds 30 --out {out}",
+                    "seeds 1 to 30",
+                    "--seeds 1 --out {out}",
                 ),
             ),
             kept=True,
@@ -432,14 +320,11 @@ PAGES: dict[str, Page] = {
             "foreign-law",
             "docs/law.md",
             (
-                Block(
+                _told(
                     "foreign networks",
-                    Command(
-                        "law/foreign_law.py {data} --drives 20 --seed 1 --out {out} --jobs {jobs}",
-                        "20 drives",
-                        "{data} --drives 1 --window 60 --out {out}",
-                    ),
-                    printed,
+                    "law/foreign_law.py {data} --drives 20 --seed 1 --out {out} --jobs {jobs}",
+                    "20 drives",
+                    "{data} --drives 1 --window 60 --out {out}",
                 ),
             ),
             kept=True,
