@@ -155,6 +155,8 @@ class Crossings:
             self._latest = latest
             self._waits_for = number if first else None
             if first:
+                if not waits and nearest > self._place:
+                    self._place = math.inf  # the ego has driven off since
                 self._place = min(self._place, stop)
                 stop = self._place
             return stop

@@ -165,6 +165,15 @@ def test_hard_braking_is_not_demanded_but_a_begun_stop_goes_on():
     assert stop_of(begun, 19.5, 0.3, walker(-2.0)) == pytest.approx(LINE, abs=0.11)  # no creeping
 
 
+def test_who_comes_as_the_ego_drives_off_is_stopped_for_farther_on():
+    """Not at the line where it waited before, which would take 13 m/s^2."""
+    watched = crossings()
+    assert stop_of(watched, LINE, 0.0, walker(-2.0)) == pytest.approx(LINE, abs=0.11)
+    assert stop_of(watched, LINE, 0.0, NOBODY) == math.inf
+    stop = stop_of(watched, LINE - 0.1, 1.6, walker(-4.0))
+    assert LINE - 0.1 + 1.6**2 / (2 * 3.0) <= stop <= 19.71
+
+
 def test_it_waits_until_all_have_passed_and_nobody_comes_soon():
     waiting = crossings()
     both = walker(-2.0).concatenate(walker(3.4, target=-20.0))
