@@ -22,6 +22,7 @@ CLOSEST = 2.0  # gap [m] to a standing vehicle that the ego keeps rather than bl
 _BUILD_UP = 0.2  # time [s] in which the brake builds up
 _APPROACHED = 0.5  # distance [m] before d_safe at which the approach to a vehicle ends
 _LAG = 0.5  # time [s] by which a controller lags, also behind a vehicle that stands
+_STOP_LAG = 0.5  # time [s] by which a controller lags before a stop, so that it brakes no harder
 _KEEPS_UP = 3.0  # speed [m/s] of a vehicle ahead from which on the whole headway is kept
 _RECOVERY = 2.0  # time [s] in which a lost safe distance is regained
 
@@ -109,11 +110,16 @@ class Following:
     def stop_limit(self, stop: float, station: float) -> float:
         """The speed [m/s] that comfortable braking allows before a stop.
 
+        A controller lags behind a limit that falls. Only the paper's are not spared that.
+
         Args:
             stop: Station [m] at which the front bumper has to stop; inf if it need not stop.
             station: Station of the front bumper [m].
         """
-        return sqrt(2.0 * self._comfortable * max(0.0, stop - station)) if stop < inf else inf
+        if stop == inf:
+            return inf
+        lag = 0.0 if self._paper else self._comfortable * _STOP_LAG
+        return sqrt(2.0 * self._comfortable * max(0.0, stop - station) + lag * lag) - lag
 
     def speed_limit(
         self,

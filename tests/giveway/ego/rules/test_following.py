@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -98,7 +99,10 @@ def test_a_gap_is_restored_gently_unless_it_closes() -> None:
 
 
 def test_a_stop_is_approached_in_comfort() -> None:
-    assert following().stop_limit(56.0, 40.0) == pytest.approx(8.0)
+    """Also by a controller that follows a limit with a lag; the paper's have the exact speed."""
+    assert following(paper=True).stop_limit(56.0, 40.0) == pytest.approx(8.0)
+    late = following().stop_limit(56.0, 40.0)
+    assert late == pytest.approx(math.sqrt(2.0 * 2.0 * (16.0 - 0.5 * late)))
     assert following().stop_limit(np.inf, 40.0) == np.inf
     assert following().speed_limit(NO_LEADER, 40.0, 0.0) == np.inf
 
