@@ -43,7 +43,7 @@ def alarms(result: giveway.RunResult) -> set[str]:
     elif near.any():
         found.add("behind only")
     summary = result.summary
-    if summary["peak_deceleration"] > BRAKING:
+    if round(summary["peak_deceleration"], 1) > BRAKING:  # firm braking has 3.0
         found.add("braking")
     free = (ego["waits_for"].fillna("") == "") & (ego["speed"] < STANDING)
     stands = free.groupby((free != free.shift()).cumsum()).sum() * ego["time"].diff().median()
