@@ -1,15 +1,14 @@
 """Estimates the intent of people, to walk on or to yield to the ego, from their motion.
 
-A planner that assumes one model of people is wrong about people who walk by another one. Two
-hypotheses are kept for each person beside the ego's corridor who wants to cross it:
+There are two hypotheses for each person beside the ego's corridor who wants to cross it:
 
 * *walks on*: the person walks as the model says;
 * *yields*: the person walks up to the edge of the corridor, or to an earlier point at which they
   are about to stop by their present speed, and stands there, whatever the ego does.
 
-Both predict the person's speed one prediction step later. Observed speeds change the log odds
-between the two (sequential probability ratio test, Wald 1945). A person who more likely yields is
-predicted, and thereby planned for, with the stopping point as destination.
+Both predict the speed one prediction step later, and observed speeds change the log odds between
+them (sequential probability ratio test, Wald 1945). Who more likely yields is predicted with the
+stopping point as destination. Who is on the way keeps on, and stops once they become slower.
 """
 
 from math import exp
@@ -37,10 +36,11 @@ _OPEN = 2.0  # absolute log odds below which a person's intent is uncertain
 _STANDS = 0.25  # speed [m/s] below which a person is predicted to go on standing
 _SEES = -0.17  # cosine of 100 degrees, the half angle about a person's course that they see
 _TURNED = 0.1  # share of a change of velocity that changes the course of a person, per look
+_SLOWS = 0.7  # share of the speed on this course below which a person on the way is stopping
 _NEVER = -1  # number of a look that never took place
 
-WALKS, YIELDS, KEEPS_ON = 0, 1, 2
-"""The motions that a person is predicted with: by the model, yielding, at the same velocity."""
+WALKS, YIELDS, KEEPS_ON, STOPS = 0, 1, 2, 3
+"""The motions of a person's prediction: by the model, yielding, at the same velocity, at rest."""
 
 Yielding = tuple[NDArray[np.int8], float, float, float]
 
@@ -230,7 +230,8 @@ def _update(
         unaware[i] = ahead > 0.0 and facing <= _SEES * far
         near = ahead <= _REACH
         if ahead > 0.0 and (aside <= 0.0 or (near and stands)):
-            yields[i] = KEEPS_ON
+            slows = velocity[i, 0] ** 2 + velocity[i, 1] ** 2 < _SLOWS**2 * (c_x * c_x + c_y * c_y)
+            yields[i] = STOPS if slows else KEEPS_ON
         to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
         far = np.sqrt(to_x * to_x + to_y * to_y)
         if not (0.0 < ahead <= _REACH and 0.0 < aside <= _ASIDE and far > 0.0):
@@ -312,7 +313,7 @@ def keep_on(
     position: Array,
     velocity: Array,
 ) -> None:
-    """Move people who keep their velocity to where they are after a prediction step; in place.
+    """Move people who keep their velocity, or stop, by a prediction step; in place.
 
     Before an ego that creeps, those who walk and see it make way.
 
@@ -328,9 +329,9 @@ def keep_on(
     for p in range(position.shape[0]):
         v_x, v_y = people[1][p, 0], people[1][p, 1]
         walks = v_x * v_x + v_y * v_y >= _STANDS * _STANDS
-        if yields[p] == KEEPS_ON and not (creeps and walks and not unaware[p]):
+        if yields[p] >= KEEPS_ON and not (creeps and walks and not unaware[p]):
             for axis in range(2):
-                velocity[p, axis] = people[1][p, axis]
+                velocity[p, axis] = people[1][p, axis] if yields[p] == KEEPS_ON else 0.0
                 position[p, axis] = people[0][p, axis] + (step + 1) * dt * velocity[p, axis]
 
 

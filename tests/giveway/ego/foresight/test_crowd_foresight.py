@@ -61,11 +61,16 @@ def test_a_plan_is_predicted_in_steps_of_a_tenth_of_a_second():
     assert plan_predictor(SIM, 0.02, 4).horizon == 1
 
 
-def test_people_too_quick_for_the_step_are_predicted_in_theirs():
-    quick = replace(SIM, destination_gain=1000.0)
-    made = plan_predictor(quick, DT, N)
+@pytest.mark.parametrize(
+    ("changes", "step", "count"),
+    [({"destination_gain": 1500.0}, 0.1, 1), ({"destination_smoothing": 0.1}, DT, 2)],
+    ids=["quick", "precise"],
+)
+def test_people_too_precise_for_the_step_are_predicted_in_theirs(changes, step, count):
+    """Those who are quick are not: the long step has the gain of speed of two short ones."""
+    made = plan_predictor(replace(SIM, **changes), DT, N)
     assert (made.time_step, made.horizon) == (0.1, N // 2)
-    assert made.law[1:3] == (DT, 2)
+    assert made.law[1:3] == (step, count)
 
 
 def test_positions_are_known_at_each_step():

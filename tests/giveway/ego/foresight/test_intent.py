@@ -8,7 +8,7 @@ import pytest
 from controller import LongitudinalModel, Planner, PlannerParameters
 from controller.planning import Road
 from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions, plan_predictor
-from giveway.ego.foresight.intent import KEEPS_ON, WALKS, IntentEstimator, shifted
+from giveway.ego.foresight.intent import KEEPS_ON, STOPS, WALKS, IntentEstimator, shifted
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
@@ -69,6 +69,16 @@ def test_a_person_who_slows_down_is_found_out_before_standing():
         else:
             assert way[0] == 18.0
             assert -4.0 < way[1] < -HALF
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.9, KEEPS_ON), (0.5, STOPS)])
+def test_who_becomes_slower_on_the_way_is_expected_to_stop(share, expected):
+    """Not only once they stand: half a second is two metres at 4 m/s."""
+    seen = estimator()
+    for k in range(40):
+        pace = PACE if k < 38 else share * PACE
+        seen.update(walker(0.0, pace), np.array([7]), FRONT, np.empty(0))
+    assert seen.yielding[0].tolist() == [expected]
 
 
 @pytest.mark.parametrize(
