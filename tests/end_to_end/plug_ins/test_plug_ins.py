@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 import tomllib
 from pathlib import Path
@@ -13,68 +12,16 @@ import pytest
 from support.plug_ins import printed
 
 import giveway
-from giveway.cli.commands.check_command import check_command
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.ego.controllers import make_controller
-from giveway.errors import ConfigError, ControlError
-from giveway.plug_ins.sockets import CONTROLLER
+from giveway.errors import ConfigError
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.repeated_run import checked_run, rerun
 
 SHORT = {"time_limit": 2.0, "crowd": {"pedestrians": 3}}
-
-FAULTY = """
-import os, time
-import numpy as np
-from dataclasses import dataclass
-from controller import Acceleration
-
-@dataclass
-class Fault:
-    kind: str = "none"
-
-class Driver:
-    Options = Fault
-    def __init__(self, setup, options):
-        self.kind, self.asked = options.kind, 0
-        if self.kind == "step":
-            raise ValueError(f"steps of {setup.time_step} s")
-    def control(self, seen):
-        self.asked += 1
-        if self.asked <= 20:
-            return Acceleration(0.1)
-        if self.kind == "nan":
-            return Acceleration(np.nan)
-        if self.kind == "shape":
-            return np.zeros(3)
-        if self.kind == "raise":
-            raise ValueError("no idea")
-        if self.kind == "leave":
-            raise SystemExit(0)
-        if self.kind == "exit":
-            os._exit(0)
-        if self.kind == "hang":
-            time.sleep(600)
-        return Acceleration(0.1)
-"""
-
-
-@pytest.fixture
-def careful(installed):
-    """The package of the page."""
-    points = tomllib.loads(printed("file: pyproject.toml"))["project"]["entry-points"]
-    ((name, value),) = points["giveway.controllers"].items()
-    return installed(
-        "careful_driver", printed("file: careful_driver.py"), declares=f"{name} = {value}"
-    )
-
-
-@pytest.fixture
-def faulty(installed):
-    return installed("faulty_driver", FAULTY, declares="broken = faulty_driver:Driver")
 
 
 def test_the_package_is_short():
@@ -208,55 +155,6 @@ def test_a_name_that_nobody_has(type_here):
         assert len(typed.stderr.strip().splitlines()) == 1
 
 
-FAULTS = {
-    "nan": "returned Acceleration(value=nan, reason=''): expected a finite number [m/s^2]",
-    "shape": "returned array([0., 0., 0.]): expected Force, Acceleration or Speed",
-    "raise": "raised ValueError: no idea (faulty_driver.py:",
-    "leave": "raised SystemExit: 0 (faulty_driver.py:",
-}
-
-
-@pytest.mark.parametrize("kind", FAULTS)
-def test_a_fault_ends_the_run_with_one_line_and_keeps_its_rows(faulty, kind, tmp_path):
-    settings = {"controller": "broken", "controller_options": {"kind": kind}, **SHORT}
-    with pytest.raises(ControlError) as caught:
-        giveway.run(settings, results=tmp_path / "run", pictures=False)
-    line = str(caught.value)
-    assert line.startswith(f"controller at step 20: 'broken' of 'ego' {FAULTS[kind]}")
-    assert line.isprintable()
-    assert len(pd.read_csv(tmp_path / "run" / "ego.csv")) == 20
-    if kind == "nan":
-        assert line == printed("failure").strip()
-
-
-def test_faults_in_a_study_are_a_row_each_beside_sound_runs(faulty, study_of, tmp_path):
-    text = """
-name = "faults"
-replications = 1
-[run]
-controller = "broken"
-time_limit = 2.0
-crowd = { pedestrians = 3 }
-[factors]
-"controller_options.kind" = ["none", "nan", "exit", "hang"]
-"""
-    study = study_of(text, tmp_path / "study", jobs=2, hang_limit=3.0)
-    failures = study.failures.set_index("run")["cause"]
-    assert sorted(failures.index) == ["c2-s1", "c3-s1", "c4-s1"]
-    assert "controller at step 20: 'broken' of 'ego' returned" in failures["c2-s1"]
-    assert re.search(r"exit\(0\) .* in the controller 'broken' at .*step 20", failures["c3-s1"])
-    assert re.search(r"no progress .* in the controller 'broken' at .*step 20", failures["c4-s1"])
-
-
-def test_the_supervisor_names_the_controller_that_ended_the_run(faulty, type_outside, tmp_path):
-    words = ["run", "--controller", "faulty_driver:Driver", "--set", "kind=exit", "-q"]
-    words += ["--time-limit", 2, "--pedestrians", 3, "--out", tmp_path / "run", "--no-pictures"]
-    typed = type_outside(*words)
-    assert typed.returncode == 1
-    assert "in the controller 'faulty_driver:Driver' at" in typed.stderr
-    assert len(pd.read_csv(tmp_path / "run" / "ego.csv")) >= 20
-
-
 def test_a_results_folder_is_not_believed(careful, installed, tmp_path, type_here):
     """What it names is imported with the user's word, or if it is declared and has not changed."""
     for name in ("careful", "careful_driver:Careful"):
@@ -312,19 +210,6 @@ controller = ["careful_driver:Careful", "pid-tuned"]
     assert checked_run(folder, "c2-s1")
 
 
-def test_check_says_whether_a_controller_keeps_to_the_rules(careful, installed, type_here):
-    typed = type_here("check", "controller", "careful", "--set", "headway=1.5")
-    assert typed.returncode == 0, typed.stdout
-    assert "careful: sound" in typed.stdout
-    installed("faulty_driver", FAULTY, declares="broken = faulty_driver:Driver")
-    typed = type_here("check", "controller", "broken", "--set", "kind=nan")
-    assert typed.returncode == 1
-    assert "broken  answers numbers" in typed.stdout
-    assert "finite number" in typed.stdout
-    assert type_here("check", "controller", "mpc").returncode == 2
-    assert "no such option" in type_here("check", "controller", "careful", "--set", "a=1").stderr
-
-
 def test_predictions_for_whoever_wants_them(installed):
     installed(
         "far_driver",
@@ -342,22 +227,3 @@ def test_predictions_for_whoever_wants_them(installed):
     own = EgoRunConfig(controller="far_driver:Driver")
     assert make_controller(own, 0.05).horizon == 12
     assert preflight(*load([])).time_step == 0.05
-
-
-@pytest.mark.parametrize(
-    ("kind", "said"),
-    [("hang", "does not come back: ended after 2 s"), ("exit", "ends the process (exit code 0)")],
-)
-def test_check_comes_back_from_a_controller_that_does_not(faulty, capsys, kind, said):
-    code = check_command("broken", [f"kind={kind}"], CONTROLLER, limit=2.0)
-    assert code == 1
-    shown = capsys.readouterr().out.splitlines()
-    assert shown[:2] == ["kept    can be made", "broken  answers numbers"]
-    assert shown[2].strip() == said
-    assert shown[3] == "broken: 1 of 2 rules broken"
-
-
-@pytest.mark.parametrize("step", [None, 0.1])
-def test_check_is_in_steps_of_a_run(faulty, capsys, step):
-    assert check_command("broken", ["kind=step"], CONTROLLER, time_step=step) == 1
-    assert f"steps of {step or 0.05} s" in capsys.readouterr().out
