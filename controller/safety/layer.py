@@ -24,11 +24,37 @@ from controller.safety.worst_motion import RECORDED, WorstMotion
 LONGEST_STOP = 20.0  # longest duration [s] of a stop; a longer braking is not a stop
 LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
 _MOST_DECAY = 50.0  # largest exponent of the speed's decay by friction in that time
-_RESOLUTION = 4.0  # resolution [N] of the largest safe force
-_SLACK = 1e-9  # distance [m] that a new force keeps in addition to full braking, above rounding
-_WHOLE_STEPS = 1e-6  # tolerance [steps] when a reaction time is rounded up to whole steps
+RESOLUTION = 4.0  # resolution [N] of the largest safe force
+SLACK = 1e-9  # distance [m] that a new force keeps in addition to full braking, above rounding
+WHOLE_STEPS = 1e-6  # tolerance [steps] when a time is rounded up to whole steps
 _PEOPLE = RECORDED["recorded-99.9"]
 _NO_KERBS = np.zeros((0, 3))
+
+
+def require_brake(force_limit: float, reaction_time: float) -> None:
+    """Make sure that a stop can be computed with this brake.
+
+    Args:
+        force_limit: Largest braking force [N].
+        reaction_time: Longest time [s] until the vehicle follows a command.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
+    """
+    require_positive("force_limit", force_limit, "N")
+    require_not_negative("reaction_time", reaction_time, "s")
+    short = reaction_time < LONGEST_STOP
+    require(short, "reaction_time", reaction_time, f"less than {LONGEST_STOP:g} s")
+
+
+def past_commands(reaction_time: float, time_step: float) -> Array:
+    """Return a memory (delay + 1,) [N] of the forces that may act within a reaction time.
+
+    Args:
+        reaction_time: Longest time [s] until the vehicle follows a command.
+        time_step: Control step [s].
+    """
+    return np.zeros(1 + max(ceil(reaction_time / time_step - WHOLE_STEPS), 0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +84,9 @@ class SafetyParameters:
         require_positive("width", self.width, "m")
         require_not_negative("margin", self.margin, "m")
         require_not_negative("position_error", self.position_error, "m")
-        require_positive("force_limit", self.force_limit, "N")
+        require_brake(self.force_limit, self.reaction_time)
         rate = self.force_rate_limit
         require(rate > 0.0, "force_rate_limit", rate, "a number > 0 [N per step]")
-        require_not_negative("reaction_time", self.reaction_time, "s")
-        short = self.reaction_time < LONGEST_STOP
-        require(short, "reaction_time", self.reaction_time, f"less than {LONGEST_STOP:g} s")
 
     @property
     def worst(self) -> WorstMotion:
@@ -120,8 +143,7 @@ class SafetyLayer:
         )
         self._errors = np.full(0, p.position_error)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
-        delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
-        self._commands = np.zeros(1 + max(delay, 0))
+        self._commands = past_commands(p.reaction_time, dt)
         self.memory = (packed(self._limits), self._commands, self._boxes)
         # Largest number of steps until full braking acts
         self._not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit
@@ -213,16 +235,16 @@ def largest_safe_force(
     numbers, commands, boxes = memory
     c, v = unpacked(numbers), speed if speed > STANDSTILL else 0.0
     verdict, safe, scratch = LETS_THROUGH, force, (commands, boxes)
-    if people[0].shape[0] > 0 and not is_safe(force, v, front, people, c, scratch, _SLACK):
+    if people[0].shape[0] > 0 and not is_safe(force, v, front, people, c, scratch, SLACK):
         verdict = ACTS
         safe = max(-c.ego.force_limit, commands[-1] - c.ego.force_rate_limit)
         safe = min(safe, force)
         unsafe = force
         if not is_safe(safe, v, front, people, c, scratch, 0.0):
             verdict, unsafe = UNAVOIDABLE, safe
-        while unsafe - safe > _RESOLUTION:
+        while unsafe - safe > RESOLUTION:
             middle = 0.5 * (safe + unsafe)
-            if is_safe(middle, v, front, people, c, scratch, _SLACK):
+            if is_safe(middle, v, front, people, c, scratch, SLACK):
                 safe = middle
             else:
                 unsafe = middle

@@ -8,7 +8,6 @@ step by step instead of by the formula, and holds for each of them (docs/safety.
 """
 
 from dataclasses import dataclass
-from math import ceil
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -18,14 +17,18 @@ from controller.defaults import FORCE_LIMIT
 from controller.driving_constants import EMERGENCY_BRAKING, RESPONSE, RESTORING
 from controller.model import LongitudinalModel
 from controller.parameters import require_not_negative, require_positive
-from controller.safety.layer import LONGEST_STOP
+from controller.safety.layer import (
+    LONGEST_STOP,
+    RESOLUTION,
+    SLACK,
+    WHOLE_STEPS,
+    past_commands,
+    require_brake,
+)
 
-_RESOLUTION = 4.0  # resolution [N] of the largest safe force
-_SLACK = 1e-9  # distance [m] that a new force keeps in addition, above rounding
 _BRAKES = 0.5  # deceleration [m/s^2] from which on the vehicle ahead counts as braking
 _URGENCY = 1.2  # factor on the deceleration that just keeps the margin, for a gap that closes
 _LEAST_ROOM = 0.1  # least room [m] in front, against a division by zero
-_WHOLE_STEPS = 1e-6  # tolerance [steps] when times are rounded up to whole steps
 
 
 class VehicleAhead(NamedTuple):
@@ -56,8 +59,7 @@ class VehicleLimits:
     def __post_init__(self) -> None:
         require_positive("response", self.response, "m/s^2")
         require_not_negative("margin", self.margin, "m")
-        require_positive("force_limit", self.force_limit, "N")
-        require_not_negative("reaction_time", self.reaction_time, "s")
+        require_brake(self.force_limit, self.reaction_time)
 
 
 class VehicleLayer:
@@ -78,8 +80,7 @@ class VehicleLayer:
         hardest = limits.force_limit / model.mass
         response = min(limits.response, hardest)
         self._numbers = np.array([dt, model.mass, model.friction, response, hardest, limits.margin])
-        delay = ceil(limits.reaction_time / dt - _WHOLE_STEPS)
-        self._commands = np.zeros(1 + max(delay, 0))
+        self._commands = past_commands(limits.reaction_time, dt)
         self.restores = False
 
     def reset(self) -> None:
@@ -164,7 +165,7 @@ def _largest(
     commands: Array,
 ) -> float:
     """The largest force [N] between a safe and an unsafe one, see :func:`keeps_behind`."""
-    while unsafe - safe > _RESOLUTION:
+    while unsafe - safe > RESOLUTION:
         middle = 0.5 * (safe + unsafe)
         if keeps_behind(middle, speed, ahead, numbers, commands):
             safe = middle
@@ -188,7 +189,7 @@ def keeps_behind(
     """
     dt, mass, friction, response, _, margin = numbers
     delay, v, travel = commands.shape[0] - 1, speed, 0.0
-    held = delay + max(1, int(np.ceil((ahead.step - ahead.age) / dt - _WHOLE_STEPS)))
+    held = delay + max(1, int(np.ceil((ahead.step - ahead.age) / dt - WHOLE_STEPS)))
     acceleration = (force - helping_friction(friction, commands) * speed) / mass
     rear = ahead.gap - ahead.speed * ahead.age  # its place [m] at the last news
     for i in range(int(LONGEST_STOP / dt)):
@@ -203,7 +204,7 @@ def keeps_behind(
         travel += max(v, after) * dt
         v = after
         worst = rear + braking_travel(ahead, ahead.age + (i + 1) * dt, dt)
-        if travel > worst - margin - _SLACK:
+        if travel > worst - margin - SLACK:
             return False
         if v <= 0.0 and i >= held - 1:
             return True

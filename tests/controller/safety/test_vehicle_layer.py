@@ -170,7 +170,16 @@ def test_the_past_is_forgotten() -> None:
     assert not np.any(layer._commands)
 
 
-@pytest.mark.parametrize("name", ["response", "force_limit", "margin", "reaction_time"])
-def test_a_limit_out_of_range_is_refused(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("response", -1.0),
+        ("force_limit", -1.0),
+        ("margin", -1.0),
+        ("reaction_time", -1.0),
+        ("reaction_time", 20.0),
+    ],
+)
+def test_a_limit_out_of_range_is_refused(name: str, value: float) -> None:
     with pytest.raises(ParameterError, match=name):
-        VehicleLimits(**{name: -1.0})
+        VehicleLimits(**{name: value})
