@@ -191,20 +191,17 @@ PAGES: dict[str, Page] = {
             (
                 Block("law", samples.LAW, means(*LAW_COLUMNS)),
                 Block("lights", samples.LIGHTS, means(*LIGHT_COLUMNS)),
-                Block(
+                _told(
                     "drawn networks",
-                    Command(
-                        "law/drawn_law.py --networks 12 --drives 4 --out {out} --jobs {jobs}",
-                        "12 networks, 4 drives each",
-                        "--networks 1 --drives 1 --out {out} --jobs {jobs}",
-                    ),
-                    part(-1),
+                    "law/road_campaign.py --drawn 1-12 --drives 8 --brief --out {out} --jobs {jobs}",
+                    "12 networks, 8 drives each",
+                    "--drawn 1 --drives 1 --out {out}",
                 ),
                 _told(
                     "meeting roads",
-                    "law/road_campaign.py --seeds 3 --out {out} --jobs {jobs}",
+                    "law/road_campaign.py --roads 1-3 --brief --out {out} --jobs {jobs}",
                     "seeds 1 to 3",
-                    "--seeds 1 --place ramp --out {out} --jobs {jobs}",
+                    "--roads 1 --place ramp --out {out}",
                 ),
             ),
             (*DRIVING, "benchmarks/law"),
@@ -304,26 +301,13 @@ PAGES: dict[str, Page] = {
             kept=True,
         ),
         Page(
-            "sidewalks",
-            "docs/law.md",
-            (
-                _told(
-                    "sidewalks",
-                    "law/beside_sidewalks.py --seeds 30 --out {out}",
-                    "seeds 1 to 30",
-                    "--seeds 1 --out {out}",
-                ),
-            ),
-            kept=True,
-        ),
-        Page(
             "foreign-law",
             "docs/law.md",
             (
                 _told(
                     "foreign networks",
-                    "law/foreign_law.py {data} --drives 20 --seed 1 --out {out} --jobs {jobs}",
-                    "20 drives",
+                    "law/road_campaign.py {data} --drives 8 --brief --out {out} --jobs {jobs}",
+                    "8 drives in each",
                     "{data} --drives 1 --window 60 --out {out}",
                 ),
             ),

@@ -66,6 +66,7 @@ def run(
             None if results is None else Path(results), force, parquet, pictures, ARGUMENTS
         ),
         watcher=watcher,
+        baseline=True,
     )
 
 
@@ -75,6 +76,7 @@ def run_checked(
     *,
     watcher: Watcher | None = None,
     journal: Path | None = None,
+    baseline: bool = False,
 ) -> RunResult:
     """Do the same as :func:`run` for a run that has passed the preflight.
 
@@ -83,6 +85,8 @@ def run_checked(
         destination: Folder and files of the results.
         watcher: Function, see :func:`run`.
         journal: Empty folder for the rows, which can be read if this process dies.
+        baseline: True to let plain SUMO make the egos' trips as well, if the configuration leaves
+            that open.
     """
     folder, force, parquet, pictures, wording = destination
     if parquet:
@@ -106,6 +110,7 @@ def run_checked(
                 outputs=None if folder is None else sumo_folder(folder),
                 journal=rows,
                 native_log=native_log,
+                baseline=baseline,
             )
         except Exception:
             if folder is not None and taken:

@@ -9,6 +9,7 @@ from time import perf_counter
 from typing import TypeVar
 
 from fmus import processes_reused
+from giveway.api.baseline import with_baseline
 from giveway.api.outcome import judged, outcome, with_twin
 from giveway.cosimulation.assembly import Driven, assemble
 from giveway.cosimulation.counterfactual.counterfactual import twin_of
@@ -35,6 +36,7 @@ def simulate(
     outputs: Path | None = None,
     journal: Journal | None = None,
     native_log: Path | None = None,
+    baseline: bool = False,
 ) -> RunResult:
     """Run one configuration. An error on the way becomes the result's ``error``.
 
@@ -45,6 +47,8 @@ def simulate(
         outputs: Folder for SUMO's own outputs, or None to drop them.
         journal: Journal that keeps the rows if the process dies.
         native_log: File for the output of SUMO, or None for a temporary one.
+        baseline: True to let plain SUMO make the egos' trips as well, if the configuration leaves
+            that open.
 
     Raises:
         GivewayError: the run could not begin.
@@ -68,20 +72,28 @@ def simulate(
             error, ending = _in_our_words(failure, checked.scenario), Ending.FAILED
         elapsed = perf_counter() - began
         result = outcome(parts, checked.scenario, recorder, loop, ending, error, elapsed)
-        if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
-            return judged(result, recorder.journal.heartbeat)
-        _tell(watcher, "People go on to where they want")
-        gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt), checked.scenario)
-        tracks = {ego.id: ego.track for ego in result.egos}
-        driven = Driven(tracks, parts.horizon, float(result.time[0]))
-    twin = None
-    if gone_on and error is None and result.egos:
-        heartbeat = recorder.journal.heartbeat
-        _tell(watcher, f"Twin: the same again, nobody feels the ego (the run took {elapsed:.0f} s)")
-        make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
-        twin, error = _guarded(make, checked.scenario)
-    result = with_twin(result, loop.followed, twin, error, began + elapsed)
-    return judged(result, recorder.journal.heartbeat)
+        whole = error is None and ending is not Ending.INTERRUPTED
+        followed = loop.followed if whole else None
+        if followed is not None:
+            _tell(watcher, "People go on to where they want")
+            gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt), checked.scenario)
+            tracks = {ego.id: ego.track for ego in result.egos}
+            driven = Driven(tracks, parts.horizon, float(result.time[0]))
+    heartbeat, twin = recorder.journal.heartbeat, None
+    if followed is not None:
+        if gone_on and error is None and result.egos:
+            _tell(
+                watcher,
+                f"Twin: the same again, nobody feels the ego (the run took {elapsed:.0f} s)",
+            )
+            make = partial(twin_of, checked, followed, driven, heartbeat, interrupt, native_log)
+            twin, error = _guarded(make, checked.scenario)
+        result = with_twin(result, followed, twin, error, began + elapsed)
+    asked = checked.config.sumo.baseline
+    if whole and (baseline if asked is None else asked):
+        _tell(watcher, "SUMO's own driver makes the same trip")
+        result = with_baseline(result, checked, parts, heartbeat, began)
+    return judged(result, heartbeat)
 
 
 def _tell(watcher: Watcher | None, doing: str) -> None:

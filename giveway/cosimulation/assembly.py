@@ -126,8 +126,8 @@ def assemble(
     sumo = stack.enter_context(
         SumoSession(
             files,
-            _start_options(config, moved, outputs),
-            _types(egos),
+            start_options(config, moved, outputs),
+            types_of(egos),
             native_log=native_log,
             careful=driven is None and config.scenario not in available(),
         )
@@ -223,7 +223,14 @@ def _priority(
     return priority if len(priority) else None
 
 
-def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:
+def start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:
+    """Return the settings for SUMO.
+
+    Args:
+        config: Configuration of the run.
+        moved: True if persons or vehicles are to be moved.
+        outputs: Folder for SUMO's own outputs, or None to drop them.
+    """
     sumo = config.sumo
     seed = config.seed if sumo.seed == "run" else sumo.seed
     return StartOptions(
@@ -237,8 +244,12 @@ def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> Star
     )
 
 
-def _types(egos: Sequence[EgoRunConfig]) -> str:
-    """The vehicle types of all egos to be inserted, and of those to be taken over."""
+def types_of(egos: Sequence[EgoRunConfig]) -> str:
+    """The vehicle types of all egos to be inserted, and of those to be taken over.
+
+    Args:
+        egos: Configurations of the egos.
+    """
     bodies = {
         inserted_type(ego.ego.id): VehicleShape(
             ego.vehicle.length or BODY.length, ego.vehicle.width or BODY.width

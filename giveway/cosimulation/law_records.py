@@ -14,8 +14,8 @@ from giveway.crowd.roster import Roster
 from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
 from giveway.journal.recorder import Recorder
-from giveway.run_data.way import CrossingOnWay, EgoWay, Halt, JunctionOnWay, StopLine
-from giveway.sumo.network.lane_path import Light
+from giveway.run_data.way import CrossingOnWay, EgoWay, Halt, JunctionOnWay, LimitOnWay, StopLine
+from giveway.sumo.network.lane_path import Light, SpeedLimit
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.session import SumoSession
 
@@ -33,6 +33,7 @@ class LawfulPlaces(NamedTuple):
     lights: Sequence[Light]  # traffic lights on the path
     junctions: Sequence[JunctionOnWay] = ()  # junctions on the path
     stops: Sequence[Stop] = ()  # scheduled stops that the ego serves
+    limits: Sequence[SpeedLimit] = ()  # speed limits of the lanes
 
 
 def way_of(
@@ -64,6 +65,9 @@ def way_of(
             for place in places.junctions
         ),
         halts=tuple(Halt(_rounded(stop.start), _rounded(stop.end)) for stop in places.stops),
+        limits=tuple(
+            LimitOnWay(_rounded(limit.station), _rounded(limit.speed)) for limit in places.limits
+        ),
     )
 
 
@@ -123,10 +127,10 @@ class LawRecords:
 
     def depart(self, way: EgoWay) -> None:
         """Note an ego's path and what the law rules on it, if anything."""
+        self._recorder.way(way)
         if not way.is_ruled:
             return
         self.ruled = True
-        self._recorder.way(way)
         self._states |= dict.fromkeys(sorted(way.systems - self._states.keys()), "")
 
     def signals(self, time: float) -> None:

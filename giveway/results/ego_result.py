@@ -26,6 +26,7 @@ from giveway.metrics import (
     summarise,
     vehicle_contacts,
 )
+from giveway.metrics.baseline import summarise_baseline
 from giveway.metrics.law import Drive, Ledger, Undisturbed, ledger
 from giveway.metrics.pedestrians import pedestrian_columns, table_of
 from giveway.metrics.plugged_in import NOTHING_MEASURED, Measured
@@ -34,6 +35,7 @@ from giveway.results.law import LawRows, others_of, people_from
 from giveway.run_data.outputs import Output
 from giveway.run_data.progress import Ending
 from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
+from giveway.sumo.plain_drive import PlainDrives
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,11 +56,12 @@ class EgoResult:
         crowd: Records of the crowd at these instants, counted from ``first``.
         predictions: Positions of the crowd that its controller expected, if recorded.
         background: Background vehicles of the run.
-        law: Rows by which its drive is judged, or None if no rule of the road applies to it.
+        road: Path and rows by which its drive is judged, or None if they are not recorded.
         outputs: Outputs that the profile of its FMU has recorded.
         effect: Comparison of the people with those of the counterfactual run, or None without one.
         measured: Columns that metrics of other packages measured; empty if the run was recovered.
         hasty: Indices of people whose sudden start broke its safety layer's assumption.
+        plain: Drives of plain SUMO for the same trip, or None if there was to be none.
     """
 
     config: EgoRunConfig
@@ -72,10 +75,11 @@ class EgoResult:
     predictions: PredictionTrack
     background: BackgroundTrack
     outputs: tuple[Output, ...] = ()
-    law: LawRows | None = None
+    road: LawRows | None = None
     effect: Effect | None = None
     measured: Measured = NOTHING_MEASURED
     hasty: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    plain: PlainDrives | None = None
 
     @property
     def body_radius(self) -> float:
@@ -113,26 +117,37 @@ class EgoResult:
         """The background vehicles with which it had contact."""
         return vehicle_contacts(self.track, self.background, self.shape)
 
+    @property
+    def law(self) -> LawRows | None:
+        """The rows by which its drive is judged, or None if no rule applies on its path."""
+        return self.road if self.road is not None and self.road.way.is_ruled else None
+
     @cached_property
-    def ledger(self) -> Ledger | None:
-        """The judgement by the law of the road, or None if no rule applies on its path."""
-        if self.law is None:
+    def drive(self) -> Drive | None:
+        """The drive along its path, or None if the path is not recorded."""
+        if self.road is None:
             return None
-        drive = Drive(
+        return Drive(
             ego=self.track,
             shape=self.shape,
             body_radius=self.body_radius,
-            way=self.law.way,
+            way=self.road.way,
             crowd=self.crowd,
-            people=self.law.people,
-            signals=self.law.signals,
-            vehicles=self.law.vehicles,
+            people=self.road.people,
+            signals=self.road.signals,
+            vehicles=self.road.vehicles,
             comfortable=COMFORTABLE,
             goal=self.goal,
             stop_speed=self.config.record.stop_speed,
             undisturbed=self._undisturbed,
         )
-        return ledger(drive, self.vehicle_contacts)
+
+    @cached_property
+    def ledger(self) -> Ledger | None:
+        """The judgement by the law of the road, or None if no rule applies on its path."""
+        if self.law is None or self.drive is None:
+            return None
+        return ledger(self.drive, self.vehicle_contacts)
 
     @property
     def _undisturbed(self) -> Undisturbed | None:
@@ -188,6 +203,8 @@ class EgoResult:
             row |= asdict(self.ledger.summary)
         if self.effect is not None:
             row |= asdict(self.effect.summary(self.id))
+        if self.plain is not None:
+            row |= asdict(summarise_baseline(self.track, self.goal, self.plain))
         row |= self.measured.values
         return row
 
@@ -208,7 +225,7 @@ def results_of_egos(
     ways, signals, people = rows.ways(), rows.signal_track(), rows.people_track()
     recorded = list(rows.egos())
 
-    def law_of(ego: RecordedEgo) -> LawRows | None:
+    def road_of(ego: RecordedEgo) -> LawRows | None:
         if ego.id not in ways:
             return None
         others = others_of(ego, recorded, background)
@@ -227,7 +244,7 @@ def results_of_egos(
             predictions=ego.predictions,
             background=background,
             outputs=ego.outputs,
-            law=law_of(ego),
+            road=road_of(ego),
             hasty=ego.hasty,
         )
         for ego in recorded

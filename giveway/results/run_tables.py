@@ -21,6 +21,7 @@ from giveway.metrics import (
     summarise_walks,
     walks_without_ego,
 )
+from giveway.metrics.baseline import BASELINE_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
@@ -281,6 +282,8 @@ class RunTables:
         if self.effect is not None:
             summary = (*summary, *DELAY_SUMMARY_FIELDS)
             pedestrians = (*pedestrians, *DELAY_FIELDS)
+        if any(ego.plain is not None for ego in self.egos):
+            summary = (*summary, *BASELINE_FIELDS)
         summary = (*summary, *(own for ego in self.egos[:1] for own in ego.measured.columns))
         outputs = {output.name: output.column for ego in self.egos for output in ego.outputs}
         if len(self.signal_track.time):

@@ -48,6 +48,13 @@ class Halt(NamedTuple):
     end: float  # [m] station up to which the ego drives
 
 
+class LimitOnWay(NamedTuple):
+    """A speed limit that holds from a station on."""
+
+    station: float  # [m]
+    speed: float  # [m/s]
+
+
 @dataclass(frozen=True)
 class EgoWay:
     """An ego's path and the rules on it; stations count along ``points``.
@@ -60,6 +67,7 @@ class EgoWay:
         lines: Stop lines of traffic lights, in order.
         junctions: Junctions, in order.
         halts: Scheduled stops, in order.
+        limits: Speed limits of the lanes at the ego's departure, in order.
     """
 
     ego: str
@@ -69,6 +77,7 @@ class EgoWay:
     lines: tuple[StopLine, ...] = ()
     junctions: tuple[JunctionOnWay, ...] = ()
     halts: tuple[Halt, ...] = ()
+    limits: tuple[LimitOnWay, ...] = ()
 
     @property
     def is_ruled(self) -> bool:
@@ -85,7 +94,7 @@ class EgoWay:
     def as_dict(self) -> dict[str, Any]:
         """Return the path as JSON values."""
         plain = asdict(self)
-        for name in ("crossings", "lines", "junctions", "halts"):
+        for name in ("crossings", "lines", "junctions", "halts", "limits"):
             plain[name] = [place._asdict() for place in getattr(self, name)]
         return plain
 
@@ -114,6 +123,7 @@ class EgoWay:
                 for place in kept["junctions"]
             ),
             halts=tuple(Halt(**place) for place in kept["halts"]),
+            limits=tuple(LimitOnWay(**place) for place in kept.get("limits", ())),
         )
 
 

@@ -15,14 +15,14 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from giveway._environment import user_cache
-from giveway.errors import InstallationError, SumoError
+from giveway.errors import SumoError
 from giveway.processes import interpreter
 from giveway.processes.causes import cause_of_end
 from giveway.processes.child import is_supervised
-from giveway.sumo.library import import_libsumo, version
+from giveway.sumo.library import import_bare_libsumo, version
 
 # Longest time [s] to load a scenario; the largest city scenarios take some minutes
 PATIENCE: Final = 600.0
@@ -30,7 +30,6 @@ _CHILD: Final = "from giveway.sumo.first_reading import main; main(arguments)"
 _ROUTE_STEPS: Final = "--route-steps"  # with 0, SUMO reads all routes at once, not as they depart
 _ADDRESS: Final = re.compile(r"[^/\\\s]{2,}:\d+")
 _DONE: Final = "read"
-_SPARED: Final = ("numpy", "pyproj", "lxml")  # optional imports of libsumo's Python modules
 _known: set[str] = set()
 
 
@@ -54,7 +53,7 @@ def read_first(
     """
     if is_supervised() or any(map(_ADDRESS.fullmatch, command)):
         return  # a listener at an output address would take the child for the run
-    digest = _digest(config_file, files)
+    digest = digest_of(config_file, files)
     marker = user_cache() / "read_by_sumo" / digest
     if digest in _known or marker.exists():
         return
@@ -90,7 +89,7 @@ def _try(config_file: Path, command: Sequence[str], patience: float) -> None:
         )
 
 
-def _digest(config_file: Path, files: Sequence[Path]) -> str:
+def digest_of(config_file: Path, files: Sequence[Path]) -> str:
     """Return a digest of the files' contents and of SUMO's version."""
     digest = hashlib.sha256(version().encode())
     for file in dict.fromkeys((config_file, *files)):
@@ -99,21 +98,9 @@ def _digest(config_file: Path, files: Sequence[Path]) -> str:
     return digest.hexdigest()
 
 
-def _bare_libsumo() -> Any:
-    """Return libsumo without the optional imports of its tools, which reading does not need."""
-    modules: dict[str, Any] = sys.modules
-    modules.update(dict.fromkeys(_SPARED))
-    try:
-        return import_libsumo()
-    except InstallationError:
-        for name in _SPARED:
-            del modules[name]
-        return import_libsumo()
-
-
 def main(command: Sequence[str]) -> None:
     """Read the scenario, do one step, and report the end; a refusal is no crash, either."""
-    sumo = _bare_libsumo()
+    sumo = import_bare_libsumo()
     with suppress(Exception):  # libsumo's exceptions
         sumo.start(list(command))
         sumo.simulationStep()

@@ -1,9 +1,12 @@
 """The one file that imports libsumo."""
 
-from typing import Any
+import sys
+from typing import Any, Final
 
 from giveway._environment import out_of_memory
 from giveway.errors import InstallationError
+
+_SPARED: Final = ("numpy", "pyproj", "lxml")  # Optional imports of libsumo's Python modules
 
 
 def import_libsumo() -> Any:
@@ -20,6 +23,25 @@ def import_libsumo() -> Any:
             remedy = "free memory, or raise the limit (ulimit -v)"
         raise InstallationError(f"libsumo cannot be imported ({error}); {remedy}") from error
     return libsumo
+
+
+def import_bare_libsumo() -> Any:
+    """Return libsumo without the optional imports of its tools, which a child does not need.
+
+    Modules that are imported already are kept.
+
+    Raises:
+        InstallationError: libsumo cannot be imported.
+    """
+    modules: dict[str, Any] = sys.modules
+    left_out = [name for name in _SPARED if name not in modules]
+    modules.update(dict.fromkeys(left_out))
+    try:
+        return import_libsumo()
+    except InstallationError:
+        for name in left_out:
+            del modules[name]
+        return import_libsumo()
 
 
 def direct(sumo: Any, domain: str, function: str) -> Any:

@@ -18,6 +18,7 @@ from giveway.metrics import (
     SUMMARY_FIELDS,
     WALK_SUMMARY_FIELDS,
 )
+from giveway.metrics.baseline import BASELINE_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.recordings import KNOWN
 from giveway.recordings.describing import RECORDING_FIELDS
@@ -48,6 +49,7 @@ DOCS = Path(__file__).parents[2] / "docs"
         SUMMARY_FIELDS,
         WALK_SUMMARY_FIELDS,
         LAW_FIELDS,
+        BASELINE_FIELDS,
         LEDGER_COLUMNS,
         PEOPLE_COLUMNS,
         SIGNAL_COLUMNS,

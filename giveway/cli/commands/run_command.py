@@ -69,6 +69,7 @@ def run_command(
                 Destination(folder, outputs.force, outputs.parquet, outputs.pictures),
                 watcher=watcher,
                 journal=journal,
+                baseline=True,
             )
         except GivewayError as error:
             if error.result is not None and len(error.result.time):

@@ -50,6 +50,12 @@ _OF_THE_PEOPLE = (  # metrics that are shown if there is a counterfactual run
     ("People who gave way, of those who crossed", "share_gave_way", "%"),
     ("Delay of background vehicles", "traffic_delay", "s"),
 )
+_OF_SUMO = (  # Metrics that are shown if plain SUMO drove as well
+    ("Time of SUMO's own driver", "sumo_time", "s"),
+    ("the ego's time over it", "time_over_sumo", ""),
+    ("the same with its speedFactor at 1", "sumo_time_at_limit", "s"),
+    ("the ego's time over it", "time_over_sumo_at_limit", ""),
+)
 _OF_WALKS = (  # Metrics that are shown if there is no ego
     ("Mean walking speed", "mean_walking_speed", "m/s"),
     ("Time slower than 0.2 m/s, on average", "mean_slow_time", "s"),
@@ -99,6 +105,8 @@ def _shown(result: RunResult) -> Iterator[tuple[str, str, str]]:
     """Yield label, column and unit of each number that is shown of an ego."""
     if result.egos:
         yield from _SHOWN
+    if any(ego.plain is not None for ego in result.egos):
+        yield from _OF_SUMO
     if result.effect is not None:
         has_traffic = any(math.isfinite(ego.summary["traffic_delay"]) for ego in result.egos)
         yield from _OF_THE_PEOPLE if has_traffic else _OF_THE_PEOPLE[:-1]

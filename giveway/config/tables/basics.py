@@ -220,6 +220,13 @@ class SumoConfig(Section):
         "SUMO's own outputs that are written, comma-separated: fcd (floating car data), tripinfo "
         "(trips), ssm (surrogate safety measures), summary (each step)",
     )
+    baseline: bool | None = option(
+        None,
+        None,
+        "SUMO's own driver makes the same trip in a process of its own, for its travel time. By "
+        "default it does in single runs, but not in studies",
+        flag="--baseline",
+    )
     options: OptionList = option(
         (), None, "Further options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
     )

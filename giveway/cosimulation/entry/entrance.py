@@ -141,6 +141,7 @@ class Entrance:
                     for one in route.junctions
                 ],
                 route.stops,
+                lane_path.limits,
             ),
         )
         slope = Slope.through(lane_path.heights)

@@ -8,7 +8,7 @@ from giveway.crowd.roster import Roster
 from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
 from giveway.journal.recorder import Recorder
-from giveway.run_data.way import EgoWay, Halt, JunctionOnWay, StopLine
+from giveway.run_data.way import EgoWay, Halt, JunctionOnWay, LimitOnWay, StopLine
 from giveway.sumo.network.lane_path import Light
 from giveway.sumo.network.pedestrian_crossings import Crossing
 from pedestrian_model import Crowd
@@ -107,12 +107,13 @@ def test_everybody_is_noted_once_for_each_time_that_they_join(records):
     assert people.desired_speed.tolist() == [1.1, 1.1, 1.3, 1.3, 1.3, 1.1, 1.1]
 
 
-def test_where_the_law_has_no_say_nothing_is_kept(records):
+def test_where_the_law_has_no_say_only_the_path_is_kept(records):
     lights, recorder, law = records
-    law.depart(EgoWay("ego", ((0.0, 0.0), (9.0, 0.0))))
+    way = EgoWay("ego", ((0.0, 0.0), (9.0, 0.0)), limits=(LimitOnWay(0.0, 13.9),))
+    law.depart(way)
     law.signals(0.0)
     recorder.instant(0.0)
     law.walks(Roster(["a"], Crowd.create([[0, 0]], [[0, 0]], 1.0, [[(1, 1)]])))
     rows = recorder.rows()
-    assert (rows.ways(), lights.asked) == ({}, 0)
+    assert (rows.ways(), lights.asked) == ({"ego": way}, 0)
     assert len(rows.people_track().step) == 0

@@ -87,27 +87,3 @@ def test_a_process_that_is_watched_over_reads_at_once(deadly, cache, monkeypatch
 def test_what_sumo_refuses_in_words_is_left_to_the_run(junction, cache) -> None:
     junction.with_name("junction.net.xml").write_text("<net")
     read_first(junction, command_of(junction), [junction])
-
-
-@pytest.mark.parametrize("needed", [(), ("numpy",)])
-def test_the_child_spares_itself_what_reading_has_no_use_for(needed) -> None:
-    """And does not when libsumo cannot do without it any more."""
-    program = (
-        "import builtins, sys\n"
-        "from giveway.sumo import first_reading\n"
-        f"needed = {needed!r}\n"
-        "importing = builtins.__import__\n"
-        "def strict(name, *rest, **more):\n"
-        "    if name == 'libsumo':\n"
-        "        for module in needed:\n            importing(module)\n"
-        "    return importing(name, *rest, **more)\n"
-        "builtins.__import__ = strict\n"
-        "sumo = first_reading._bare_libsumo()\n"
-        "print(sumo.simulation.getVersion()[1], 'numpy.linalg' in sys.modules)\n"
-    )
-    ended = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=False, timeout=120
-    )
-    assert ended.returncode == 0, ended.stderr
-    assert ended.stdout.split()[:1] == ["SUMO"]
-    assert ended.stdout.split()[-1] == str(bool(needed))

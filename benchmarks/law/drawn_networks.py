@@ -1,26 +1,17 @@
-"""Does an ego keep to the law of the road in networks that nobody has looked at?
+"""Networks that nobody has looked at, drawn by netgenerate from a seed, with traffic.
 
-    python benchmarks/law/drawn_law.py --networks 12 --drives 10 --out FOLDER [--jobs 2]
-
-netgenerate draws a network from each seed: a grid, a spider's web or a random one, with sidewalks
-and crossings, right-hand or left-hand traffic, junctions of priority, right before left, stop signs
-or lights, one or two lanes, and steps of 0.1 to 1 s. Cars and people go from anywhere to anywhere
-in it. Some of its cars are taken over, each in a drive of its own, as ``foreign_law.py`` does it.
-
-One line of ``FOLDER/SEED/drives.jsonl`` per drive; what is done is not done again, so the campaign
-can be ended at any time, and another state of the repository needs another folder. The end prints
-the ledger of each network and of all of them. Needs netgenerate: pip install 'giveway[build]'.
+A network is a grid, a spider's web or a random one, with sidewalks and crossings, right-hand or
+left-hand traffic, junctions of priority, right before left, stop signs or lights, one or two lanes,
+and steps of 0.1 to 1 s. Cars and people go from anywhere to anywhere in it.
 """
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
 from pathlib import Path
 
 from cities import call_sumo
-from foreign_law import cars_of, draw, drive_all, table
 
 SHAPES = {
     "grid": ("--grid", "--grid.number=4", "--grid.length=120"),
@@ -80,26 +71,3 @@ def _departing(draws: random.Random, edges: list[str], every: int, row: str) -> 
         row.format(number, number * every, *draws.sample(edges, 2))
         for number in range(LASTS // every)
     ]
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--networks", type=int, default=12)
-    parser.add_argument("--seed", type=int, default=1, help="of the first network")
-    parser.add_argument("--drives", type=int, default=10, help="in each network")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the results")
-    parser.add_argument("--jobs", type=int, default=2, help="processes")
-    options = parser.parse_args()
-    everywhere = []
-    for seed in range(options.seed, options.seed + options.networks):
-        folder = options.out.absolute() / str(seed)
-        config, words = draw_network(folder, seed)
-        drawn = draw(cars_of(config, WINDOW, seed), options.drives, seed)
-        made = drive_all(config, drawn, folder, options.jobs)
-        print(f"{seed}: {words}\n\n{table(made)}\n", flush=True)
-        everywhere += made
-    print(f"---\n{table(everywhere)}")
-
-
-if __name__ == "__main__":
-    main()
