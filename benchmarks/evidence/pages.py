@@ -193,7 +193,8 @@ PAGES: dict[str, Page] = {
                 Block("lights", samples.LIGHTS, means(*LIGHT_COLUMNS)),
                 _told(
                     "drawn networks",
-                    "law/road_campaign.py --drawn 1-12 --drives 8 --brief --out {out} --jobs {jobs}",
+                    "law/road_campaign.py --drawn 1-12 --drives 8 --brief "
+                    "--out {out} --jobs {jobs}",
                     "12 networks, 8 drives each",
                     "--drawn 1 --drives 1 --out {out}",
                 ),
