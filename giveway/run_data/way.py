@@ -39,6 +39,7 @@ class JunctionOnWay(NamedTuple):
     exit: float  # [m] station of its end
     waiting: tuple[float, ...]  # [m] stations inside at which a front bumper may wait
     stop_sign: bool = False  # True if a vehicle has to stop before it first
+    offset: float = 0.0  # [m] distance of the stop line before it
 
 
 class Halt(NamedTuple):

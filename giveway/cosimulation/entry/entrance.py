@@ -137,7 +137,9 @@ class Entrance:
                 self._session.lanes.crossings,
                 lane_path.lights,
                 [
-                    JunctionOnWay(one.entry, one.exit, one.waiting, one.movement.has_stop_sign)
+                    JunctionOnWay(
+                        one.entry, one.exit, one.waiting, one.movement.has_stop_sign, one.offset
+                    )
                     for one in route.junctions
                 ],
                 route.stops,

@@ -32,7 +32,7 @@ class Gaps(NamedTuple):
 class PathJunction(NamedTuple):
     """A junction that a path leads through. All stations are those of the path."""
 
-    entry: float  # station [m] of the stop line
+    entry: float  # station [m] at which the junction begins
     exit: float  # station [m] at which the lane of the next edge begins
     waiting: tuple[float, ...]  # stations [m] inside at which a vehicle may wait for others
     movement: Movement  # movement of the path itself
@@ -40,6 +40,11 @@ class PathJunction(NamedTuple):
     conflicts: Mapping[int, Conflict]  # conflicts with the path; other stations from their lines
     beside: frozenset[int]  # numbers of the movements that stay clear of the path
     gaps: Gaps
+    offset: float = 0.0  # distance [m] of the stop line before the junction
+
+    def line(self, front: float) -> float:
+        """The station [m] before which the ego waits: the stop line, or the junction behind it."""
+        return self.entry - (self.offset if front <= self.entry - self.offset else 0.0)
 
 
 class Approach(NamedTuple):
@@ -101,6 +106,7 @@ def junctions_on(
                         gap_of(own, at_lights=False, major=_is_major(own, movements)),
                         gap_of(own, at_lights=True, major=False),
                     ),
+                    passage.offset,
                 )
             )
     return tuple(found)

@@ -160,7 +160,7 @@ class RightOfWay:
                 self._note(place, front, speed, passed, traffic)
             stop = self._stop_in(place, letter, first, front, speed, states, traffic)
             if first:
-                near = place.entry - front <= _DECIDED
+                near = place.line(front) - front <= _DECIDED
                 self._going = stop == math.inf and (self._going or near) and letter not in RED
             needed = needed_braking(speed, stop + STOP_BEFORE - front)
             if stop < math.inf and (needed <= FIRM or abs(stop - before) <= STOP_BEFORE):
@@ -182,9 +182,10 @@ class RightOfWay:
         for place in self._junctions[self._next :]:
             if place.entry < front:
                 continue
+            line = place.line(front)
             blocked = leaves_no_room(leader, place.entry, place.exit, self._room)
-            if blocked and needed_braking(speed, place.entry - front) <= FIRM:
-                stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
+            if blocked and needed_braking(speed, line - front) <= FIRM:
+                stop = min(stop, max(line - STOP_BEFORE, min(front, line)))
             break
         return stop
 
@@ -192,7 +193,7 @@ class RightOfWay:
         self, place: PathJunction, front: float, speed: float, passed: float, traffic: Traffic
     ) -> None:
         """Note how long the ego stands at the line, and when a vehicle of its lane crosses it."""
-        stands = place.entry - front <= _AT_LINE and speed < STANDING
+        stands = place.line(front) - front <= _AT_LINE and speed < STANDING
         self._stood = self._stood + passed if stands and passed < math.inf else 0.0
         self._halted = self._halted or (stands and front <= place.entry)
         own = place.movement
@@ -213,7 +214,7 @@ class RightOfWay:
         traffic: Traffic,
     ) -> float:
         """Station [m] at which the ego waits for others at one junction; inf if it need not."""
-        line = place.entry - STOP_BEFORE
+        line = place.line(front) - STOP_BEFORE
         before = front <= place.entry
         if before and letter in "sw" and not (first and self._halted):
             return line

@@ -36,7 +36,7 @@ Each returns the rule of one ego, or None if nothing on its route falls under th
 rule: its file, its line here, its key in `giveway.config.tables.rules`.
 """
 
-BEYOND = 0.5  # distance [m] beyond a demanded stop that a plan may lead to at most
+BEYOND = 0.1  # distance [m] beyond a demanded stop that a plan may lead to at most
 
 
 class RuleSet:

@@ -107,6 +107,16 @@ class SpeedProfile:
         lowest = min(self.at(station), self.at(station + _PREVIEW * speed))
         return lowest if lowest < self.fastest else math.inf
 
+    def duration(self, begin: float, end: float) -> float:
+        """The time [s] in which a free ego drives from one station [m] to another one.
+
+        Args:
+            begin: Station [m].
+            end: Station [m], not before the other one.
+        """
+        first, last = np.interp((begin, end), self._stations, self._times)
+        return float(last - first)
+
     def ahead(self, station: float, speed: float, times: Array) -> Array:
         """The speed limits (N,) [m/s] of a plan at ``times`` (N,) [s] from now on.
 

@@ -127,26 +127,29 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
         if front <= line.station <= front + SIGHT:
             yield ~np.isin(drive.letters(line.system, line.link, time), _GO), 0.0
     for place in drive.way.junctions:
-        if place.stop_sign and place.entry - _AT_LINE <= front <= place.entry + _OVER_LINE:
+        past = front - (place.entry - place.offset)
+        if place.stop_sign and -_AT_LINE <= past <= _OVER_LINE:
             # the ego has just come to a stop at the sign
             yield np.arange(len(time)) == stand.begin, 0.0
     if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
         yield np.ones(len(time), dtype=np.bool_), 0.0
-    yield _people_ahead(drive, stand), AHEAD
+    yield _people_ahead(drive, stand, SIGHT), AHEAD
+    if stand.foes > SIGHT:  # the ego may wait for people rather than stop in the junction
+        yield _people_ahead(drive, stand, stand.foes), _FOE
     yield _foes_ahead(drive, stand), 0.0
     yield _vehicles_ahead(drive, stand), 0.0
 
 
-def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
-    """Return when a person was on the ego's path in front of it, as flags (T,)."""
+def _people_ahead(drive: Drive, stand: _Stand, sight: float) -> Mask:
+    """Return when a person was on the ego's path up to ``sight`` [m] in front, as flags (T,)."""
     crowd, front = drive.crowd, stand.front
     x, y, _ = drive.path.pose(front)
     rows = _during(drive, stand, drive.ego.time[crowd.step])
-    reach = SIGHT + drive.shape.width + _ASIDE
+    reach = sight + drive.shape.width + _ASIDE
     rows = rows[np.hypot(crowd.x[rows] - x, crowd.y[rows] - y) <= reach]
     station, aside = _on_path(drive, stand, crowd.x[rows], crowd.y[rows])
     on = aside <= drive.shape.width / 2 + drive.body_radius + _ASIDE
-    on &= (station > front - drive.body_radius) & (station <= front + SIGHT)
+    on &= (station > front - drive.body_radius) & (station <= front + sight)
     there = np.zeros(len(drive.ego.time), dtype=np.bool_)
     there[crowd.step[rows[on]]] = True
     return there

@@ -25,6 +25,7 @@ class Passage(NamedTuple):
     exit: float  # [m] station at which the next edge's lane begins
     inside: tuple[str, ...]  # lanes in between
     waiting: tuple[float, ...]  # [m] stations inside at which SUMO's vehicles wait for others
+    offset: float = 0.0  # [m] distance of the stop line before the junction
 
 
 class SpeedLimit(NamedTuple):

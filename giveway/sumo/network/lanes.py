@@ -109,8 +109,8 @@ class Lanes:
             if number < len(links):
                 link = links[number]
                 light = self.signals.get((f"{edges[number]}_{leave}", link.lane))
+                offset = self.stop_offset(f"{edges[number]}_{leave}", kind)
                 if light is not None:
-                    offset = self.stop_offset(f"{edges[number]}_{leave}", kind)
                     lights.append(Light(driven - offset, *light))
                 begins_inside = self._begins_inside(link, driven, shape[-1:])
                 speeds = map(self.speed_limit, link.via)
@@ -125,7 +125,7 @@ class Lanes:
                 line, driven = driven, driven + _length(onwards)
                 if link.via:
                     waiting = tuple(begins_inside[1:])
-                    passages.append(Passage(line, driven, link.via, waiting))
+                    passages.append(Passage(line, driven, link.via, waiting, offset))
         return LanePath(
             np.concatenate(points),
             tuple(lights),

@@ -15,8 +15,9 @@ import pytest
 from support.situations import demand_of, stop_of, tell
 
 from giveway.ego.perception.leader import Leader
-from giveway.ego.rules.crossings import Crossings
+from giveway.ego.rules.crossings import Crossings, Way
 from giveway.ego.rules.path_crossings import crossings_on
+from giveway.ego.rules.protocol import Demand, Situation
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.yielding import STOP_BEFORE
 from giveway.geometry.bodies import VehicleShape
@@ -33,14 +34,14 @@ NOBODY = Crowd.empty()
 SOUTHERN_KERB, NORTHERN_KERB = -3.5, 3.5
 
 
-def crossings(zebra=True, light="", kerb_distance=1.5, kerb_time=0.0, change=None):
+def crossings(zebra=True, light="", kerb_distance=1.5, kerb_time=0.0, change=None, **way):
     ends = np.array([[22.0, NORTHERN_KERB], [22.0, SOUTHERN_KERB]])
     crossing = Crossing(":j_c0_0", ends, 4.0, zebra, "tls" if light else "", 0 if light else -1)
     path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
     found = crossings_on(path, SHAPE, [crossing])
     near = {"kerb_distance": kerb_distance, "kerb_time": kerb_time}
     own = {**near, "change_of": {"tls": change}.get}
-    watched = Crossings(found, length=SHAPE.length, gap=1.0, **own)
+    watched = Crossings(found, length=SHAPE.length, gap=1.0, **own, way=Way(**way))
     if light:
         tell(watched, 0.0, 4.0, signals={"tls": light})
     return watched
@@ -283,3 +284,66 @@ def test_what_it_keeps_free_and_how_far_it_has_to_drive_on():
         [0, 8.5, 5.0, 1.0, 0], abs=0.11
     )
     assert RuleSet().keep_clear_distance(20.5) == 0.0
+
+
+# --- a crossing behind a junction without a light -------------------------------------------------
+
+ENTRANCE = 14.0  # [m] the line of a junction in which a stop before the crossing would be
+THERE = {"junctions": [(ENTRANCE, ENTRANCE, 30.0)]}
+EARLY = 5.0  # [m] from where it could stop before either
+
+
+def test_it_waits_before_the_junction_rather_than_in_it():
+    crowd = walker(-2.0, speed=0.5)
+    assert stop_of(crossings(), EARLY, 4.0, crowd) == pytest.approx(LINE, abs=0.11)
+    assert stop_of(crossings(**THERE), EARLY, 4.0, crowd) == ENTRANCE - STOP_BEFORE
+    inside = ENTRANCE + 1.0  # too late for that
+    assert stop_of(crossings(**THERE), inside, 3.0, crowd) == pytest.approx(LINE, abs=0.11)
+
+
+def test_a_stop_just_behind_the_line_is_not_in_the_junction():
+    near = {"junctions": [(18.0, 18.0, 30.0)]}
+    assert stop_of(crossings(**near), EARLY, 4.0, walker(-2.0, speed=0.5)) == pytest.approx(
+        LINE, abs=0.11
+    )
+
+
+def test_before_a_junction_it_looks_for_who_will_cross_behind_it():
+    crowd = walker(SOUTHERN_KERB - 3.0)  # at the kerb when the ego is at the crossing
+    assert stop_of(crossings(), EARLY, 6.0, crowd) == math.inf
+    assert stop_of(crossings(**THERE), EARLY, 6.0, crowd) == ENTRANCE - STOP_BEFORE
+    assert stop_of(crossings(**THERE), EARLY, 6.0, walker(SOUTHERN_KERB - 30.0)) == math.inf
+
+
+def test_before_a_junction_it_heeds_those_without_priority_as_well():
+    crowd = walker(-4.5)  # about to enter
+    assert stop_of(crossings(zebra=False), EARLY, 4.0, crowd) == math.inf
+    behind = crossings(zebra=False, **THERE)
+    assert stop_of(behind, EARLY, 4.0, crowd) == ENTRANCE - STOP_BEFORE
+    assert stop_of(behind, ENTRANCE + 1.0, 3.0, crowd) == math.inf
+
+
+def test_a_stream_of_people_does_not_hold_it_before_a_junction():
+    behind, stream = crossings(**THERE), walker(-2.0, speed=0.5)
+    standing = ENTRANCE - STOP_BEFORE
+    stops = [
+        (behind.demand(Situation(time, standing, 0.0, stream)) or Demand()).stop
+        for time in (0.0, 9.0, 11.0)
+    ]
+    assert stops == [standing, standing, pytest.approx(LINE, abs=0.11)]
+
+
+def test_its_own_time_is_at_least_that_of_the_free_speed():
+    crowd = walker(SOUTHERN_KERB - 1.0)  # on its way after 1.5 s, away from it after 3.6 s
+    slow = crossings(kerb_time=2.5, duration=lambda begin, end: (end - begin) / 2.0)
+    assert stop_of(crossings(kerb_time=2.5), EARLY, 6.0, crowd) < math.inf
+    assert stop_of(slow, EARLY, 6.0, crowd) == math.inf
+
+
+def test_it_waits_at_the_stop_line_that_the_network_sets():
+    crowd = walker(-2.0, speed=0.5)
+    line = {"lines": [(12.0, 19.0)]}  # 7 m before the lane's end, 8 m before the crossing
+    assert stop_of(crossings(**line), EARLY, 4.0, crowd) == 12.0 - STOP_BEFORE
+    assert stop_of(crossings(**line), 12.5, 3.0, crowd) == pytest.approx(LINE, abs=0.11)
+    elsewhere = {"lines": [(2.0, 9.0)]}
+    assert stop_of(crossings(**elsewhere), 1.0, 4.0, crowd) == pytest.approx(LINE, abs=0.11)

@@ -63,10 +63,10 @@ def test_no_rule_demands_nothing() -> None:
 def test_the_strictest_demand_holds() -> None:
     rules = asked(
         Demand(50.0, "light", speed=9.0),
-        Demand(40.0, "yield", latest=40.2, advice=4.0),
+        Demand(40.0, "yield", latest=40.05, advice=4.0),
         Demand(45.0, "stop", speed=7.0, advice=5.0),
     )
-    assert (rules.stop, rules.cause, rules.latest) == (40.0, "yield", 40.2)
+    assert (rules.stop, rules.cause, rules.latest) == (40.0, "yield", 40.05)
     assert (rules.speed, rules.advice) == (7.0, 4.0)
 
 

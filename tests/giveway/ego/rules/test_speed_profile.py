@@ -46,6 +46,14 @@ def test_it_brakes_before_a_lower_limit_and_speeds_up_behind_it():
     assert seen.at(-5.0) == 13.9  # before the path begins
 
 
+def test_the_time_between_two_places_is_that_of_a_free_ego():
+    seen = profile()
+    assert seen.duration(0.0, 139.0) == pytest.approx(10.0)
+    assert seen.duration(210.0, 293.0) == pytest.approx(10.0)
+    braked = (13.9**2 - 8.3**2) / (2.0 * B)
+    assert seen.duration(200.0 - braked, 200.0) == pytest.approx((13.9 - 8.3) / B, rel=1e-3)
+
+
 def test_no_limit_is_exceeded_anywhere_however_the_lanes_end():
     limits = tuple(SpeedLimit(s, v) for s, v in ((-30.0, 3.0), (-7.3, 9.0), (81.2, 5.0), (83.9, 7)))
     seen = profile(limits=limits)

@@ -121,6 +121,15 @@ def test_people_on_the_carriageway_ahead(person, stops):
     assert judged(person).summary.stops_without_cause == stops
 
 
+def test_people_at_the_far_end_of_the_junction_before_which_it_waits():
+    person = walker(-12.0, since=4.0, x=45.0)
+    place = JunctionOnWay(32.0, 50.0, ())
+    assert judged(person).summary.stops_without_cause == 1
+    assert judged(person, junctions=(place,)).summary.stops_without_cause == 0
+    later = walker(-30.0, since=4.0, x=45.0)
+    assert judged(later, junctions=(place,)).summary.stops_without_cause == 1
+
+
 def test_an_encounter_is_a_cause_before_its_crossing_only():
     person = Person([(33.0, 3.8)] * 600, way=((33.0, -20.0),), desired=1.4)
     assert judged(person, crossings=(FAR_CROSSING,)).summary.stops_without_cause == 0
