@@ -19,7 +19,7 @@ from giveway.ego.perception.protocol import Ids, OwnState
 from giveway.ego.perception.truth import Truth
 from giveway.ego.rules.following import Following
 from giveway.ego.rules.protocol import Told
-from giveway.ego.rules.rule_set import RuleSet
+from giveway.ego.rules.rule_set import STOPS_EARLY, RuleSet
 from giveway.ego.rules.traffic_lights import FOLLOWED
 from giveway.ego.safeguards import Safeguards
 from giveway.ego.stop_cause import waits_for
@@ -249,7 +249,8 @@ class Ego:
         stop += self.config.regulation.safe_distance
         following = self._following
         limit = following.speed_limit(leader, front, seen.to_clear, vehicle.speed, seen.followed)
-        limit = min(rules.speed, limit, following.stop_limit(seen.stop, front))
+        early = STOPS_EARLY if self._controller.foresees else 0.0
+        limit = min(rules.speed, limit, following.stop_limit(seen.stop - early, front))
         vehicle_ahead = following.leader_station(leader, front, seen.to_clear)
         if self._controller.foresees:
             limit = min(limit, rules.advice)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from math import inf
 from typing import Any
 
+from controller.driving_constants import FIRM
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.crossings import Crossings
 from giveway.ego.rules.junctions import SIGHT
@@ -36,7 +37,9 @@ Each returns the rule of one ego, or None if nothing on its route falls under th
 rule: its file, its line here, its key in `giveway.config.tables.rules`.
 """
 
-BEYOND = 0.1  # distance [m] beyond a demanded stop that a plan may lead to at most
+BEYOND = 0.1, 0.5  # distance [m] beyond a demanded stop that a plan may lead to; of a late demand
+_BUILD_UP = 0.2  # time [s] in which the brake builds up
+STOPS_EARLY = 0.4  # distance [m] before it at which a plan's wanted speed is 0; plans lag behind
 
 
 class RuleSet:
@@ -190,7 +193,8 @@ class RuleSet:
             stop, cause, latest, cap, advice, ahead, lane_speeds = demand
             if stop < self.stop:
                 self.stop, self.cause = stop, cause
-                self.latest = min(self.latest, stop + BEYOND)
+                firm = station + speed * (_BUILD_UP + speed / (2.0 * FIRM)) - stop
+                self.latest = min(self.latest, stop + min(max(firm, BEYOND[0]), BEYOND[1]))
             if cause == LIGHT:
                 situation.stop_at_light = stop
             if latest < self.latest:

@@ -83,6 +83,13 @@ def stop(place: PathJunction, front: float, speed: float, *others: Approach, **m
     return Drive(place).stop(front, speed, *others, **more)
 
 
+def test_it_waits_at_the_stop_line_that_the_network_sets() -> None:
+    place = junction()._replace(offset=6.0)
+    assert stop(place, ENTRY - 20.0, 5.0, other(20.0)) == LINE - 6.0
+    past = ENTRY - 5.0  # over the stop line, but not yet in the junction
+    assert stop(place, past, 3.0, other(20.0)) == LINE
+
+
 def test_it_knows_who_is_led_past_it() -> None:
     past, across = 2, junction()
     place = junction(beside=frozenset({past}))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from support.situations import NOBODY
 
+from controller.driving_constants import FIRM
 from giveway.config.tables.rules import RulesConfig
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.plug_ins.conformance import made_up_route
@@ -74,8 +75,12 @@ def test_of_equal_stops_the_first_rule_gives_the_cause() -> None:
     assert asked(Demand(40.0, "stop"), Demand(40.0, "yield")).cause == "stop"
 
 
-def test_a_plan_may_lead_half_a_metre_beyond_a_stop() -> None:
-    assert asked(Demand(40.0, "yield")).latest == 40.0 + BEYOND
+def test_a_plan_leads_hardly_beyond_a_stop_unless_it_is_late() -> None:
+    usual, late = BEYOND
+    firm = 10.0 + 0.2 * 8.0 + 8.0**2 / (2.0 * FIRM)  # where firm braking from 8 m/s stops
+    assert asked(Demand(40.0, "yield")).latest == 40.0 + usual
+    assert asked(Demand(firm - 0.3, "yield")).latest == pytest.approx(firm)
+    assert asked(Demand(15.0, "yield")).latest == 15.0 + late
 
 
 def test_lane_speeds_are_the_lowest_of_each_step() -> None:

@@ -86,9 +86,11 @@ def test_a_stop_line_is_where_the_network_says(lit: Path) -> None:
         length = lanes.length("A0A1_0")
         (light,) = lanes.along(edges, 0).lights
         (bicycle,) = lanes.along(edges, 0, kind="bicycle").lights
+        (passage,) = lanes.along(edges, 0).passages
         lines = {line.ends for line in stop_lines(lanes)}
         end = lanes.shape("A0A1_0")[-1][1]
     assert light.station == pytest.approx(length - 6.0)
     assert bicycle.station == pytest.approx(length)
+    assert passage.entry - passage.offset == pytest.approx(light.station)
     assert len(lines) == 8
     assert min(abs(one[1] - (end - 6.0)) for one, _ in lines) < 0.02
