@@ -11,17 +11,15 @@ import numpy as np
 from giveway.config import RunConfig
 from giveway.config.tables.recorded import RECORDED
 from giveway.errors import MetricError
-from giveway.metrics.delays import DELAY_SUMMARY_FIELDS
-from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.ego_fields import EGO_FIELDS
 from giveway.metrics.pedestrians import WALK_SUMMARY_FIELDS
 from giveway.metrics.recorded_people import RecordedPeopleMetric
-from giveway.metrics.summary import SUMMARY_FIELDS
 from giveway.plug_ins.faults import blamed, described, shown
 from giveway.plug_ins.finding import load_class
 from giveway.plug_ins.sockets import METRIC
 from giveway.run_data.columns import SUMMARY_HEAD, Column, columns_of
 
-_OURS = (*SUMMARY_HEAD, *SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS, *WALK_SUMMARY_FIELDS)
+_OURS = (*SUMMARY_HEAD, *EGO_FIELDS, *WALK_SUMMARY_FIELDS)
 _TAKEN = {"run": "giveway", "cell": "giveway"} | {column.name: "giveway" for column in _OURS}
 """Owner of each column that the tables of runs and studies already have."""
 _EXPECTED = {

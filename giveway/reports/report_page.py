@@ -16,8 +16,7 @@ from markupsafe import Markup
 from giveway.config.files.layers import options
 from giveway.errors import ResultsError
 from giveway.figures.style import house_style, save_figure
-from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
-from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.ego_fields import EGO_FIELDS
 from giveway.reports import findings_in_words as findings
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
@@ -30,7 +29,6 @@ from giveway.reports.tables.published import published_frame, published_table
 from giveway.reports.wording import pretty_unit
 from giveway.studies.folder.study_folder import StudyFolder
 
-_MEANINGS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 REPORT = "report.html"
 FIGURES = "figures"
 _FORMATS = (".png", ".svg")
@@ -253,7 +251,7 @@ def _execution(study: StudyFolder) -> dict[str, str]:
 
 
 def _glossary(study: StudyFolder) -> list[dict[str, str]]:
-    meanings = {field.name: field.description for field in (*_MEANINGS, *study.measured)}
+    meanings = {field.name: field.description for field in (*EGO_FIELDS, *study.measured)}
     return [
         {
             "name": metric.name,

@@ -30,6 +30,7 @@ from giveway.metrics.baseline import summarise_baseline
 from giveway.metrics.law import Drive, Ledger, Undisturbed, ledger
 from giveway.metrics.pedestrians import pedestrian_columns, table_of
 from giveway.metrics.plugged_in import NOTHING_MEASURED, Measured
+from giveway.metrics.travel import SignalDelay, signal_delays, summarise_travel
 from giveway.results.effect import Effect
 from giveway.results.law import LawRows, others_of, people_from
 from giveway.run_data.outputs import Output
@@ -149,6 +150,18 @@ class EgoResult:
             return None
         return ledger(self.drive, self.vehicle_contacts)
 
+    @cached_property
+    def signal_delays(self) -> tuple[SignalDelay, ...]:
+        """The delay at each traffic light that it passed."""
+        return () if self.drive is None else signal_delays(self.drive, self._fastest)
+
+    @property
+    def _fastest(self) -> float:
+        """The highest speed [m/s] at which it would drive on a free road."""
+        wanted = self.config.reference_speed
+        fastest = self.config.vehicle.speed_max
+        return fastest if wanted == LANE else min(float(wanted), fastest)
+
     @property
     def _undisturbed(self) -> Undisturbed | None:
         """Return the people of the counterfactual run, with their indices in the run's crowd."""
@@ -201,6 +214,8 @@ class EgoResult:
         row = asdict(figures)
         if self.ledger is not None:
             row |= asdict(self.ledger.summary)
+        if self.law is not None and self.drive is not None:
+            row |= asdict(summarise_travel(self.drive, self.signal_delays, self._fastest))
         if self.effect is not None:
             row |= asdict(self.effect.summary(self.id))
         if self.plain is not None:

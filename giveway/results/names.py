@@ -15,6 +15,7 @@ TABLES = (
     "ledger",
     "people",
     "signals",
+    "signal_delays",
     "measures",
 )
 """All tables that a run can have; its ``schemas`` list the tables that it has."""

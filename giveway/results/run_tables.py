@@ -23,6 +23,7 @@ from giveway.metrics import (
 )
 from giveway.metrics.baseline import BASELINE_FIELDS
 from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.travel import SIGNAL_DELAY_FIELDS, TRAVEL_FIELDS
 from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
 from giveway.results.law import (
@@ -196,6 +197,14 @@ class RunTables:
         return signal_table(self.signal_track)
 
     @cached_property
+    def signal_delays(self) -> "pd.DataFrame":
+        """The table with one row per ego and traffic light that it passed."""
+        import pandas as pd
+
+        rows = [{"ego": ego.id} | asdict(one) for ego in self.egos for one in ego.signal_delays]
+        return pd.DataFrame(rows, columns=[column.name for column in SIGNAL_DELAY_COLUMNS])
+
+    @cached_property
     def people(self) -> "pd.DataFrame":
         """The table of planned routes and desired speeds of people."""
         return people_table(self.time, self.people_track, self.crowd_track.ids)
@@ -274,7 +283,7 @@ class RunTables:
         optional = {"predictions": PREDICTION_COLUMNS} if predicted else {}
         summary: tuple[Column, ...] = (*SUMMARY_HEAD, *SUMMARY_FIELDS)
         if any(ego.law is not None for ego in self.egos):
-            summary = (*summary, *LAW_FIELDS)
+            summary = (*summary, *LAW_FIELDS, *TRAVEL_FIELDS)
             optional |= {"ledger": LEDGER_COLUMNS, "people": PEOPLE_COLUMNS}
         if self.walks is not None:
             summary = (*SUMMARY_HEAD, *WALK_SUMMARY_FIELDS)
@@ -288,6 +297,8 @@ class RunTables:
         outputs = {output.name: output.column for ego in self.egos for output in ego.outputs}
         if len(self.signal_track.time):
             optional |= {"signals": SIGNAL_COLUMNS}
+        if any(ego.signal_delays for ego in self.egos):
+            optional |= {"signal_delays": SIGNAL_DELAY_COLUMNS}
         if self.config.measure:
             optional |= {"measures": MEASURE_COLUMNS}
         return {
@@ -300,8 +311,10 @@ class RunTables:
         }
 
 
+_EGO = Column("ego", "string", None, "SUMO id of the ego that the row is about")
+SIGNAL_DELAY_COLUMNS = (_EGO, *SIGNAL_DELAY_FIELDS)
 PEDESTRIAN_TABLE = (
-    Column("ego", "string", None, "SUMO id of the ego that the row is about"),
+    _EGO,
     *PEDESTRIAN_FIELDS,
     *SEVERITY_FIELDS,
 )

@@ -9,8 +9,7 @@ from typing import Any
 from giveway.config.files.layers import PLUGGED, Layer, merge, options, results_of
 from giveway.config.renamed import RENAMED, advice
 from giveway.errors import ConfigError, suggestion
-from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
-from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.ego_fields import EGO_FIELDS
 from giveway.plug_ins.sockets import TABLES
 from giveway.studies.definition import StudyDefinition
 from giveway.studies.table_columns import (
@@ -27,9 +26,7 @@ _RESERVED = frozenset(
 ) | {
     column.name
     for columns in (
-        SUMMARY_FIELDS,
-        LAW_FIELDS,
-        DELAY_SUMMARY_FIELDS,
+        EGO_FIELDS,
         COMPARISON_COLUMNS,
         LEVEL_COLUMNS,
         FRONT_COLUMNS,

@@ -11,6 +11,7 @@ from giveway.api import run_checked, simulate
 from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
 from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.travel import TRAVEL_FIELDS
 from giveway.processes.heartbeat import Phase, Pulse
 from giveway.processes.supervisor import Verdict
 from giveway.recovery import recover
@@ -70,7 +71,8 @@ def test_every_table_is_there_and_described(made) -> None:
     described = {resource["name"] for resource in package["resources"]}
     assert {"ledger", "people"} <= described
     summary = pd.read_csv(results / "summary.csv")
-    assert list(summary.columns)[-len(LAW_FIELDS) :] == [column.name for column in LAW_FIELDS]
+    of_law = [column.name for column in (*LAW_FIELDS, *TRAVEL_FIELDS)]
+    assert list(summary.columns)[-len(of_law) :] == of_law
     walkers = set(pd.read_csv(results / "people.csv")["id"])
     seen = pd.read_csv(results / "trajectories.csv")
     assert walkers == set(seen.loc[seen["type"] == "pedestrian", "id"])

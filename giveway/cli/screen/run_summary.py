@@ -41,6 +41,11 @@ _OF_THE_LAW = (  # Metrics that are shown if traffic law applies on an ego's rou
     ("Junctions blocked", "blocked_junctions", ""),
     ("Stops without a cause", "stops_without_cause", ""),
     ("Farthest that somebody was pushed back", "pushed_back", "m"),
+    ("Delay against free flow", "free_flow_delay", "s"),
+    ("Stops per km", "stops_per_km", ""),
+    ("Traffic lights passed", "signals_passed", ""),
+    ("Control delay, on average", "control_delay", "s"),
+    ("of this level of service", "level_of_service", ""),
 )
 _OF_THE_PEOPLE = (  # metrics that are shown if there is a counterfactual run
     ("People's delay, all together", "people_delay", "s"),
@@ -113,7 +118,7 @@ def _shown(result: RunResult) -> Iterator[tuple[str, str, str]]:
     judged = [ego.summary for ego in result.egos if ego.ledger is not None]
     for label, name, unit in _OF_THE_LAW:
         always = name in {"encounters", "yielding_rate"}
-        if any(always or summary[name] > 0.0 for summary in judged):
+        if any(always or _is_worth_showing(summary[name]) for summary in judged):
             yield label, name, unit
     for own in (column for ego in result.egos[:1] for column in ego.measured.columns):
         yield own.name + (f" ({own.unit})" if own.unit else ""), own.name, ""
@@ -149,7 +154,13 @@ def _counts(result: RunResult) -> list[tuple[str, str]]:
     return lines
 
 
-def _formatted(value: float | None, unit: str) -> tuple[str, str]:
+def _is_worth_showing(value: float | str) -> bool:
+    return bool(value) if isinstance(value, str) else value > 0.0
+
+
+def _formatted(value: float | str | None, unit: str) -> tuple[str, str]:
+    if isinstance(value, str):
+        return value, unit
     if value is None or not math.isfinite(value):
         return "-", ""
     if isinstance(value, int):

@@ -6,8 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
-from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.ego_fields import EGO_FIELDS
 from giveway.run_data.columns import Column
 from giveway.studies.design import Cell, Design, Level
 from giveway.studies.record import CRASHED, RunRecord, run_id
@@ -21,7 +20,6 @@ _EGO = (
     Column("ego", "string", None, "SUMO id of the ego; empty without one"),
     Column("ending", "string", None, "why it ended; failed and crashed runs have no numbers"),
 )
-_NUMBERS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 EXECUTION_COLUMNS = (
     Column("run", "string", None, "id of the run"),
     Column("seconds", "number", "s", "wall clock of the run: set-up, loop, metrics"),
@@ -59,7 +57,7 @@ def runs_columns(design: Design, measured: Iterable[Column] = ()) -> tuple[Colum
         Column(f.name, _type_of(f.levels), f.unit, f"level of the factor {f.name}")
         for f in design.factors
     )
-    return (*_HEAD, *factors, *_EGO, *_NUMBERS, *measured)
+    return (*_HEAD, *factors, *_EGO, *EGO_FIELDS, *measured)
 
 
 def measured_columns(records: Iterable[RunRecord]) -> tuple[Column, ...]:
@@ -85,7 +83,7 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
     """
     records = list(records)
     measured = measured_columns(record for _, _, record in records)
-    numbers = [column.name for column in (*_NUMBERS, *measured)]
+    numbers = [column.name for column in (*EGO_FIELDS, *measured)]
     rows: list[dict[str, Any]] = []
     for cell, seed, record in records:
         head = {"run": run_id(cell.number, seed), "cell": cell.number, "seed": seed}

@@ -4,8 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from giveway.errors import ConfigError, suggestion
-from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
-from giveway.metrics.law import LAW_FIELDS
+from giveway.metrics.ego_fields import EGO_FIELDS
 from giveway.run_data.columns import Column, Direction
 
 
@@ -26,10 +25,7 @@ class Metric:
     label: str
 
 
-_UNITS = {
-    column.name: column.unit or ""
-    for column in (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
-}
+_UNITS = {column.name: column.unit or "" for column in EGO_FIELDS}
 
 
 def _lower(name: str, label: str) -> Metric:
