@@ -56,6 +56,8 @@ _STAYS = 3.0  # time [s] after which a vehicle that stands without need is assum
 _BOXED_IN = 1.0  # time [s] after which this is assumed of a vehicle without room to go on
 _CLOSE = 3.0  # gap [m] to a standing vehicle ahead, below which a vehicle has no room to go on
 _BRIEFLY = 1.0  # time [s] whose driving distance is added to this gap for a moving vehicle
+# Wait [s] at the line in which the accepted headway falls to the follow-up headway; own choice
+_IMPATIENT = 30.0
 _AT_LINE = 4.0  # distance [m] before the line, within which a vehicle stands at it
 _DECIDED = 10.0  # distance [m] before the line, within which the ego keeps its decision to go
 # Letters of movements that yield to no vehicle: priority, and zippers (see the rule Merging)
@@ -225,6 +227,8 @@ class RightOfWay:
         if first and before and letter not in "GMyY" and self._time - self._followed < follow_up:
             return line
         margin = SAFE_TIME
+        if first and critical > follow_up:
+            critical -= (critical - follow_up) * min(1.0, self._stood / _IMPATIENT)
         if first and self._going:
             critical, margin = 0.0, _GOING
         stop, stay = math.inf, set[str]()

@@ -83,6 +83,15 @@ def stop(place: PathJunction, front: float, speed: float, *others: Approach, **m
     return Drive(place).stop(front, speed, *others, **more)
 
 
+def test_the_longer_it_waits_the_shorter_a_headway_it_accepts() -> None:
+    drive, gap = Drive(junction()), MINOR_STRAIGHT
+    near, middle = other(10.0 * (gap.follow_up - 1.0)), other(10.0 * gap.critical + 3.0)
+    assert drive.stop(LINE, 0.0, middle) < math.inf
+    for _ in range(40):
+        assert drive.stop(LINE, 0.0, near, after=1.0) < math.inf  # never shorter than the follow-up
+    assert drive.stop(LINE, 0.0, middle) == math.inf
+
+
 def test_it_waits_at_the_stop_line_that_the_network_sets() -> None:
     place = junction()._replace(offset=6.0)
     assert stop(place, ENTRY - 20.0, 5.0, other(20.0)) == LINE - 6.0
