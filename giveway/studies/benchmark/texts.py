@@ -4,6 +4,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
+import pandas as pd
+
 
 class Notation(NamedTuple):
     """The characters between numbers, and those in place of a number that is not there."""
@@ -70,6 +72,7 @@ def bounded(
     return text if low == missing else f"{text} [{low}, {high}]"
 
 
-def number(value: float, digits: int, missing: str = TERMINAL.missing) -> str:
-    """Return a number with so many digits behind the point, or ``missing`` if it is not finite."""
-    return f"{value:.{digits}f}" if math.isfinite(value) else missing
+def number(value: float | None, digits: int, missing: str = TERMINAL.missing) -> str:
+    """Return a number with so many digits behind the point, or ``missing`` if there is none."""
+    known = value is not None and not pd.isna(value) and math.isfinite(value)
+    return f"{value:.{digits}f}" if known else missing

@@ -28,3 +28,6 @@ def test_what_is_not_known_of_recorded_drivers_is_a_dash():
     assert told[0] == "3.9 [0.0, 9.1]"
     assert told[3] == "–"
     assert texts(recorded, Notation(missing="-"))[3] == "-"
+    beside_counts = recorded.astype(object)
+    beside_counts[["frontal_contacts", "side_contacts"]] = None  # as whole numbers beside others
+    assert texts(beside_counts) == told
