@@ -144,6 +144,8 @@ class Look:
         self.links: dict[tuple[str, str], tuple[str, int]] = {}  # from lane to lane
 
     def __call__(self, progress: Progress) -> None:
+        if progress.doing:  # SUMO does not run in this process then
+            return
         now = libsumo.simulation.getTime()
         if abs(now - progress.clock) > 1e-6 or (self.times and now <= self.times[-1]):
             return
@@ -257,6 +259,7 @@ def drive() -> Callable[..., tuple[RunResult, Look]]:
         key = repr((scenario, sorted(config.items())))
         if key not in done:
             look = Look()
+            config["sumo"] = {"baseline": False, **config.get("sumo", {})}
             result = giveway.run({"scenario": str(scenario), **config}, watcher=look)
             done[key] = result, look
         return done[key]
