@@ -8,9 +8,10 @@ from giveway.config.tables.basics import DEFAULT_SPEED
 from giveway.cosimulation.assembly import Parts, start_options, types_of
 from giveway.cosimulation.entry.stop_places import SERVING
 from giveway.cosimulation.preflight import CheckedRun
+from giveway.errors import GivewayError
 from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.results.run_result import RunResult
-from giveway.sumo.plain_drive import Trip, plain_drives
+from giveway.sumo.plain_drive import PlainDrives, Trip, plain_drives
 from giveway.sumo.types import ROAD_CLASSES, inserted_type
 
 # Wall-clock limit [s] of SUMO's drives, and its share of the time that the run took
@@ -40,7 +41,10 @@ def with_baseline(
     egos, remarks = [], list(result.remarks)
     for ego in result.egos:
         trip = _trip(ego.config, parts.departures.times.get(ego.id, 0.0))
-        found = plain_drives(checked.files, options, trip, types, patience=patience)
+        try:
+            found = plain_drives(checked.files, options, trip, types, patience=patience)
+        except (GivewayError, OSError):  # a file has gone, or the disk is full
+            found = PlainDrives(None, None)
         egos.append(replace(ego, plain=found))
         name = f"ego '{ego.id}': SUMO's own drive of this trip"
         teleported = [one.teleported for one in found if one and one.teleported > 0.0]

@@ -46,6 +46,11 @@ class Times(NamedTuple):
     ego: float
     sumo: float
 
+    @property
+    def ratio(self) -> float:
+        """The ego's time over SUMO's."""
+        return self.ego / self.sumo if self.sumo > 0.0 else nan
+
 
 def summarise_baseline(ego: EgoTrack, goal: float, plain: PlainDrives) -> BaselineSummary:
     """Return the travel times of SUMO's drivers, and the ego's over them.
@@ -56,9 +61,7 @@ def summarise_baseline(ego: EgoTrack, goal: float, plain: PlainDrives) -> Baseli
         plain: Drives of plain SUMO.
     """
     as_is, at_limit = (times(ego, goal, drive) for drive in plain)
-    return BaselineSummary(
-        as_is.sumo, as_is.ego / as_is.sumo, at_limit.sumo, at_limit.ego / at_limit.sumo
-    )
+    return BaselineSummary(as_is.sumo, as_is.ratio, at_limit.sumo, at_limit.ratio)
 
 
 def times(ego: EgoTrack, goal: float, plain: PlainDrive | None) -> Times:

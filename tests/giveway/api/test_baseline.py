@@ -44,9 +44,14 @@ def test_a_scenario_without_traffic_has_no_such_time() -> None:
     assert "sumo_time" not in giveway.run({"time_limit": 0.5}).summary
 
 
-def test_a_drive_that_does_not_come_about_is_told(monkeypatch) -> None:
-    nothing = PlainDrives(None, None)
-    monkeypatch.setattr(baseline, "plain_drives", lambda *_, **__: nothing)
+@pytest.mark.parametrize("fault", [None, OSError("disk full"), giveway.GivewayError("gone")])
+def test_a_drive_that_does_not_come_about_is_told(monkeypatch, fault) -> None:
+    def fails(*_: object, **__: object) -> PlainDrives:
+        if fault is not None:
+            raise fault
+        return PlainDrives(None, None)
+
+    monkeypatch.setattr(baseline, "plain_drives", fails)
     result = giveway.run(CAR | {"time_limit": 0.5})
     assert math.isnan(result.summary["sumo_time"])
     (remark,) = (text for text in result.remarks if "SUMO's own drive" in text)

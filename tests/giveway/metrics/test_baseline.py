@@ -58,6 +58,15 @@ def test_an_ego_that_is_taken_over_late_is_timed_from_there() -> None:
     assert sumo == pytest.approx(LENGTH / 4.0 - 3.0, abs=1e-6)
 
 
+def test_a_drive_of_one_row_has_no_ratio() -> None:
+    at_once = plain(4.0, LENGTH)._replace(
+        **{name: getattr(plain(4.0, LENGTH), name)[-1:] for name in PlainDrive._fields[:6]}
+    )
+    found = times(EGO, LENGTH, at_once._replace(time=EGO.time[:1]))
+    assert found.sumo <= 0.0
+    assert isnan(found.ratio)
+
+
 def test_the_summary_has_both_drivers() -> None:
     found = summarise_baseline(EGO, LENGTH, PlainDrives(plain(4.0, LENGTH), None))
     assert found.sumo_time == pytest.approx(LENGTH / 4.0, abs=1e-6)
