@@ -132,45 +132,51 @@ MEASURES = (
 )
 
 
-def tables(rows: Sequence[Row], *, brief: bool = False) -> str:
+def tables(rows: Sequence[Row], before: Sequence[Row] = (), *, brief: bool = False) -> str:
     """Return the tables: all drives, what went wrong in them, and the pooled numbers.
 
     Args:
         rows: Kept rows of the drives.
+        before: Rows of the same drives in another state of the repository, or none.
         brief: True to return the pooled numbers only.
     """
     sound = [row for row in rows if "failed" not in row]
     died = [f"{row['drive']}: died: {row['failed']}" for row in rows if "failed" in row]
+    numbers = pooled(sound, len(died), [row for row in before if "failed" not in row])
     if brief:
-        return pooled(sound, len(died))
+        return numbers
     parts = [_drives(sound), "\n".join([*died, *(line for row in sound for line in _said(row))])]
-    return "\n\n".join([*parts, pooled(sound, len(died))])
+    return "\n\n".join([*parts, numbers])
 
 
-def pooled(rows: Sequence[Row], died: int = 0) -> str:
+def pooled(rows: Sequence[Row], died: int = 0, before: Sequence[Row] = ()) -> str:
     """Return the pooled numbers with 95 % intervals, over resampled drives, beside their bars.
 
     Args:
         rows: Rows of the drives that did not die.
         died: Number of the drives that died.
+        before: Rows of the same drives in another state of the repository, for a column of values.
     """
     alone = [row for row in rows if not row["person_near"]]
+    earlier = [row for row in before if not row["person_near"]], before
     driven = sum(row["distance"] for row in rows) / 1000.0
     lines = [
         f"{len(rows)} drives, {driven:.1f} km, {len(alone)} with nobody near; {died} died; "
         f"{sum(row['sumo_teleported'] for row in rows)} whose car SUMO teleports",
         "",
-        "| | value | 95 % | bar | |",
-        "|---|---|---|---|---|",
+        "| | value | 95 % | bar | |" + " before |" * bool(before),
+        "|---|---|---|---|---|" + "---|" * bool(before),
     ]
     for measure in MEASURES:
         chosen = alone if measure.without_people else rows
         value = measure.of(chosen)
         low, high = _interval(measure, chosen)
         words = f"{value:.2f}" if isfinite(value) else "-"
+        then = measure.of(earlier[not measure.without_people])
         between = f"{low:.2f} to {high:.2f}" if isfinite(low) else "-"
         lines.append(
             f"| {measure.name} | {words} | {between} | {measure.bar} | {measure.verdict(value)} |"
+            + f" {then:.2f} |" * bool(before)
         )
     return "\n".join(lines)
 

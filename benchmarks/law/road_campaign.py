@@ -15,7 +15,8 @@ One line of ``FOLDER/drives.jsonl`` per drive; a drive that is done is not done 
 campaign can be ended at any time, and another state of the repository needs another folder. Each
 drive is a process of its own: one that dies has a row with the cause. The end prints all drives,
 each violation, and the pooled numbers with 95 % intervals beside the bars of a good driver.
-``--table`` prints that without driving. Drawn networks need netgenerate: pip install
+``--table`` prints that without driving, and ``--beside FOLDER`` the values of the same drives in
+another state of the repository. Drawn networks need netgenerate: pip install
 'giveway[build]'.
 """
 
@@ -260,6 +261,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the results")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--table", action="store_true", help="drive nothing, print all rows")
+    parser.add_argument("--beside", type=Path, help="results of another state, to compare with")
     parser.add_argument("--brief", action="store_true", help="print only the pooled numbers")
     options = parser.parse_args()
     options.out = options.out.absolute()
@@ -273,7 +275,9 @@ def main() -> None:
         drive_all([one for one in drives if one.name not in known], results, options.jobs)
         made = read(results)
         known = {one.name: made[one.name] for one in drives}
-    print(tables(list(known.values()), brief=options.brief))
+    before = read(options.beside / "drives.jsonl") if options.beside else {}
+    earlier = [before[name] for name in known if name in before]
+    print(tables(list(known.values()), earlier, brief=options.brief))
 
 
 if __name__ == "__main__":

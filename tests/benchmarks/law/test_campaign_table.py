@@ -94,5 +94,14 @@ def test_each_event_is_told_and_each_death() -> None:
     assert "1 drives, 0.5 km, 1 with nobody near; 1 died" in text
 
 
+def test_another_state_of_the_repository_stands_beside_it() -> None:
+    slower = [ROW | {"ratio": 1.2, "rms_jerk": 2.0}, {"drive": "x", "failed": "SIGSEGV"}]
+    lines = tables([ROW], slower, brief=True).splitlines()
+    (time,) = (line for line in lines if line.startswith("| time over SUMO's, highest |"))
+    assert time.split("|")[-2].strip() == "1.20"
+    (jerk,) = (line for line in lines if line.startswith("| RMS jerk"))
+    assert [cell.strip() for cell in jerk.split("|")][2::4] == ["0.90", "2.00"]
+
+
 def test_without_any_drive_there_are_no_numbers() -> None:
     assert pooled([]).count("| - |") >= len(MEASURES) // 2
