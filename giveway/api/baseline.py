@@ -23,8 +23,6 @@ def with_baseline(
 ) -> RunResult:
     """Return the result with the drives of plain SUMO.
 
-    Nothing is added if the scenario holds nothing but the ego: SUMO would drive on a free road.
-
     Args:
         result: Result of the run.
         checked: Checked configuration of the run.
@@ -32,8 +30,6 @@ def with_baseline(
         heartbeat: Heartbeat that shows this phase.
         since: Time [s] of ``perf_counter`` at which the run began.
     """
-    if parts.secluded or not result.egos:
-        return result
     heartbeat.beat(Phase.MEASURING)
     options, types = start_options(checked.config, False, None), types_of(checked.egos)
     least, share = _PATIENCE

@@ -90,7 +90,8 @@ def simulate(
             twin, error = _guarded(make, checked.scenario)
         result = with_twin(result, followed, twin, error, began + elapsed)
     asked = checked.config.sumo.baseline
-    if whole and (baseline if asked is None else asked):
+    asked = baseline if asked is None else asked
+    if whole and asked and result.egos and not parts.secluded:  # there, the road is free
         _tell(watcher, "SUMO's own driver makes the same trip")
         result = with_baseline(result, checked, parts, heartbeat, began)
     return judged(result, heartbeat)

@@ -4,9 +4,9 @@ from giveway.config import RunConfig
 
 
 def test_outputs_and_options_reach_sumo() -> None:
-    from giveway.cosimulation.assembly import _start_options
+    from giveway.cosimulation.assembly import start_options
 
     config = RunConfig.model_validate({"sumo": {"outputs": "fcd,ssm", "options": "--end 54012.35"}})
-    started = _start_options(config, True, None)
+    started = start_options(config, True, None)
     assert started.written == ("fcd", "ssm")
     assert started.extra == ("--end", "54012.35")
