@@ -22,7 +22,8 @@ def run_once() -> Callable[..., RunResult]:
         if key not in results:
             import giveway
 
-            results[key] = giveway.run(config)
+            # SUMO's own drive is looked at by tests of its own
+            results[key] = giveway.run({"sumo.baseline": False} | config)
         return results[key]
 
     return run
