@@ -56,7 +56,7 @@ class CornerCase(Sound):
 
 class Slow(Sound):
     def demand(self, situation: Situation) -> Demand | None:
-        sum(range(2_000_000))
+        sum(range(800_000))
         return None
 
 
