@@ -1,4 +1,4 @@
-"""What a stranger sees: how many of the seeds 1 to 20 of a first run look alarming, and why.
+"""Counts the first runs, of the seeds 1 to 20, that look alarming to a stranger, and says why.
 
 Run: python benchmarks/bounds/first_runs.py [--seeds 20] [--controller mpc]
 

@@ -37,7 +37,7 @@ def means(*columns: Column) -> Maker:
 
 
 def printed(file: Path) -> list[str]:
-    """What a command printed, as Markdown."""
+    """Return what a command printed, as Markdown."""
     return _paragraphs(file.read_text(encoding="utf-8").rstrip("\n").split("\n"))
 
 

@@ -114,7 +114,8 @@ class Safeguards:
             least = self._entry.least_force(front, speed, seen.stop, people)
             if least is not None and decision.force < least:
                 gentle = asked._replace(force=least, reason="has just entered")
-                decision = min(followed, gentle, key=lambda one: one.force)
+                harder = followed if seen.followed is not None else gentle  # for a vehicle ahead
+                decision = min(harder, gentle, key=lambda one: one.force)
                 if self._people is not None:
                     self._people.applied(decision.force)
         if vehicles is not None:

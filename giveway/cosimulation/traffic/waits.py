@@ -1,4 +1,4 @@
-"""How long background vehicles wait inside a junction for people who stand there as well.
+"""Measures how long background vehicles wait in a junction for people who stand there as well.
 
 A vehicle that stops across a crossing blocks the way of the people for whom it waits, and they
 would stand before each other for ever. After a time it is *stuck*, and creeps.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from controller.kernels import Weights, add_cost_of_others, later_cost, own_cost
 from giveway.ego.foresight.assessment import View, assess_step, interval_of
-from giveway.ego.foresight.intent import keep_on, step_yielding
+from giveway.ego.foresight.expected_motions import keep_on, step_yielding
 from giveway.ego.foresight.later_crossings import fill_later_crossings
 from giveway.ego.foresight.threats import Alarm
 from giveway.ego.foresight.workspace import Arrays

@@ -12,7 +12,8 @@ from controller.kernels import Batches, SearchResult, Trials
 from giveway.ego.foresight.assessment import View, assess
 from giveway.ego.foresight.branch_and_bound import branch_and_bound
 from giveway.ego.foresight.contingency import BRANCHES, hedged
-from giveway.ego.foresight.intent import AlternativeHypothesis, IntentEstimator, Yielding
+from giveway.ego.foresight.expected_motions import Yielding
+from giveway.ego.foresight.intent import AlternativeHypothesis, IntentEstimator
 from giveway.ego.foresight.later_crossings import fill_later_crossings
 from giveway.ego.foresight.threats import ALL_SEE, Alarm
 from giveway.ego.foresight.workspace import Workspace

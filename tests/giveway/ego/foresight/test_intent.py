@@ -8,7 +8,8 @@ import pytest
 from controller import LongitudinalModel, Planner, PlannerParameters
 from controller.planning import Road
 from giveway.ego.foresight.crowd_foresight import CrowdForesight, EgoAssumptions, plan_predictor
-from giveway.ego.foresight.intent import KEEPS_ON, STOPS, WALKS, IntentEstimator, shifted
+from giveway.ego.foresight.expected_motions import KEEPS_ON, STOPS, WALKS
+from giveway.ego.foresight.intent import IntentEstimator, shifted
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
