@@ -6,6 +6,8 @@ front of it. For its first seconds an ego therefore brakes no harder than firmly
 could do, and harder only if a person is about to be hit, or for a vehicle or a stop.
 """
 
+import numpy as np
+
 from controller import Decision
 from controller.driving_constants import AT_REST, FIRM
 from giveway.config import EgoRunConfig
@@ -15,7 +17,6 @@ from giveway.ego.rules.yielding import needed_braking
 from giveway.ego.safety_layer import EgoSafetyLayer, vehicle_layer_of
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
-from pedestrian_model import Crowd
 
 ENTRY = 2.0  # time [s] after which the entry is over
 _LOOK = 0.25  # spacing [s] of the instants at which a person could be hit
@@ -35,28 +36,37 @@ class GentleEntry:
         self._vehicle, self._corridor = config.vehicle, corridor
         self._left, self._time_step = ENTRY, time_step
 
-    def least_force(self, front: float, speed: float, stop: float, people: Crowd) -> float | None:
+    def least_force(self, front: float, speed: float, seen: Perceived) -> float | None:
         """Return the least force [N] that this step may have, or None if it has no limit.
 
         Args:
             front: Station of the front bumper [m].
             speed: Speed of the ego [m/s].
-            stop: Station [m] at which the front bumper has to stop; inf if it need not stop.
-            people: Pedestrians as the ego perceives them.
+            seen: World as the ego perceives it, and what the rules of the road demand.
         """
         self._left -= self._time_step
-        if self._left < 0.0 or self._hits(front, speed, people):
+        if self._left < 0.0 or self._hits(front, speed, seen):
             return None
-        braking = max(FIRM, _SPARE * needed_braking(speed, stop - front))
+        braking = max(FIRM, _SPARE * needed_braking(speed, seen.stop - front))
         return self._vehicle.friction * speed - self._vehicle.mass * braking
 
-    def _hits(self, front: float, speed: float, people: Crowd) -> bool:
-        """Return whether a person who walks straight on is hit in spite of firm braking."""
+    def _hits(self, front: float, speed: float, seen: Perceived) -> bool:
+        """Return whether a person who walks straight on is hit in spite of firm braking.
+
+        Who walks on a sidewalk, rather along the kerb than towards it, stays there.
+        """
+        people, kerbs = seen.percept.people, seen.kerbs
+        velocity = people.velocity
+        if len(kerbs):
+            across = (velocity * kerbs[:, :2]).sum(axis=1)
+            along = velocity - across[:, None] * kerbs[:, :2]
+            stays = (kerbs[:, 2] > 0.0) & (across <= np.hypot(along[:, 0], along[:, 1]))
+            velocity = np.where(stays[:, None], along, velocity)
         time, stops = 0.0, speed / FIRM
         while len(people) and time <= stops + _LOOK:
             moves = min(time, stops)
             at = front + moves * (speed - 0.5 * FIRM * moves)
-            places = people.position + time * people.velocity
+            places = people.position + time * velocity
             station, _ = self._corridor.closest_now(places, front)
             if station <= at + AT_REST:
                 return True
@@ -111,7 +121,7 @@ class Safeguards:
             safe = self._people.overrule(decision, front, speed, people, bound, seen.kerbs)
             decision = decision if safe is None else safe
         if self._entry is not None:
-            least = self._entry.least_force(front, speed, seen.stop, people)
+            least = self._entry.least_force(front, speed, seen)
             if least is not None and decision.force < least:
                 gentle = asked._replace(force=least, reason="has just entered")
                 harder = followed if seen.followed is not None else gentle  # for a vehicle ahead

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import giveway
 from controller.driving_constants import FIRM
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.corridor import Corridor
+from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.ego.safeguards import ENTRY, GentleEntry
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
@@ -37,13 +39,20 @@ def entry() -> GentleEntry:
     return GentleEntry(CONFIG, corridor, STEP)
 
 
-def person(x: float, y: float, v_y: float = 0.0) -> Crowd:
-    return Crowd.create([(x, y)], [(0.0, v_y)], 1.4, [[(x, y)]])
+def person(x: float, y: float, v_y: float = 0.0, v_x: float = 0.0) -> Crowd:
+    return Crowd.create([(x, y)], [(v_x, v_y)], 1.4, [[(x, y)]])
 
 
-def braking(stop: float = inf, people: Crowd = NOBODY) -> float | None:
+def seen(stop: float = inf, people: Crowd = NOBODY, kerb: float = 0.0) -> Any:
+    """Return what the ego sees; people are ``kerb`` [m] from one that is to their right."""
+    kerbs = np.array([(0.0, -1.0, kerb)] * len(people)) if kerb else NO_KERBS
+    percept = SimpleNamespace(people=people)
+    return SimpleNamespace(stop=stop, percept=percept, kerbs=kerbs)
+
+
+def braking(**view: Any) -> float | None:
     """Return the hardest braking [m/s^2] of an ego at 10 m and 10 m/s, or None without a limit."""
-    force = entry().least_force(10.0, 10.0, stop, people)
+    force = entry().least_force(10.0, 10.0, seen(**view))
     vehicle = CONFIG.vehicle
     return None if force is None else -(force - vehicle.friction * 10.0) / vehicle.mass
 
@@ -56,6 +65,14 @@ def test_it_brakes_firmly_for_what_people_could_do(people: Crowd) -> None:
 @pytest.mark.parametrize("people", [person(25.0, 0.0), person(22.0, 3.0, -1.5)])
 def test_it_brakes_as_hard_as_it_can_for_who_is_about_to_be_hit(people: Crowd) -> None:
     assert braking(people=people) is None
+
+
+def test_who_walks_along_a_kerb_is_not_about_to_be_hit() -> None:
+    """Others there make them swerve towards the road for a moment."""
+    swerves, crosses = person(24.0, 2.0, -0.5, -1.3), person(22.0, 2.0, -1.0, 0.4)
+    assert braking(people=swerves) is None
+    assert braking(people=swerves, kerb=0.4) == pytest.approx(FIRM)
+    assert braking(people=crosses, kerb=0.4) is None
 
 
 def test_who_stands_behind_the_firm_stop_is_not_about_to_be_hit() -> None:
@@ -71,7 +88,7 @@ def test_it_brakes_harder_for_a_demanded_stop() -> None:
 def test_the_entry_is_over_after_its_time() -> None:
     one = entry()
     steps = round(ENTRY / STEP)
-    limits = [one.least_force(10.0, 10.0, inf, NOBODY) for _ in range(steps + 2)]
+    limits = [one.least_force(10.0, 10.0, seen()) for _ in range(steps + 2)]
     assert None not in limits[: steps - 1]
     assert limits[-1] is None
 
