@@ -21,6 +21,10 @@ PASSING_KERB: Final = 1.0, 30.0 / 3.6
 """Clearance [m] from which on people who do not head for the way are passed with at least this
 speed [m/s]: 30 km/h, the limit where people walk beside cars (WHO, Speed management, 2008)."""
 
+PASSING_SIDEWALK: Final = 1.5
+"""Clearance [m] from which on people on a sidewalk slow nobody down: the distance that the German
+road traffic regulations demand beside people on foot in towns (StVO 2020, section 5 (4))."""
+
 PASSING_TAIL: Final = 0.5, 1.5
 """Clearance [m] of people beside the rear half up to which this speed [m/s] is kept. People walk
 behind a car that has passed them: all close passes in DUT's roundabout clips are there."""

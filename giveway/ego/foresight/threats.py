@@ -9,6 +9,7 @@ from controller.driving_constants import (
     PASSING_FAR,
     PASSING_KERB,
     PASSING_NEAR,
+    PASSING_SIDEWALK,
     PASSING_TAIL,
     STANDING,
 )
@@ -95,7 +96,7 @@ def threat_free_and_passing(
         kept = j < alarm.kerbs.shape[0] and alarm.kerbs[j, 0] ** 2 + alarm.kerbs[j, 1] ** 2 > 0.0
         heads = not kept and (w_y * y < -_TOWARDS * abs(y) or abs(y) < half_width)
         passed = x < -half_length and w_x * w_x + w_y * w_y > _TOWARDS * _TOWARDS
-        passing = min(passing, passing_speed(clear, passed, heads))
+        passing = min(passing, passing_speed(clear, passed, heads, kept))
         if not alarm.heeded:
             continue
         if turn != 0.0:
@@ -124,14 +125,17 @@ def threat_free_and_passing(
 
 
 @inner
-def passing_speed(clearance: float, at_tail: bool, heads: bool) -> float:
+def passing_speed(clearance: float, at_tail: bool, heads: bool, kept: bool) -> float:
     """Return the speed [m/s] at which drivers pass a person at this clearance [m].
 
     Args:
         clearance: Distance [m] between the person's body and the ego's outline.
         at_tail: Whether the person is beside the rear half of the ego, or behind.
         heads: Whether the person heads for the ego's way.
+        kept: Whether the person is on a sidewalk, and not about to leave it.
     """
+    if kept and clearance >= PASSING_SIDEWALK:
+        return np.inf
     if at_tail:
         return PASSING_TAIL[1] if clearance < PASSING_TAIL[0] else np.inf
     speed = min(

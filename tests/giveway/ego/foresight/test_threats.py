@@ -28,7 +28,7 @@ from controller import (
     SafetyLayer,
     SafetyParameters,
 )
-from giveway.ego.foresight.threats import is_threat, outline
+from giveway.ego.foresight.threats import is_threat, outline, passing_speed
 from giveway.geometry.kernel import kernel
 
 is_threat = kernel(is_threat)
@@ -132,3 +132,11 @@ def test_a_person_for_whom_the_layer_would_act_is_a_threat(name):
             _, threat_free, _ = assessed(path, np.repeat(there[None], N, axis=0), m)
             assert threat_free[0] < 3.98, (ahead, aside)
     assert acted > 20
+
+
+def test_people_on_a_sidewalk_slow_down_only_who_passes_them_closely():
+    """From 1.5 m on nobody slows down for them, on streets with any limit."""
+    assert passing_speed(1.2, False, False, True) == pytest.approx(30.0 / 3.6)
+    assert passing_speed(1.6, False, False, True) == np.inf
+    assert passing_speed(1.6, False, False, False) == pytest.approx(30.0 / 3.6)
+    assert passing_speed(1.6, False, True, False) < 5.0
