@@ -8,6 +8,7 @@ from giveway.geometry.kernel import Array, inner, kernel
 NEAR = 10.0  # distance [m] from the path, within which kerbs matter
 LOOK, LOOKS = 0.5, 3  # spacing [s] and number of the instants ahead that are examined
 _DEEPEST = NEAR  # largest width [m] of a sidewalk
+_BEHIND = 2.0  # distance [m] behind a sidewalk, within which people count as on it; own choice
 _MOUTH = 1.5  # distance [m] to a crossing, within which people are about to enter it
 _ON_LINE = 0.05  # tolerance [m] of a point on a kerb's line
 _SETS_OUT = 0.6  # acceleration [m/s^2] of a person towards a kerb: a_k of docs/safety.md
@@ -35,7 +36,7 @@ def fill_kerbs(
     for p in range(position.shape[0]):
         x, y = position[p, 0], position[p, 1]
         closest = nearest_kerb = np.inf
-        inside, nearest, beside = False, -1, False
+        inside, nearest, beside, behind = False, -1, False, False
         to_x = to_y = 0.0
         for i in range(edges.shape[0]):
             x_0, y_0 = edges[i, 0], edges[i, 1]
@@ -50,7 +51,9 @@ def fill_kerbs(
             if is_kerb[i] and distance < nearest_kerb:
                 nearest_kerb, to_x, to_y = distance, d_x, d_y
                 nearest, beside = i, 0.0 < share < 1.0
-        if not inside or nearest_kerb > _DEEPEST or in_mouth(x, y, mouths):
+                behind = left and beside
+        on = inside or (behind and closest <= _BEHIND)
+        if not on or nearest_kerb > _DEEPEST or in_mouth(x, y, mouths):
             continue
         found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
         found[p, 2] = nearest_kerb

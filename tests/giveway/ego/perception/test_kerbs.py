@@ -30,8 +30,8 @@ def found_of(people, beside=None, front=15.0, velocity=None):
 
 
 def test_who_is_on_a_sidewalk_has_a_kerb():
-    people = np.array([[20.0, -2.25], [21.3, -4.5], [30.0, 5.5]])
-    expected = [[0.0, 1.0, 0.5], [0.0, 1.0, 2.75], [0.0, -1.0, 0.25]]
+    people = np.array([[20.0, -2.25], [21.3, -4.5], [30.0, 5.5], [40.0, -6.5]])
+    expected = [[0.0, 1.0, 0.5], [0.0, 1.0, 2.75], [0.0, -1.0, 0.25], [0.0, 1.0, 4.75]]
     assert found_of(people) == pytest.approx(np.array(expected))
 
 
@@ -40,7 +40,7 @@ def test_who_is_on_a_sidewalk_has_a_kerb():
     [
         ((20.0, -1.7), "on the road, by a step"),
         ((20.0, 0.0), "before the ego"),
-        ((20.0, -5.0), "behind the sidewalk"),
+        ((20.0, -6.8), "far behind the sidewalk"),
         ((60.0, -2.0), "about to use the zebra"),
         ((63.4, -2.0), "beside the zebra"),
         ((60.0, 1.0), "on the zebra"),
