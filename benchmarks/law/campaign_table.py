@@ -12,7 +12,7 @@ import numpy as np
 from drive_row import LOST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 RESAMPLES = 2000  # Number of bootstrap samples of an interval
 NONE_SEEN = 3.69  # Upper end of the 95 % interval of a Poisson count of 0 (Garwood 1936)
@@ -178,7 +178,24 @@ def pooled(rows: Sequence[Row], died: int = 0, before: Sequence[Row] = ()) -> st
             f"| {measure.name} | {words} | {between} | {measure.bar} | {measure.verdict(value)} |"
             + f" {then:.2f} |" * bool(before)
         )
-    return "\n".join(lines)
+    return "\n".join(lines + _paired(rows, {row["drive"]: row for row in before}))
+
+
+def _paired(rows: Sequence[Row], before: Mapping[str, Row]) -> list[str]:
+    """Return the line on the times of the drives that arrive in both states."""
+    pairs = [
+        {"time": row["time"], "before": before[row["drive"]]["time"]}
+        for row in rows
+        if row["arrived"] and before.get(row["drive"], row)["arrived"] and row["drive"] in before
+    ]
+    measure = Measure(
+        "", lambda some: sum(one["time"] for one in some) / sum(one["before"] for one in some)
+    )
+    low, high = _interval(measure, pairs)
+    if not isfinite(low):
+        return []
+    value = measure.of(pairs)
+    return ["", f"time over before, {len(pairs)} pairs: {value:.4f} ({low:.4f} to {high:.4f})"]
 
 
 def _interval(measure: Measure, rows: Sequence[Row]) -> tuple[float, float]:

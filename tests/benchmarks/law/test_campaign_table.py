@@ -103,5 +103,13 @@ def test_another_state_of_the_repository_stands_beside_it() -> None:
     assert [cell.strip() for cell in jerk.split("|")][2::4] == ["0.90", "2.00"]
 
 
+def test_the_times_of_pairs_are_compared() -> None:
+    rows = [ROW | {"drive": f"car {i}", "time": 60.0} for i in range(4)]
+    before = [row | {"time": 50.0} for row in rows[:3]] + [rows[3] | {"arrived": False}]
+    said = "time over before, 3 pairs: 1.2000 (1.2000 to 1.2000)"
+    assert tables(rows, before, brief=True).splitlines()[-1] == said
+    assert "pairs" not in tables(rows, brief=True)
+
+
 def test_without_any_drive_there_are_no_numbers() -> None:
     assert pooled([]).count("| - |") >= len(MEASURES) // 2
