@@ -11,9 +11,8 @@ from giveway.geometry.kernel import Array
 from giveway.sumo.persons.scenario_persons import Arrival, Person
 from giveway.sumo.session import SumoSession
 from giveway.walkways import WalkNetwork
-from pedestrian_model import Crowd, Surroundings, Walls
+from pedestrian_model import Crowd, Surroundings, Walls, targets
 
-HANDED_BACK_WITHIN = 3.0  # largest distance [m] to a pedestrian lane; from beyond it SUMO jumps
 _CLOSED = frozenset("rRyYus")  # letters of a crossing's light at which pedestrians wait
 
 
@@ -116,15 +115,16 @@ class Exchange:
         if not outside.any():
             return
         gone = np.zeros(len(roster), dtype=np.bool_)
-        for i in np.flatnonzero(outside):
+        rows = np.flatnonzero(outside)
+        ways = targets(roster.crowd, rows) - roster.crowd.position[rows]
+        for i, way in zip(rows, ways.tolist(), strict=True):
             name = roster.ids[roster.person_ids[i]]
             if name not in self._walkers.held:
                 continue  # giveway added this person
             x, y = roster.crowd.position[i].tolist()
             lane = self._network.nearest_lane(x, y)
-            if lane is None or lane.distance > HANDED_BACK_WITHIN:
-                continue
-            gone[i] = self._walkers.hand_back(name, x, y, (lane.edge, lane.position))
+            if lane is not None:
+                gone[i] = self._walkers.hand_back(name, x, y, lane.edge, tuple(way))
         if gone.any():
             roster.count("handed_back", len(roster.release(gone)))
 

@@ -23,6 +23,7 @@ class Foot:
     position: float  # [m] place along the lane, in SUMO's metres
     lateral: float  # [m] offset to the left of the centre line, at most half the usable width
     distance: float  # [m] distance from the centre line
+    apart: float = 0.0  # [m] distance from the place to which SUMO would move a person
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,11 @@ class _Lane:
     length: float  # [m] SUMO's nominal length
     metres: float  # [m] length of the polyline
     half_width: float  # [m] largest distance of a body's centre from the centre line
+
+    @property
+    def stretch(self) -> float:
+        """The nominal length of 1 m of the polyline."""
+        return self.length / max(self.metres, 1e-9)
 
 
 class FootPaths:
@@ -69,12 +75,10 @@ class FootPaths:
                 best = min(best, (distance, passed + share * length, side))
             passed += length
         distance, along, side = best
-        return Foot(
-            lane.name,
-            _inside(lane, along * lane.length / max(lane.metres, 1e-9)),
-            min(max(side, -lane.half_width), lane.half_width),
-            distance,
-        )
+        position = _inside(lane, along * lane.stretch)
+        lateral = min(max(side, -lane.half_width), lane.half_width)
+        there = _point(lane.shape, position / lane.stretch, lateral)
+        return Foot(lane.name, position, lateral, distance, math.dist(there, (x, y)))
 
     def at(self, edge: str, position: float, lateral: float = 0.0) -> Foot | None:
         """The point at ``position`` [m] of the edge's footpath, moved onto it if outside."""
@@ -126,6 +130,27 @@ class FootPaths:
 
         return min(candidates, key=distance)
 
+    def forward(self, edge: str, following: str) -> bool | None:
+        """Return whether SUMO walks along an edge to its end, to reach the following one.
+
+        SUMO does where the edge's end touches the following one. None: both ends touch it, so that
+        people may also walk the other way.
+        """
+        begin, end = self._joined(edge)
+        touched = self._joined(following)
+        if begin in touched and end in touched:
+            return None
+        return end in touched
+
+    def along(self, edge: str, position: float, way: tuple[float, float]) -> float:
+        """Return the component [m] of a way x, y [m] along an edge's footpath at a position [m]."""
+        lane = self._lane(edge)
+        if lane is None:
+            return 0.0
+        start, end, _ = _segment(lane.shape, position / lane.stretch)
+        length = math.dist(start, end)
+        return (way[0] * (end[0] - start[0]) + way[1] * (end[1] - start[1])) / length
+
     def _ends(self, edge: str) -> tuple[str, str]:
         """Return the junctions at both ends of an edge."""
         edges = self._sumo.edge
@@ -153,3 +178,26 @@ def _inside(lane: _Lane, position: float) -> float:
     """Return ``position`` [m], moved off the ends of the lane."""
     margin = min(_LANE_END, lane.length / 2)
     return min(max(position, margin), lane.length - margin)
+
+
+def _segment(
+    shape: Sequence[tuple[float, float]], station: float
+) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Return both ends of a line's piece at a station [m], and the station in the piece [m]."""
+    pieces = [(a, b, math.dist(a, b)) for a, b in itertools.pairwise(shape) if a != b]
+    for a, b, length in pieces:
+        if station <= length:
+            return a, b, station
+        station -= length
+    a, b, length = pieces[-1]
+    return a, b, length
+
+
+def _point(
+    shape: Sequence[tuple[float, float]], station: float, lateral: float
+) -> tuple[float, float]:
+    """Return the point at a station [m] of a line, ``lateral`` [m] to its left."""
+    (x0, y0), (x1, y1), station = _segment(shape, station)
+    length = math.dist((x0, y0), (x1, y1))
+    dx, dy = (x1 - x0) / length, (y1 - y0) / length
+    return x0 + dx * station - dy * lateral, y0 + dy * station + dx * lateral

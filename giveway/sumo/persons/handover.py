@@ -13,6 +13,9 @@ with its id, type, parameters and remaining stages. It takes effect at once. The
 * On the last edge, the walking direction is the one from the former position to the new one.
   Therefore a person put before its destination must come from the right side, or it arrives at
   once.
+* Where both ends of an edge touch the following one, moveTo lets the person walk to the edge's end,
+  but SUMO keeps the lane behind its beginning as the next one, onto which the person is thrown. It
+  finds the right one for a person who comes from another edge.
 * A new walk has the person's desired speed, although the scenario may give another speed to the
   former walk.
 """
@@ -20,7 +23,7 @@ with its id, type, parameters and remaining stages. It takes effect at once. The
 from dataclasses import dataclass
 from typing import Any
 
-from giveway.sumo.network.footpaths import Foot
+from giveway.sumo.network.footpaths import Foot, FootPaths
 
 _WALKING = 2  # SUMO's number of the walking stage type
 NOWHERE = -1000.0  # [m] position of a held person on its lane in SUMO's records
@@ -46,6 +49,7 @@ class Handover:
 
     Args:
         sumo: The libsumo module.
+        paths: Lanes that people walk on.
 
     Attributes:
         refusals: The exceptions that SUMO's refusals become.
@@ -53,7 +57,8 @@ class Handover:
 
     refusals: tuple[type[Exception], ...]
 
-    def __init__(self, sumo: Any) -> None:
+    def __init__(self, sumo: Any, paths: FootPaths) -> None:
+        self._paths = paths
         self._simulation = sumo.simulation
         self._person = sumo.person
         # usual speed factor; stages left when it applies again
@@ -76,12 +81,12 @@ class Handover:
         rerouted = present[-len(route.edges) :] != route.edges
         if rerouted or route.was_inside or edges[0] in edges[1:] + route.edges[:step]:
             self._restart(name, route, edges)
-        self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
+        self._put(name, edges, foot)
 
-    def walk_anew(self, name: str, route: Route, edge: str, foot: Foot) -> bool:
-        """Let a person walk from ``foot`` on any ``edge`` to the end of its route.
+    def way_anew(self, route: Route, edge: str, foot: Foot) -> tuple[str, ...]:
+        """Return the edges from ``foot`` on ``edge`` to a route's end, empty if there is no way.
 
-        The walk takes the route that SUMO finds fastest. Returns False if SUMO finds none.
+        It is the route that SUMO finds fastest.
         """
         found = self._simulation.findIntermodalRoute(
             edge,
@@ -90,14 +95,24 @@ class Handover:
             arrivalPos=route.arrival_position,
             pType=route.type,
         )
-        if len(found) != 1 or found[0].type != _WALKING or not found[0].edges:
-            return False
-        if len(found[0].edges) == 1:
+        if len(found) != 1 or found[0].type != _WALKING:
+            return ()
+        return tuple(found[0].edges)
+
+    def walk_anew(self, name: str, route: Route, edges: tuple[str, ...], foot: Foot) -> None:
+        """Let a person walk from ``foot`` along other ``edges`` to the end of its route."""
+        if len(edges) == 1:
             self._approach(name, route, foot)
         else:
-            self._restart(name, route, tuple(found[0].edges))
-            self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
-        return True
+            self._restart(name, route, edges)
+            self._put(name, edges, foot)
+
+    def _put(self, name: str, edges: tuple[str, ...], foot: Foot) -> None:
+        """Put a person on the first of ``edges``, facing the second."""
+        following = self._paths.lane(edges[1])
+        if following is not None and self._paths.forward(*edges[:2]) is None:
+            self._person.moveTo(name, following, NOWHERE)
+        self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
     def finish(self, name: str, lane: str, route: Route) -> None:
         """Put a person on the end of its route, so that SUMO's next step ends its walk."""

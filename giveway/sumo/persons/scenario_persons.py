@@ -27,8 +27,7 @@ from giveway.sumo.persons.walk_speeds import WalkSpeeds
 _WALKING = 2  # SUMO's number of the walking stage type
 _SLOWEST = 0.1  # Smallest desired speed [m/s]
 _JUMPED = 2.0  # Share of the desired speed above which SUMO has moved a person, who has not walked
-# Largest extra distance [m] to the person's own route, up to which it goes on along it
-_DETOUR = 5.0
+_JUMP = 1.0  # Largest distance [m] by which SUMO may move a person who is handed back
 
 
 def walked(speed: float, usual: float) -> float:
@@ -97,7 +96,7 @@ class ScenarioPersons:
         self._put_back: set[str] = set()  # persons handed back since SUMO's last step
         self._paths = FootPaths(sumo)
         self._speeds = WalkSpeeds.of_running(sumo)
-        self._handover = Handover(sumo)
+        self._handover = Handover(sumo, self._paths)
         self._position = direct(sumo, "person", "getPosition")
 
     # --- where everybody is --------------------------------------------------------------------
@@ -232,34 +231,43 @@ class ScenarioPersons:
 
     # --- giving back --------------------------------------------------------------------------
 
-    def hand_back(self, name: str, x: float, y: float, place: tuple[str, float]) -> bool:
+    def hand_back(
+        self, name: str, x: float, y: float, edge: str, way: tuple[float, float] | None = None
+    ) -> bool:
         """Give a held person back to SUMO, which lets it walk on to the same destination.
+
+        SUMO puts people onto the middle part of a footpath. Who would be moved by more than 1 m
+        stays held.
 
         Args:
             name: Id of the person.
             x: Coordinate x of its position [m].
             y: Coordinate y of its position [m].
-            place: Nearest edge for pedestrians, and the position [m] on it. If an edge of the
-                person's route is hardly farther away, the person goes on there, else on a new
-                route.
+            edge: Nearest edge for pedestrians. The person goes on along its route if that is near
+                enough, else on a new route from this edge on.
+            way: Displacement x, y [m] to where it is going now. Who would turn round in SUMO stays
+                held. By default nothing is known.
 
         Returns:
-            False if SUMO finds no route. The person then stays held.
+            False if the person stays held.
         """
-        if not all(map(math.isfinite, (x, y, place[1]))):
-            return False
+        if not (math.isfinite(x) and math.isfinite(y)) or edge.startswith(":"):
+            return False  # SUMO can crash where it puts people into junctions
         route = self._routes[name]
-        edge, position = place
-        nearest = self._paths.foot(edge, x, y)
-        foot = self._paths.at(edge, position, nearest.lateral if nearest else 0.0)
-        if foot is None or nearest is None:
-            return False
         step, own = self._on_route(route, x, y)
         try:
-            if own is not None and own.distance <= nearest.distance + _DETOUR:
+            if own is not None and own.apart <= _JUMP:
+                if not self._keeps_direction(route.edges[step : step + 2], own, way):
+                    return False
                 self._handover.walk_on(name, route, step, own)
-            elif not self._handover.walk_anew(name, route, edge, foot):
-                return False
+            else:
+                foot = self._paths.foot(edge, x, y)
+                if foot is None or foot.apart > _JUMP:
+                    return False
+                anew = self._handover.way_anew(route, edge, foot)
+                if not anew or not self._keeps_direction(anew[:2], foot, way):
+                    return False
+                self._handover.walk_anew(name, route, anew, foot)
         except self._handover.refusals:
             with contextlib.suppress(*self._handover.refusals):
                 self._handover.park(name, self._sumo.person.getLaneID(name))
@@ -268,6 +276,14 @@ class ScenarioPersons:
         self._free[name] = None
         self._put_back.add(name)
         return True
+
+    def _keeps_direction(
+        self, edges: Sequence[str], foot: Foot, way: tuple[float, float] | None
+    ) -> bool:
+        """Return whether SUMO would let a person walk on as it goes, towards the second edge."""
+        if len(edges) < 2 or self._paths.forward(*edges) is not None:
+            return True  # only one direction leads there
+        return way is not None and self._paths.along(edges[0], foot.position, way) > 0.0
 
     def _on_route(self, route: Route, x: float, y: float) -> tuple[int, Foot | None]:
         """Return the nearest place on the rest of the route, and its edge's index."""

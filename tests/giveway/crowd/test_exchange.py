@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+import math
 import re
+import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -136,3 +138,29 @@ def test_who_is_handed_back_arrives_in_the_end(drive: Drive, scenario: Callable[
     assert adds_up(ledger)
     assert ledger["handed_back"] >= 6
     assert look.arrived == {f"p{i}": 1 for i in range(18)}
+
+
+def test_nobody_jumps_in_sumo_when_handed_back(
+    scenario: Callable[..., Path], tmp_path: Path
+) -> None:
+    """Strips of 12 m, 40 m apart; half of the walks turn round onto the street's other side."""
+    walks = [("A1B1", "B1A1"), ("B1B2", "B2B1"), ("A1B1", "C1D1"), ("B2C2", "C1C0")] * 8
+    people = "".join(
+        f'<person id="p{i}" depart="{i}"><walk from="{a}" to="{b}" departPos="{5 + 10 * (i % 8)}"/>'
+        "</person>"
+        for i, (a, b) in enumerate(walks)
+    )
+    strips = "".join(f"{x},-9 {x},310 {x + 12},310 {x + 12},-9 " for x in range(5, 300, 40))
+    zone = f"-40,-10 -40,-9 {strips}340,-9 340,-10"
+    config = {"scenario": str(scenario(people, end=250, step=0.5)), "crowd": {"zone": zone}}
+    config |= {"ego": NO_EGO, "sumo": {"outputs": ["fcd"]}}
+    folder = tmp_path / "run"
+    ledger = giveway.run(config, results=folder, pictures=False).manifest["pedestrians"]
+    assert ledger["handed_back"] > 60
+    assert adds_up(ledger)
+    last: dict[str, tuple[float, ...]] = {}
+    for _, element in ET.iterparse(folder / "sumo" / "fcd.xml"):
+        if element.tag == "person":
+            name, place = element.attrib["id"], tuple(float(element.attrib[k]) for k in "xy")
+            assert math.dist(place, last.get(name, place)) < 1.0 + 0.5 * 2.0, name
+            last[name] = place

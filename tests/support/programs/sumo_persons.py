@@ -73,7 +73,7 @@ def hand_back(
         walker = walkers.take(["a"])[0]
         hold(walkers, walker)
         x, y = libsumo.simulation.convert2D(place[0], place[1], 0)
-        handed_back = walkers.hand_back("a", x, y, place)
+        handed_back = walkers.hand_back("a", x, y, place[0])
         there = PERSON.getPosition("a")
         seen = {
             "handed_back": handed_back,
@@ -100,13 +100,13 @@ def hand_back(
         return seen | {"fastest": max(speeds[1:-1]), "end": last}
 
 
-def refuse(command: list[str], places: list[tuple[float, float, str, float]]) -> Any:
+def refuse(command: list[str], places: list[tuple[float, float, str]]) -> Any:
     """Try to hand `a` back at impossible places, then go on holding it."""
     with simulation(command) as walkers:
         wait_until(walkers, 5.0)
         walker = walkers.take(["a"])[0]
         hold(walkers, walker)
-        answers = [walkers.hand_back("a", x, y, (edge, at)) for x, y, edge, at in places]
+        answers = [walkers.hand_back("a", x, y, edge) for x, y, edge in places]
         hold(walkers, walker)
         return {
             "answers": answers,
@@ -189,9 +189,7 @@ def vehicles(command: list[str], holding: bool, seconds: float) -> Any:
                 for name in sorted(walkers.held):
                     if chance.random() < 0.05:
                         edge = PERSON.getEdges(name)[0]
-                        walkers.hand_back(
-                            name, *libsumo.simulation.convert2D(edge, 5.0), (edge, 5.0)
-                        )
+                        walkers.hand_back(name, *libsumo.simulation.convert2D(edge, 5.0), edge)
             step(walkers, dict.fromkeys(sorted(walkers.held), (50.0, 50.0)))
             seen.append({v: libsumo.vehicle.getPosition(v) for v in libsumo.vehicle.getIDList()})
         return {"cars": seen, "counts": walkers.counts}
@@ -206,7 +204,7 @@ def roam(command: list[str], radius: float, seconds: float) -> Any:
     goals: dict[str, list[tuple[float, float]]] = {}
     plans: dict[str, Person] = {}
     arrived: list[str] = []
-    wrong, worst = 0, 0.0
+    wrong, worst, farthest = 0, 0.0, 0.0
     with simulation(command) as walkers:
         time_step = libsumo.simulation.getDeltaT()
         while (time := libsumo.simulation.getTime()) < seconds or PERSON.getIDCount():
@@ -225,12 +223,9 @@ def roam(command: list[str], radius: float, seconds: float) -> Any:
                 if not goals[name]:
                     walkers.arrive(name)
                 elif not roaming or math.dist(at[name], centre) > radius:
-                    edge, position, _ = libsumo.simulation.convertRoad(
-                        *at[name], False, "pedestrian"
-                    )
-                    if edge.startswith(":"):
-                        edge, position = plans[name].edges[0], 0.0
-                    wrong += not walkers.hand_back(name, *at[name], (edge, position))
+                    edge, *_ = libsumo.simulation.convertRoad(*at[name], False, "pedestrian")
+                    if walkers.hand_back(name, *at[name], edge):  # else it is not near enough
+                        farthest = max(farthest, math.dist(PERSON.getPosition(name), at[name]))
             held = {name: at[name] for name in sorted(walkers.held)}
             step(walkers, held)
             worst = max([worst, *(math.dist(PERSON.getPosition(n), p) for n, p in held.items())])
@@ -242,6 +237,7 @@ def roam(command: list[str], radius: float, seconds: float) -> Any:
             "arrived": arrived,
             "wrong": wrong,
             "off": worst,
+            "jump": farthest,
         }
 
 

@@ -192,10 +192,10 @@ def test_people_handed_back_keep_their_destination_and_speed(
 
 def test_sumo_finds_no_way_and_the_person_stays_held(look: Look) -> None:
     nowhere = [
-        (50.0, 50.0, "no such edge", 5.0),
-        (math.nan, 50.0, "A1B1", 5.0),
-        (50.0, math.inf, "A1B1", 5.0),
-        (50.0, 50.0, "A1B1", math.nan),
+        (50.0, 50.0, "no such edge"),
+        (math.nan, 50.0, "A1B1"),
+        (50.0, math.inf, "A1B1"),
+        (50.0, 97.9, "A1B1"),  # too far from the street's middle
     ]
     seen = look("refuse", "signals", person(EAST_AND_NORTH), places=nowhere)
     assert seen == {"answers": [False] * 4, "held": ["a"], "there": True}
@@ -269,6 +269,7 @@ def test_a_roaming_zone_loses_nobody(
     assert counts["taken"] == ended
     assert counts["lost"] == seen["held"] == seen["wrong"] == 0
     assert seen["off"] < 1e-6
+    assert seen["jump"] <= 1.0
     assert Counter(seen["arrived"]) == Counter(f"p{i}" for i in range(persons))
     plan_of = {name: [stage.tag for stage in trip] for name, trip in trips(tmp_path).items()}
     for i in range(persons):
