@@ -18,11 +18,12 @@ from giveway.geometry.kernel import Array
 _LEAST = 1.0  # least gap [m] to vehicles that a plan keeps
 _MARGIN = 1.5  # gap [m] that is left of the safe distance if the vehicle ahead brakes hard
 _URGENCY = 1.2  # factor on the deceleration that just keeps a gap
-CLOSEST = 2.0  # gap [m] to a standing vehicle that the ego keeps rather than block a crossing
+_CLOSEST = 1.0  # gap [m] to a standing vehicle that the ego keeps rather than block a crossing
 _BUILD_UP = 0.2  # time [s] in which the brake builds up
 _APPROACHED = 0.5  # distance [m] before d_safe at which the approach to a vehicle ends
 _LAG = 0.5  # time [s] by which a controller lags, also behind a vehicle that stands
 _STOP_LAG = 0.5  # time [s] by which a controller lags before a stop, so that it brakes no harder
+_URGENT_LAG = 2.0  # time [s] by which a plan lags behind a limit that falls fast
 _KEEPS_UP = 3.0  # speed [m/s] of a vehicle ahead from which on the whole headway is kept
 _RECOVERY = 2.0  # time [s] in which a lost safe distance is regained
 
@@ -61,7 +62,8 @@ class Following:
         self._braking = 2.0 * UNHURRIED if tuned else inf
         bumper = safe_distance + origin  # distance [m] that the bumper keeps to people
         self._kept = bumper if paper else min(bumper, VEHICLE_GAP)
-        self._spare = max(0.0, self._kept - CLOSEST)
+        self._closest = VEHICLE_GAP if paper else _CLOSEST
+        self._spare = max(0.0, self._kept - self._closest)
         self._closer = bumper - self._kept
         self._last = inf  # speed [m/s] that the vehicle ahead allowed in the step before
 
@@ -76,7 +78,7 @@ class Following:
         if keep_clear <= 0.0:
             return 0.0
         left = ahead - station - keep_clear - _APPROACHED  # gap [m] behind the zone
-        return min(max(0.0, self._spare + CLOSEST - left), self._spare)
+        return min(max(0.0, self._spare + self._closest - left), self._spare)
 
     def gap_relaxation(
         self, leader: Leader, ahead: Array, station: float, speed: float, keep_clear: float
@@ -96,7 +98,8 @@ class Following:
         relaxation = self.keep_clear_relaxation(closest, station, keep_clear)
         if not self._plans:
             return self._closer + relaxation
-        return self._closer + self._kept - gap_kept(leader, ahead, station, speed, self._kept)
+        usual = self._kept - relaxation
+        return self._closer + self._kept - gap_kept(leader, ahead, station, speed, usual)
 
     def leader_station(self, leader: Leader, station: float, keep_clear: float) -> float:
         """The station [m] to which a controller is to keep d_safe behind a vehicle.
@@ -166,7 +169,7 @@ class Following:
         falls = max(RESTORING, needed) * self._time_step
         self._last = max(wanted, min(self._last - falls, speed))
         # What is urgent is asked for earlier by the lag with which controllers follow a limit.
-        return self._last - _LAG * max(0.0, needed - RESTORING)
+        return self._last - _URGENT_LAG * max(0.0, needed - RESTORING)
 
 
 def gap_kept(leader: Leader, ahead: Array, station: float, speed: float, usual: float) -> float:

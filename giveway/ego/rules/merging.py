@@ -151,10 +151,13 @@ class Merging:
             if to_go <= 0.0:
                 continue  # a vehicle ahead is in the ego's corridor by now
             rear = place.origin + other.position - other.length + _OPENING * to_go
-            if rear >= front + _GAP:
-                # The missing part of the gap shrinks as the ego nears the merge point.
-                leader = min(leader, Leader(rear, max(0.0, other.speed - _OPENING * speed)))
-            elif speed * speed <= 2.0 * FIRM * to_go:
+            # The missing part of the gap shrinks as the ego nears the merge point.
+            moves = max(0.0, other.speed - _OPENING * speed)
+            room, closing = rear - front - _GAP, max(0.0, speed - moves)
+            can_wait = speed * speed <= 2.0 * FIRM * to_go
+            if room >= 0.0 and (closing * closing <= 2.0 * FIRM * room or not can_wait):
+                leader = min(leader, Leader(rear, moves))
+            elif can_wait:
                 place_to_wait = place.entry - _before(other.length)
                 stop = min(stop, max(place_to_wait, min(front, place.entry)))
         return Demand(stop, YIELD, leader=leader)

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from controller.driving_constants import VEHICLE_GAP
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
-from giveway.ego.rules.following import CLOSEST
 from giveway.ego.rules.junctions import PathJunction, junctions_on
 from giveway.ego.rules.speed_profile import SpeedProfile, profile_of
 from giveway.ego.waiting_ego import WaitingEgo
@@ -82,7 +82,7 @@ class RouteContext:
     @property
     def standing_gap(self) -> float:
         """The gap [m] that the ego needs to a standing vehicle ahead so as to keep places clear."""
-        kept = min(self.config.regulation.safe_distance, CLOSEST)
+        kept = min(self.config.regulation.safe_distance, VEHICLE_GAP)
         return max(_LEAST_GAP, kept + _BEHIND)
 
     @property

@@ -98,6 +98,21 @@ def test_a_gap_is_restored_gently_unless_it_closes() -> None:
     assert falls(10.0, decelerates=4.0) > 2.0
 
 
+def test_the_faster_a_vehicle_ahead_brakes_the_lower_is_the_limit() -> None:
+    """Braking builds up at once then, so that it need not become harder than 3 m/s² later."""
+    follows, ahead = following(), VehicleAhead(15.0, 10.7, decelerates=4.5, step=0.2)
+    limit = follows.speed_limit(Leader(55.0, 10.7), 40.0, 0.0, 11.6, ahead)
+    assert limit < 11.6 - 3.0
+
+
+def test_the_gap_of_a_plan_relaxes_as_well() -> None:
+    follows, leader = following(plans=True), Leader(44.0, 0.0)
+    ahead = np.full(N, 44.0)
+    assert follows.gap_relaxation(leader, ahead, 42.0, 0.0, 0.0) == 6.0
+    assert follows.gap_relaxation(leader, ahead, 41.2, 0.0, 0.8) == pytest.approx(6.5)
+    assert follows.gap_relaxation(leader, ahead, 42.0, 0.0, 5.0) == 7.0  # up to 1 m
+
+
 def test_a_stop_is_approached_in_comfort() -> None:
     """Also by a controller that follows a limit with a lag; the paper's have the exact speed."""
     assert following(paper=True).stop_limit(56.0, 40.0) == pytest.approx(8.0)

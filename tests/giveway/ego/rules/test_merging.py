@@ -79,6 +79,14 @@ def test_the_ego_waits_before_the_place_for_whoever_is_beside_it():
     assert look(merges, 80.0, 10.0) == (NO_LEADER, math.inf)
 
 
+def test_a_car_that_starts_beside_the_ego_does_not_make_it_brake_hard():
+    """The ego has 20 m to let it go first; to follow it at once would be an emergency."""
+    merges, starts = Merging((PLACE,), LENGTH), MergingVehicle(81.25, 3.7, 5.0)
+    see(merges, {PLACE: {"starts": starts}}, 80.0, 5.2)
+    assert look(merges, 80.0, 5.2) == (NO_LEADER, 100.0 - 1.0 - 0.5)
+    assert look(merges, 80.0, 3.4)[0].station == 81.25  # it is as slow
+
+
 def test_between_sumo_s_steps_the_others_drive_on():
     merges, _ = merging(other=(92.0, 9.0))
     merges.advance(Situation(speed=10.0), 0.5)
