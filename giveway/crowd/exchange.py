@@ -60,6 +60,10 @@ class Exchange:
         """
         self._hand_back(egos)
         self._take_over(egos)
+        if self._walkers.records:
+            places = self._roster.crowd.position.tolist()
+            names = zip(self._roster.names, places, strict=True)
+            self._walkers.records.update((name, x, y) for name, (x, y) in names)
         self._read_lights()  # last, because people who have just joined may wait at a red light
 
     def _read_lights(self) -> None:

@@ -11,13 +11,10 @@ found by experiment on SUMO 1.28:
   stands between the moves and ``simulationStep``.
 """
 
-import collections
 import contextlib
-import itertools
 import math
-import operator
 from collections.abc import Container, Iterable, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -31,6 +28,7 @@ from giveway.sumo.network.footpaths import FootPaths
 from giveway.sumo.network.junction_links import Junctions
 from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.persons.handover import NOWHERE
+from giveway.sumo.persons.person_moves import PersonMoves
 from giveway.sumo.persons.scenario_persons import ScenarioPersons
 from giveway.sumo.scratch import scratch
 from giveway.sumo.signal_plans import SignalPlans
@@ -43,10 +41,6 @@ POSITION_TOLERANCE = 1e-6
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
 _EXACT = 2  # libsumo's flag for a move exactly to x, y, independently of lanes
 _ON_ROUTE = 1  # its flag for a move that keeps the route, which SUMO may replace without it
-_NO_EDGE = itertools.repeat("")
-_EXACTLY = itertools.repeat(_EXACT)
-# libsumo's "ghost" mode, in which no lane is searched for (issue 17257)
-_WITHOUT_MATCHING = itertools.repeat(-1.0)
 
 
 class SumoSession:
@@ -96,8 +90,7 @@ class SumoSession:
             raise
         SumoSession._running = True
         self._step = direct(self._sumo, "simulation", "step")
-        self._move_person = direct(self._sumo, "person", "moveToXY")
-        self._person_position = direct(self._sumo, "person", "getPosition")
+        self._person_moves = PersonMoves(self._sumo)
         self._move_vehicle = direct(self._sumo, "vehicle", "moveToXY")
         self._vehicle_position = direct(self._sumo, "vehicle", "getPosition")
         self._light_state = direct(self._sumo, "trafficlight", "getRedYellowGreenState")
@@ -107,6 +100,7 @@ class SumoSession:
         self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
+        self._persons: ScenarioPersons | None = None
         self._added: set[str] = set()
         # for each object just added: time [s] of the addition, and its lane
         self._just_added: dict[str, tuple[float, str | None]] = {}
@@ -152,7 +146,8 @@ class SumoSession:
     @property
     def messages(self) -> str:
         """The output of SUMO on stderr so far, mostly warnings."""
-        return of_others(self._stderr.text(), self._added)
+        held = set() if self._persons is None else self._persons.ever_held
+        return of_others(self._stderr.text(), self._added | held)
 
     @property
     def expects_more(self) -> bool:
@@ -178,7 +173,9 @@ class SumoSession:
         Args:
             added: Ids of persons that giveway added, which are never touched.
         """
-        return ScenarioPersons(self._sumo, added)
+        self._persons = ScenarioPersons(self._sumo, added)
+        self._person_moves.onto = self._persons.records.moves
+        return self._persons
 
     # --- adding and removing ------------------------------------------------------------------
 
@@ -251,10 +248,7 @@ class SumoSession:
                 for name, pose in egos:
                     angle = heading_to_angle(pose.heading)
                     self._move_vehicle(name, "", -1, pose.x, pose.y, angle, _EXACT | _ON_ROUTE)
-                moves = map(
-                    self._move_person, ids, _NO_EDGE, x, y, angles, _EXACTLY, _WITHOUT_MATCHING
-                )
-                collections.deque(moves, maxlen=0)  # runs through the moves
+                self._person_moves.make(ids, x, y, angles)
                 self._step()
                 self._moves_pending = False
         except Exception as error:
@@ -272,12 +266,8 @@ class SumoSession:
             for name, pose in egos:
                 there = self._vehicle_position(name)
                 if there != pose[:2]:
-                    _compare("vehicle", name, there, pose, self.time)
-            # most positions are equal to the last bit, so the differing ones are searched only if
-            # needed
-            if any(map(operator.ne, map(self._person_position, ids), zip(x, y, strict=True))):
-                for name, here in zip(ids, zip(x, y, strict=True), strict=True):
-                    _compare("person", name, self._person_position(name), here, self.time)
+                    _compare("vehicle", self.time, name, there, pose)
+            self._person_moves.compare(ids, x, y, partial(_compare, "person", self.time))
         except self._sumo.TraCIException as error:
             raise self._failure(error) from error
 
@@ -320,7 +310,7 @@ class SumoSession:
 
 
 def _compare(
-    kind: str, name: str, there: tuple[float, float], here: Sequence[float], time: float
+    kind: str, time: float, name: str, there: tuple[float, float], here: Sequence[float]
 ) -> None:
     deviation = math.hypot(there[0] - here[0], there[1] - here[1])
     if deviation > POSITION_TOLERANCE:

@@ -7,22 +7,32 @@ from collections.abc import Container
 from pathlib import Path
 from typing import IO
 
-_MET = re.compile(r"^Warning: Collision of person '([^']*)' and person '([^']*)'")
+# Warnings about people that name nobody else
+_ABOUT = tuple(
+    map(
+        re.compile,
+        (
+            r"^Warning: Collision of person '([^']*)' and person '([^']*)'",
+            r"^Warning: Person '([^']*)' suddenly appeared inside detector",
+            r"^Warning: Could not map position .* for person '([^']*)'",
+        ),
+    )
+)
 
 
 def of_others(text: str, ours: Container[str]) -> str:
-    """Return the output of SUMO without collisions among the people that giveway moves.
+    """Return the output of SUMO without warnings about how giveway moves people.
 
-    In SUMO's records they are all on one lane; new persons appear at its beginning.
+    In SUMO's records people meet whom giveway keeps far apart, and appear before detectors.
 
     Args:
         text: Output of SUMO.
-        ours: Ids of the persons that giveway added.
+        ours: Ids of the persons that giveway added or has taken over.
     """
 
     def is_news(line: str) -> bool:
-        met = _MET.match(line)
-        return met is None or not all(name in ours for name in met.groups())
+        found = (about.match(line) for about in _ABOUT)
+        return not any(about and all(name in ours for name in about.groups()) for about in found)
 
     return "".join(filter(is_news, text.splitlines(keepends=True)))
 

@@ -52,7 +52,7 @@ class FootPaths:
     def __init__(self, sumo: Any) -> None:
         self._sumo = sumo
         self._lane = cache(self._find)
-        self._joined = cache(self._ends)
+        self.junctions = cache(self._ends)  # junctions at both ends of an edge
 
     def lane(self, edge: str) -> str | None:
         """Return the lane on which SUMO lets people walk along ``edge``, or None."""
@@ -100,7 +100,7 @@ class FootPaths:
         else:
             junction = inside.group(1)
             pairs = enumerate(itertools.pairwise(edges))
-            found = [k for k, pair in pairs if all(junction in self._joined(e) for e in pair)]
+            found = [k for k, pair in pairs if all(junction in self.junctions(e) for e in pair)]
         if len(found) == 1:
             return found[0]
         return self._by_distance(person, edges, arrival, found or range(len(edges)))
@@ -136,11 +136,32 @@ class FootPaths:
         SUMO does where the edge's end touches the following one. None: both ends touch it, so that
         people may also walk the other way.
         """
-        begin, end = self._joined(edge)
-        touched = self._joined(following)
+        begin, end = self.junctions(edge)
+        touched = self.junctions(following)
         if begin in touched and end in touched:
             return None
         return end in touched
+
+    def gap(self, edge: str, following: str) -> float:
+        """Return the smallest distance [m] between the ends of the footpaths of two edges."""
+        lanes = self._lane(edge), self._lane(following)
+        ends = [(lane.shape[0], lane.shape[-1]) for lane in lanes if lane is not None]
+        return min((math.dist(*pair) for pair in itertools.product(*ends[:2])), default=math.inf)
+
+    def is_straight(self, edge: str, position: float, reach: float) -> bool:
+        """Return whether a footpath has no bend and no end within ``reach`` [m] of a position."""
+        lane = self._lane(edge)
+        if lane is None:
+            return False
+        start, end, along = _segment(lane.shape, position / lane.stretch)
+        return reach < along < math.dist(start, end) - reach
+
+    def end_at(self, edge: str, junction: str) -> float | None:
+        """Return the position [m] of an edge's end at a junction, or None if it has none there."""
+        lane, (begin, end) = self._lane(edge), self.junctions(edge)
+        if lane is None or junction not in (begin, end):
+            return None
+        return lane.length if junction == end else 0.0
 
     def along(self, edge: str, position: float, way: tuple[float, float]) -> float:
         """Return the component [m] of a way x, y [m] along an edge's footpath at a position [m]."""

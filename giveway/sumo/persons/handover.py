@@ -80,7 +80,7 @@ class Handover:
         # a rerouting device of SUMO has changed the route
         rerouted = present[-len(route.edges) :] != route.edges
         if rerouted or route.was_inside or edges[0] in edges[1:] + route.edges[:step]:
-            self._restart(name, route, edges)
+            self.restart(name, route, edges)
         self._put(name, edges, foot)
 
     def way_anew(self, route: Route, edge: str, foot: Foot) -> tuple[str, ...]:
@@ -104,7 +104,7 @@ class Handover:
         if len(edges) == 1:
             self._approach(name, route, foot)
         else:
-            self._restart(name, route, edges)
+            self.restart(name, route, edges)
             self._put(name, edges, foot)
 
     def _put(self, name: str, edges: tuple[str, ...], foot: Foot) -> None:
@@ -124,13 +124,13 @@ class Handover:
         ahead = route.arrival_position >= foot.position
         behind = foot.position - _RUN_UP if ahead else foot.position + _RUN_UP
         if route.was_inside or len(route.edges) > 1:
-            self._restart(name, route, last)
+            self.restart(name, route, last)
         self._person.moveTo(name, foot.lane, max(behind, 0.0))
         # the walk departs at once, since the person is on this edge already
-        self._restart(name, route, last)
+        self.restart(name, route, last)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
-    def _restart(self, name: str, route: Route, edges: tuple[str, ...]) -> None:
+    def restart(self, name: str, route: Route, edges: tuple[str, ...]) -> None:
         """Replace the person's walk in SUMO by a fresh one along ``edges`` to the same end."""
         person = self._person
         stage = person.getStage(name)

@@ -12,7 +12,7 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Container, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,14 +20,16 @@ from numpy.typing import NDArray
 
 from giveway.geometry.path import angle_to_heading
 from giveway.sumo.library import direct
-from giveway.sumo.network.footpaths import Foot, FootPaths
+from giveway.sumo.network.footpaths import FootPaths
 from giveway.sumo.persons.handover import Handover, Route
+from giveway.sumo.persons.lane_records import LaneRecords
+from giveway.sumo.persons.observers import of_running
+from giveway.sumo.persons.return_places import ReturnPlaces
 from giveway.sumo.persons.walk_speeds import WalkSpeeds
 
 _WALKING = 2  # SUMO's number of the walking stage type
 _SLOWEST = 0.1  # Smallest desired speed [m/s]
 _JUMPED = 2.0  # Share of the desired speed above which SUMO has moved a person, who has not walked
-_JUMP = 1.0  # Largest distance [m] by which SUMO may move a person who is handed back
 
 
 def walked(speed: float, usual: float) -> float:
@@ -75,18 +77,22 @@ class ScenarioPersons:
 
     Attributes:
         held: Ids of the persons that giveway moves now.
+        ever_held: Ids of the persons that giveway has ever moved.
+        records: Lanes on which the held persons are in SUMO's records.
         counts: Numbers of persons. ``taken`` is the sum of ``handed_back``, ``arrived``,
             ``continued``, ``lost`` and those held; ``lost`` are held persons that something else
             removed from SUMO.
     """
 
     held: set[str]
+    ever_held: set[str]
     counts: Counter[str]
 
     def __init__(self, sumo: Any, ours: Container[str]) -> None:
         self._sumo = sumo
         self._ours = ours
         self.held = set()
+        self.ever_held = set()
         self.counts = Counter(taken=0, handed_back=0, arrived=0, continued=0, lost=0)
         self._free: dict[str, None] = {}  # departed persons that SUMO moves, in order of departure
         self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was last updated
@@ -95,8 +101,10 @@ class ScenarioPersons:
         self._leaving: dict[str, tuple[int, float]] = {}
         self._put_back: set[str] = set()  # persons handed back since SUMO's last step
         self._paths = FootPaths(sumo)
+        self.records = LaneRecords(sumo, self._paths, of_running(sumo), self._begin_anew)
         self._speeds = WalkSpeeds.of_running(sumo)
         self._handover = Handover(sumo, self._paths)
+        self._places = ReturnPlaces(self._paths, self._handover)
         self._position = direct(sumo, "person", "getPosition")
 
     # --- where everybody is --------------------------------------------------------------------
@@ -167,9 +175,7 @@ class ScenarioPersons:
         self._leaving.clear()
 
     def _lose(self, name: str) -> None:
-        self.held.discard(name)
-        del self._routes[name]
-        self.counts["lost"] += 1
+        self._release(name, "lost")
 
     # --- taking over --------------------------------------------------------------------------
 
@@ -213,7 +219,8 @@ class ScenarioPersons:
         inside = lane.startswith(":")
         hideout = self._paths.lane(taken.edges[0]) if inside else lane
         try:
-            self._handover.park(name, hideout or lane)
+            if not (inside and self.records.keeps(lane)):
+                self._handover.park(name, hideout or lane)
         except self._handover.refusals:
             return None  # the person stands beside its own route, and SUMO could not put it back
         self._routes[name] = Route(
@@ -225,9 +232,17 @@ class ScenarioPersons:
             was_inside=inside,
         )
         self.held.add(name)
+        self.ever_held.add(name)
+        self.records.begin(name, taken.edges)
         del self._free[name]
         self.counts["taken"] += 1
         return taken
+
+    def _begin_anew(self, name: str, edges: tuple[str, ...]) -> None:
+        """Let a held person's walk in SUMO begin anew on the first of ``edges``."""
+        route = self._routes[name]
+        self._handover.restart(name, route, edges)
+        self._routes[name] = replace(route, edges=edges, was_inside=False)
 
     # --- giving back --------------------------------------------------------------------------
 
@@ -236,8 +251,7 @@ class ScenarioPersons:
     ) -> bool:
         """Give a held person back to SUMO, which lets it walk on to the same destination.
 
-        SUMO puts people onto the middle part of a footpath. Who would be moved by more than 1 m
-        stays held.
+        Who would be moved by more than 1 m or turned round stays held, see return_places.py.
 
         Args:
             name: Id of the person.
@@ -253,42 +267,28 @@ class ScenarioPersons:
         """
         if not (math.isfinite(x) and math.isfinite(y)) or edge.startswith(":"):
             return False  # SUMO can crash where it puts people into junctions
-        route = self._routes[name]
-        step, own = self._on_route(route, x, y)
+        route, person = self._routes[name], self._sumo.person
+        if self.records and person.getLaneID(name).startswith(":"):
+            route = replace(route, was_inside=True)
         try:
-            if own is not None and own.apart <= _JUMP:
-                if not self._keeps_direction(route.edges[step : step + 2], own, way):
-                    return False
-                self._handover.walk_on(name, route, step, own)
+            place = self._places.find(name, route, (x, y), edge, way)
+            if place is None:
+                return False
+            if place.step is None:
+                self._handover.walk_anew(name, route, place.edges, place.foot)
             else:
-                foot = self._paths.foot(edge, x, y)
-                if foot is None or foot.apart > _JUMP:
-                    return False
-                anew = self._handover.way_anew(route, edge, foot)
-                if not anew or not self._keeps_direction(anew[:2], foot, way):
-                    return False
-                self._handover.walk_anew(name, route, anew, foot)
+                self._handover.walk_on(name, route, place.step, place.foot)
+            if self._places.is_before_gap(name, place, person.getNextEdge(name)):
+                self._handover.park(name, place.foot.lane)
+                return False
         except self._handover.refusals:
             with contextlib.suppress(*self._handover.refusals):
-                self._handover.park(name, self._sumo.person.getLaneID(name))
+                self._handover.park(name, person.getLaneID(name))
             return False
         self._release(name, "handed_back")
         self._free[name] = None
         self._put_back.add(name)
         return True
-
-    def _keeps_direction(
-        self, edges: Sequence[str], foot: Foot, way: tuple[float, float] | None
-    ) -> bool:
-        """Return whether SUMO would let a person walk on as it goes, towards the second edge."""
-        if len(edges) < 2 or self._paths.forward(*edges) is not None:
-            return True  # only one direction leads there
-        return way is not None and self._paths.along(edges[0], foot.position, way) > 0.0
-
-    def _on_route(self, route: Route, x: float, y: float) -> tuple[int, Foot | None]:
-        """Return the nearest place on the rest of the route, and its edge's index."""
-        feet = [(k, self._paths.foot(edge, x, y)) for k, edge in enumerate(route.edges)]
-        return min(feet, key=lambda candidate: candidate[1].distance if candidate[1] else math.inf)
 
     def arrive(self, name: str) -> Arrival:
         """Let a held person end its walk in SUMO's next step.
@@ -308,5 +308,7 @@ class ScenarioPersons:
 
     def _release(self, name: str, as_what: str) -> None:
         self.held.discard(name)
+        self.records.end(name)
+        self._places.forget(name)
         del self._routes[name]
         self.counts[as_what] += 1
