@@ -35,6 +35,7 @@ from giveway.ego.rules.path_crossings import PathCrossing, crossings_on
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.yielding import (
+    BUILD_UP,
     CRAWLING,
     STOP_BEFORE,
     leaves_no_room,
@@ -174,7 +175,9 @@ class Crossings:
             if place.entry - front > _SIGHT:
                 break
             wanted = self._is_wanted(number, front, speed, crowd)
-            if wanted or leaves_no_room(leader, place.entry, place.exit, self._room):
+            room = place.entry - front - BUILD_UP * speed
+            in_time = number == self._waits_for or needed_braking(speed, room) <= FIRM
+            if wanted or (in_time and leaves_no_room(leader, place.entry, place.exit, self._room)):
                 stop = self._stop_for(number, front, speed)
                 if stop < math.inf:
                     return stop

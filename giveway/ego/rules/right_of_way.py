@@ -19,6 +19,7 @@ import math
 from collections.abc import Mapping, Sequence, Set
 
 from controller.driving_constants import (
+    COMFORTABLE,
     FIRM,
     PULL_AWAY,
     PULL_AWAY_BRISK,
@@ -45,6 +46,7 @@ from giveway.ego.rules.yielding import (
     CRAWLING,
     STOP_BEFORE,
     USUAL_SPEED,
+    firm_stop,
     leaves_no_room,
     needed_braking,
 )
@@ -187,7 +189,7 @@ class RightOfWay:
             line = place.line(front)
             blocked = leaves_no_room(leader, place.entry, place.exit, self._room)
             if blocked and needed_braking(speed, line - front) <= FIRM:
-                stop = min(stop, max(line - STOP_BEFORE, min(front, line)))
+                stop = min(stop, max(line - STOP_BEFORE, min(firm_stop(front, speed), line)))
             break
         return stop
 
@@ -220,8 +222,7 @@ class RightOfWay:
         before = front <= place.entry
         if before and letter in "sw" and not (first and self._halted):
             return line
-        gap = place.gaps.at_lights if letter in "gGyY" else place.gaps.unsignalled
-        critical, follow_up = gap
+        critical, follow_up = place.gaps.at_lights if letter in "gGyY" else place.gaps.unsignalled
         if self._critical_headway is not None:
             critical = self._critical_headway
         if first and before and letter not in "GMyY" and self._time - self._followed < follow_up:
@@ -286,9 +287,11 @@ class RightOfWay:
         if other.distance <= 0.0:  # the vehicle is in the junction already
             if other.distance + where.other_leave + other.length <= 0.0:
                 return False
-            there = other.distance + where.other_enter <= 0.0
+            room = other.distance + where.other_enter
+            if room > 0.0 and not named and place.movement.number in movement.yields_to:
+                return needed_braking(other.speed, room) > COMFORTABLE  # else it gives way
             waits = other.standing > 0.0 and _has_to_wait(movement, traffic)
-            return there or other.speed > CRAWLING or (named and letter != "G" and not waits)
+            return room <= 0.0 or other.speed > CRAWLING or (named and letter != "G" and not waits)
         if letter in _NOBODY or not named:
             return False
         if movement.system:

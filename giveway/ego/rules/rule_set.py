@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from math import inf
 from typing import Any
 
-from controller.driving_constants import FIRM
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.crossings import Crossings
 from giveway.ego.rules.junctions import SIGHT
@@ -20,6 +19,7 @@ from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.scheduled_stops import ScheduledStops
 from giveway.ego.rules.speed_limits import SpeedLimits
 from giveway.ego.rules.traffic_lights import TrafficLights
+from giveway.ego.rules.yielding import firm_stop
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
@@ -38,7 +38,6 @@ rule: its file, its line here, its key in `giveway.config.tables.rules`.
 """
 
 BEYOND = 0.1, 0.5  # distance [m] beyond a demanded stop that a plan may lead to; of a late demand
-_BUILD_UP = 0.2  # time [s] in which the brake builds up
 STOPS_EARLY = 0.4  # distance [m] before it at which a plan's wanted speed is 0; plans lag behind
 
 
@@ -193,7 +192,7 @@ class RuleSet:
             stop, cause, latest, cap, advice, ahead, lane_speeds = demand
             if stop < self.stop:
                 self.stop, self.cause = stop, cause
-                firm = station + speed * (_BUILD_UP + speed / (2.0 * FIRM)) - stop
+                firm = firm_stop(station, speed) - stop
                 self.latest = min(self.latest, stop + min(max(firm, BEYOND[0]), BEYOND[1]))
             if cause == LIGHT:
                 situation.stop_at_light = stop

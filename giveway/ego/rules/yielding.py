@@ -2,12 +2,13 @@
 
 import math
 
-from controller.driving_constants import COMFORTABLE
+from controller.driving_constants import COMFORTABLE, FIRM
 from giveway.ego.perception.leader import Leader
 
 STOP_BEFORE = 1.0  # distance [m] of a stop before a line or a crossing
 CRAWLING = 2.0  # speed [m/s] below which a vehicle is assumed to be about to stop
 USUAL_SPEED = 13.9  # speed [m/s] to which other vehicles are expected to accelerate
+BUILD_UP = 0.2  # time [s] in which the brake builds up
 _CAR = 5.0  # length [m] of the vehicle ahead that stops at a red light
 _QUEUE = 100.0  # distance [m] before a red light, within which a queue may stand
 
@@ -15,6 +16,16 @@ _QUEUE = 100.0  # distance [m] before a red light, within which a queue may stan
 def needed_braking(speed: float, room: float) -> float:
     """The deceleration [m/s^2] that stops from ``speed`` [m/s] within ``room`` [m]."""
     return speed * speed / (2.0 * max(room, 1e-3))
+
+
+def firm_stop(front: float, speed: float) -> float:
+    """The nearest station [m] at which firm braking stops.
+
+    Args:
+        front: Station of the front bumper [m].
+        speed: Speed [m/s].
+    """
+    return front + speed * (BUILD_UP + speed / (2.0 * FIRM))
 
 
 def at_rest(leader: Leader, stop: float) -> Leader:

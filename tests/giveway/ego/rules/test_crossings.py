@@ -229,6 +229,14 @@ def test_it_does_not_drive_onto_a_crossing_that_it_cannot_leave(station, speed, 
     assert found == (pytest.approx(LINE, abs=0.11) if stops else math.inf)
 
 
+def test_it_brakes_firmly_at_most_for_who_becomes_slow_behind_a_crossing():
+    """The brake takes time to build up: a stop that was begun goes on meanwhile."""
+    slow, watched = Leader(28.0, 1.9), crossings()
+    assert stop_of(crossings(), LINE - 1.6, 3.7, NOBODY, slow) == math.inf
+    assert stop_of(watched, LINE - 4.0, 3.9, NOBODY, slow) < math.inf
+    assert stop_of(watched, LINE - 1.6, 3.7, NOBODY, slow) < math.inf
+
+
 @pytest.mark.parametrize(
     ("x", "then", "stops"),
     [

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from support.situations import stop_of, tell
+from support.situations import demand_of, stop_of, tell
 
 from giveway.ego.perception.leader import Leader
 from giveway.ego.rules.gap_acceptance import MINOR_STRAIGHT, PERMITTED
@@ -153,6 +153,16 @@ def test_the_ego_waits_for_any_vehicle_inside_the_junction() -> None:
     assert stop(junction(), LINE, 0.0, gone) == math.inf
 
 
+def test_who_can_still_give_way_in_the_junction_is_not_braked_for() -> None:
+    """An oncoming car rolls up to where it waits before it turns left across the ego's path."""
+    place = junction("M", named=False)
+    turns = replace(place.movements[OTHER], yields_to=frozenset({OWN}))
+    place = place._replace(movements={**place.movements, OTHER: turns})
+    assert stop(place, 40.0, 7.0, other(-0.5, speed=3.5)) == math.inf  # 1.8 m/s^2 suffice
+    assert stop(place, 40.0, 7.0, other(-0.5, speed=4.5)) == LINE  # 2.9 m/s^2: it may go on
+    assert stop(place, 40.0, 7.0, other(-5.0, speed=3.5)) == LINE  # it is on the ego's path
+
+
 def test_who_waits_in_the_junction_for_others_is_not_waited_for() -> None:
     place, third = junction(), 2
     waits = replace(place.movements[OTHER], yields_to=frozenset({third}))
@@ -292,6 +302,14 @@ def test_it_enters_no_junction_that_it_cannot_leave(station: float, stops: bool)
     place = stop_of(drive.keeps, 40.0, 5.0, leader=Leader(station, 0.5))
     assert (place == LINE) == stops
     assert stop_of(drive.keeps, 40.0, 5.0, leader=Leader(station, 5.0)) == math.inf
+
+
+def test_it_does_not_brake_hard_for_who_becomes_slow_behind_the_junction() -> None:
+    """The line itself is early enough, where a metre before it is not."""
+    drive, leader = Drive(junction()), Leader(71.0, 1.9)
+    tell(drive.keeps, 47.4, 3.7)
+    assert demand_of(drive.keeps, 47.4, 3.7, leader=leader).stop == ENTRY
+    assert demand_of(drive.keeps, 44.0, 3.7, leader=leader).stop == LINE
 
 
 def test_itself_is_not_in_its_way() -> None:

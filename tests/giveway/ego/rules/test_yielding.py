@@ -5,7 +5,7 @@ import math
 import pytest
 
 from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.rules.yielding import at_rest, leaves_no_room
+from giveway.ego.rules.yielding import at_rest, firm_stop, leaves_no_room
 
 ROOM = 5.0 + 8.5  # [m] the ego's length, and the gap that it keeps
 
@@ -36,3 +36,8 @@ def test_who_drives_up_to_a_red_light_will_stand_there() -> None:
     assert at_rest(NO_LEADER, 46.0) == NO_LEADER
     assert not leaves_no_room(driving, 20.0, 30.0, ROOM)
     assert leaves_no_room(at_rest(driving, 46.0), 20.0, 30.0, ROOM)
+
+
+def test_a_firm_stop_takes_time_to_build_up() -> None:
+    assert firm_stop(100.0, 0.0) == 100.0
+    assert firm_stop(100.0, 6.0) == pytest.approx(100.0 + 0.2 * 6.0 + 36.0 / 6.0)
