@@ -5,7 +5,7 @@ ego that is moved from outside (SUMO issues 6140, 6152, 10952), so that a car fr
 drive into its path. Therefore the vehicles that have to yield to an ego, by the network's
 ``request`` rows and the current signal state, stop at their line until it has gone. A vehicle that
 is in the junction already stops before the two paths cross. A vehicle that stands does not start
-into the way of an ego that is driving through the junction, whichever has priority.
+into the way of an ego that drives off or through the junction, whichever has priority.
 """
 
 from collections.abc import Mapping
@@ -27,6 +27,7 @@ from giveway.geometry.conflict import Conflict
 
 # Distance [m] before the ego's path at which a vehicle in the junction stops
 _BEFORE_CONFLICT = 1.0
+_SETS_OFF = 2.0  # Distance [m] before its line within which an ego that moves drives off
 
 
 def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[str, float]:
@@ -79,7 +80,8 @@ def _gives_way(
     comes = travel_time(where.enter - front, speed, PULL_AWAY, max(USUAL_SPEED, speed))
     goes = travel_time(where.leave + ego.shape.length - front, speed, UNHURRIED, max(speed, 4.0))
     owes = its != "G" and named and (inside or not mutual)
-    lets = inside and speed >= STANDING and other.standing > 0.0
+    sets_off = place.entry - front <= _SETS_OFF and speed >= STANDING
+    lets = sets_off and other.standing > 0.0
     if its in RED or not (owes or lets):
         return False
     fastest = max(USUAL_SPEED, other.speed)

@@ -98,7 +98,9 @@ def test_a_vehicle_inside_goes_first_though_its_light_is_red() -> None:
         (52.0, 3.0, 1.0, True),
         (52.0, 3.0, 0.0, False),  # the car drives, and has priority
         (52.0, 0.0, 1.0, False),  # the ego stands: the car goes first
-        (48.0, 3.0, 1.0, False),  # the ego is still before its line
+        (49.0, 0.7, 1.0, True),  # the ego drives off from its line
+        (49.0, 0.0, 1.0, False),  # it waits there
+        (47.0, 3.0, 1.0, False),  # it is still before its line
         (66.0, 3.0, 1.0, False),  # the ego has left
     ],
 )
