@@ -25,6 +25,7 @@ from pedestrian_model.plug_in import (
 )
 from pedestrian_model.presets import PRESETS
 from pedestrian_model.protocol import CrowdPredictor, PedestrianModel
+from pedestrian_model.routes import OFF_WALKWAYS
 from pedestrian_model.stepping import LONGEST_STEP
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.targets import any_arrived, arrived, remaining_distance, targets
@@ -37,6 +38,7 @@ __all__ = [
     "HELD",
     "JUPEDSIM_MODELS",
     "LONGEST_STEP",
+    "OFF_WALKWAYS",
     "OPEN_GROUND",
     "PLAIN_MODELS",
     "PRESETS",

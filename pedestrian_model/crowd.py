@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
 from pedestrian_model.arrays import Arrays, extent, select_into
 from pedestrian_model.errors import CrowdError
-from pedestrian_model.routes import Routes, offsets, passage_rows, signal_rows
+from pedestrian_model.routes import OFF_WALKWAYS, Routes, offsets, passage_rows, signal_rows
 
 _UNIT = 1e-6  # tolerance of a direction's length of one
 
@@ -27,7 +27,9 @@ class Crowd:
 
     A way-point with a passage (direction_x, direction_y, half_width) is a line across this
     direction. It is passed beyond the line, within its half-width. With (0, 0, 0) it is only a
-    point. A way-point with a signal is not passed while ``Surroundings.closed[signal]``.
+    point. A way-point with a signal is not passed while ``Surroundings.closed[signal]``. Without a
+    signal it has -1, or ``OFF_WALKWAYS``: walls do not hold people on the way to it. This may be
+    changed in place.
 
     Priority is the degree to which a person relies on vehicles to stop: 1 on a crossing with
     priority, 0 as in the paper. It may be changed in place. Copies share it, as they share all
@@ -44,7 +46,7 @@ class Crowd:
     waypoint_start: NDArray[np.int64]  # offsets (n + 1,) into ``waypoints``
     waypoint_index: NDArray[np.int64]  # next way-point (n,), counted from the pedestrian's first
     waypoint_passage: NDArray[np.float64]  # passages (total, 3): unit direction, half-width [m]
-    waypoint_signal: NDArray[np.int64]  # signals (total,) that must be open; -1 without one
+    waypoint_signal: NDArray[np.int64]  # signals (total,) that must be open; -1, or -2, without
     priority: NDArray[np.float64]  # priorities (n,), 0 to 1
 
     def __post_init__(self) -> None:
@@ -104,12 +106,12 @@ class Crowd:
                 f"waypoint_passage[{at}] has direction {direction[at].tolist()}, "
                 "expected length 1: Crowd.create"
             )
-        bad = self.waypoint_signal < -1
+        bad = self.waypoint_signal < OFF_WALKWAYS
         if bad.any():
             at = int(np.argmax(bad))
             raise CrowdError(
                 f"waypoint_signal[{at}] = {self.waypoint_signal[at]}, expected an index >= 0, "
-                "or -1 for none"
+                "or -1 (-2 where walls hold nobody) for none"
             )
 
     def __len__(self) -> int:

@@ -3,7 +3,8 @@
 A way-point is passed within a radius. A way-point with a passage is a line across the route. A
 person who crosses the line within its half-width has passed it. Until then the person walks to the
 nearest point of the line, so that a crowd walks through side by side instead of through one point.
-All of this is giveway's own.
+A person who is pushed back through a line passes it once more, and is not caught at the corner that
+it leads round. All of this is giveway's own.
 """
 
 from collections.abc import Sequence
@@ -16,13 +17,17 @@ from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model._jit import inlined
 from pedestrian_model.errors import CrowdError
 
+#: Signal of a way-point without one, if walls do not hold people on the way to it.
+OFF_WALKWAYS = -2
+_BACK = 0.5  # distance [m] before a line, beyond its radius, from which on it is passed once more
+
 
 class Routes(NamedTuple):
     """The routes of a crowd, as in ``Crowd``."""
 
     waypoints: NDArray[np.float64]  # way-points (total, 2) [m]
     passage: NDArray[np.float64]  # passages (total, 3): unit direction, half-width [m]; or 0
-    signal: NDArray[np.int64]  # indices (total,) into ``closed``; -1 without a signal
+    signal: NDArray[np.int64]  # indices (total,) into ``closed``; -1 without a signal, or -2
     start: NDArray[np.int64]  # offsets (n + 1,) into ``waypoints``
 
 
@@ -57,11 +62,19 @@ def is_passed(x: float, y: float, p: Line, radius: float) -> bool:
 
 
 @inlined
+def is_behind(x: float, y: float, p: Line, far: float) -> bool:
+    """Return whether (x, y) is at least ``far`` [m] before a line, within its half-width."""
+    dx, dy = x - p.x, y - p.y
+    along, across = p.d_x * dx + p.d_y * dy, p.d_x * dy - p.d_y * dx
+    return along < -far and abs(across) <= p.half
+
+
+@inlined
 def heading_for(
     x: float,
     y: float,
     at: int,
-    last: int,
+    ends: tuple[int, int],
     routes: Any,
     closed: NDArray[np.bool_],
     radii: tuple[float, float],
@@ -72,14 +85,19 @@ def heading_for(
         x: Coordinate of the person [m].
         y: Coordinate of the person [m].
         at: Index of the next way-point so far.
-        last: Index of the last way-point of the route.
+        ends: Indices of the first and of the last way-point of the route.
         routes: Arrays of ``Routes``.
         closed: Marks (signals,) of closed signals.
         radii: Radius [m] of a way-point and of a body.
     """
-    radius, R = radii
+    (first, last), (radius, R) = ends, radii
     w, q, signal = routes[0], routes[1], routes[2]
     stops = True
+    if at > first:
+        k = at - 1
+        p = Line(w[k, 0], w[k, 1], q[k, 0], q[k, 1], q[k, 2])
+        if is_behind(x, y, p, radius + _BACK) and not is_behind(w[at, 0], w[at, 1], p, 0.0):
+            at = k
     p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
     while at < last and not (signal[at] >= 0 and closed[signal[at]]):
         if not is_passed(x, y, p, radius):

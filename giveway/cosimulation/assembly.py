@@ -158,12 +158,14 @@ def assemble(
     arrivals = people_to_come(config, roster, time_step, sumo, files.net_file, network)
     exchange = None
     if network is not None:
+        asked = config.crowd.walls
+        walls = walkers and network.has_sidewalks if asked is None else asked
         exchange = Exchange(
             sumo,
             network,
             zone if walkers else Zone("none", 0.0),
             roster,
-            walls=config.crowd.walls,
+            walls=walls,
         )
     yielding = None
     if config.traffic.yielding and (added or walkers or egos):

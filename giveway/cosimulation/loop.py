@@ -78,7 +78,7 @@ class Loop:
         self._instants = Instants(recorder, parts.config.record, parts.time_step)
         self._fronts = np.empty((0, 2))
         self._truth = Truth.of_people(parts.roster.crowd)
-        if parts.surroundings.walls is not None:
+        if parts.config.crowd.walls and parts.surroundings.walls is not None:
             self._truth.outlines = parts.surroundings.walls.segments
         self.followed = Followed(parts) if follow else None
         walks = None if self.followed is None else self.followed.walks

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from giveway.crowd.impasses import Impasses
 from giveway.crowd.roster import Roster
 from giveway.crowd.zone import Zone
 from giveway.geometry.kernel import Array
@@ -51,6 +52,7 @@ class Exchange:
             walls=Walls.create(network.wall_segments) if walls else None,
             closed=np.zeros(len(network.signals), dtype=np.bool_),
         )
+        self._impasses = Impasses(roster, self.surroundings, network.walkable) if walls else None
 
     def update(self, egos: Array) -> None:
         """Hand people back, take people over and read the lights, once after each SUMO step.
@@ -64,7 +66,9 @@ class Exchange:
             places = self._roster.crowd.position.tolist()
             names = zip(self._roster.names, places, strict=True)
             self._walkers.records.update((name, x, y) for name, (x, y) in names)
-        self._read_lights()  # last, because people who have just joined may wait at a red light
+        self._read_lights()  # now, because people who have just joined may wait at a red light
+        if self._impasses is not None:
+            self._impasses.update(self._session.time)
 
     def _read_lights(self) -> None:
         """Open or close every crossing by the state of its traffic light."""

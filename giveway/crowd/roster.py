@@ -12,7 +12,15 @@ from giveway.config import RunConfig
 from giveway.config.tables.people import DISTRACTED
 from giveway.crowd.motion.as_recorded import WrittenWalks
 from giveway.crowd.motion.sway import sway_of
-from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
+from pedestrian_model import (
+    OFF_WALKWAYS,
+    Crowd,
+    PedestrianModel,
+    Surroundings,
+    Vehicles,
+    any_arrived,
+    arrived,
+)
 
 ARRIVAL_RADIUS = 0.5  # distance [m] to the destination, within which a pedestrian has arrived
 
@@ -30,6 +38,12 @@ _NOTHING = Trait()
 class Roster:
     """The crowd, and the ids of its people.
 
+    Args:
+        ids: Ids of the people at first, whom giveway adds.
+        crowd: State of these people.
+        traits: Traits of those who have any, by their ids.
+        walled: Whether walls hold the people that giveway adds.
+
     Attributes:
         ids: Ids of all people who ever were in the crowd; the tables refer to them by index.
         crowd: State of the people who are in the crowd now.
@@ -46,9 +60,12 @@ class Roster:
         ids: Sequence[str] = (),
         crowd: Crowd | None = None,
         traits: Mapping[str, Trait] | None = None,
+        *,
+        walled: bool = True,
     ) -> None:
+        self._walled = walled
         self.ids: list[str] = list(ids)
-        self.crowd = Crowd.empty() if crowd is None else crowd
+        self.crowd = Crowd.empty() if crowd is None else self._let_walk(crowd)
         self.person_ids = np.arange(len(self.ids))
         self.names = list(ids)
         self.added = set(ids)
@@ -106,7 +123,13 @@ class Roster:
         """Add people of giveway's own during the run."""
         self.added.update(names)
         self.traits |= traits
-        self._join(names, crowd)
+        self._join(names, self._let_walk(crowd))
+
+    def _let_walk(self, crowd: Crowd) -> Crowd:
+        """Let added people walk off the walkways, unless walls hold them, too."""
+        if not self._walled:
+            crowd.waypoint_signal[crowd.waypoint_signal < 0] = OFF_WALKWAYS
+        return crowd
 
     def take_in(self, names: Iterable[str], crowd: Crowd) -> None:
         """Add people of the scenario. A person who comes back keeps the index."""

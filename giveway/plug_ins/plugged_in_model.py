@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from giveway.plug_ins.faults import blamed, read_only, shown
 from pedestrian_model import (
+    OFF_WALKWAYS,
     OPEN_GROUND,
     Accelerations,
     Crowd,
@@ -111,6 +112,8 @@ class PluggedInModel:
             distance, normal, segments = np.full(n, np.inf), np.zeros((n, 2)), _NO_WALLS
         else:
             distance, normal = walls.nearest(crowd.position)
+            next_ones = crowd.waypoint_start[:-1] + crowd.waypoint_index
+            distance[crowd.waypoint_signal[next_ones] == OFF_WALKWAYS] = np.inf
             segments = walls.segments
         ids = np.arange(n) if self._who is None else self._who()
         return Walkers(

@@ -13,13 +13,14 @@ _GAP = 0.15  # Half width [m] of the gaps between neighbours that are closed
 _SLIVER = 0.1  # Half width [m] of narrow spits that are cut off
 _SMALLEST = 0.5  # Size [m²] below which a hole gets no wall
 _SIMPLE = 0.02  # Tolerance [m] of the simplified outline
+_ASIDE = 0.5  # Distance [m] beside a crossing's marking, to which people evade one another
 _OVERLAP = 0.6  # Length [m] by which a crossing reaches into the walkingareas at its ends
 
 
 def walkable_area(survey: Survey) -> shapely.MultiPolygon:
     """Return the area of lanes, walkingareas, crossings, and junctions without these."""
     parts = [_lane(edge.lane) for edge in survey.edges.values()]
-    parts += [_lane(lane, _OVERLAP) for lane in survey.crossings.values()]
+    parts += [_lane(lane, _OVERLAP, _ASIDE) for lane in survey.crossings.values()]
     parts += [polygon_of(area) for area in survey.walkingareas.values()]
     parts += _bare_junctions(survey)
     return _joined(parts)
@@ -53,8 +54,14 @@ def walls(area: shapely.MultiPolygon) -> Array:
     return np.ascontiguousarray(np.vstack(segments))
 
 
-def _lane(lane: PedLane, extension: float = 0.0) -> shapely.Geometry:
-    """Return the area of a lane, which ends straight ``extension`` [m] beyond its ends."""
+def _lane(lane: PedLane, extension: float = 0.0, aside: float = 0.0) -> shapely.Geometry:
+    """Return the area of a lane, which ends straight ``extension`` [m] beyond its ends.
+
+    Args:
+        lane: Lane for people.
+        extension: Length [m] that it has beyond its ends.
+        aside: Distance [m] to either side that it is wider.
+    """
     points = lane.shape
     if extension:
         first, last = points[0] - points[1], points[-1] - points[-2]
@@ -66,7 +73,7 @@ def _lane(lane: PedLane, extension: float = 0.0) -> shapely.Geometry:
             ]
         )
     line = shapely.LineString(points)
-    return line.buffer(lane.width / 2, cap_style="flat", join_style="mitre")
+    return line.buffer(lane.width / 2 + aside, cap_style="flat", join_style="mitre")
 
 
 def _bare_junctions(survey: Survey) -> list[shapely.Geometry]:

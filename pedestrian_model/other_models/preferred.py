@@ -43,7 +43,7 @@ def preferred_velocities(
             x,
             y,
             start[i] + waypoint_index[i],
-            start[i + 1] - 1,
+            (start[i], start[i + 1] - 1),
             routes,
             closed,
             radii,

@@ -45,7 +45,7 @@ from pedestrian_model.other_models.social_force import (
     of_vehicles,
 )
 from pedestrian_model.parameters import SIM, VciParameters
-from pedestrian_model.routes import heading_for
+from pedestrian_model.routes import OFF_WALKWAYS, heading_for
 from pedestrian_model.stepping import FINE, divergence, first_insane, substeps, unknown_signal
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
 from pedestrian_model.vehicles import Vehicles
@@ -178,12 +178,14 @@ def _advance(
                 x,
                 y,
                 start[i] + waypoint_index[i],
-                start[i + 1] - 1,
+                (start[i], start[i + 1] - 1),
                 routes,
                 closed,
                 (r_waypoint, radius),
             )
             waypoint_index[i] = at - start[i]
+            if walled and routes[2][at] == OFF_WALKWAYS:
+                walls[0, i] = np.inf
             e_x, e_y = to_x - x, to_y - y
             left = math.sqrt(e_x * e_x + e_y * e_y)
             e_x, e_y = e_x / max(left, EPSILON), e_y / max(left, EPSILON)

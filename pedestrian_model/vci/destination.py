@@ -45,7 +45,7 @@ def set_targets(
             rows[PX, k],
             rows[PY, k],
             start[i] + waypoint_index[i],
-            start[i + 1] - 1,
+            (start[i], start[i + 1] - 1),
             routes,
             closed,
             (c.r_waypoint, c.R),

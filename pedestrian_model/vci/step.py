@@ -183,7 +183,8 @@ def step_n(
     for step in range(substeps):
         traffic = Traffic(vehicles, step * dt, relied_on)
         gather_forces(position, velocity, priority, traffic, scratch, constants, cell_list_from)
-        add_walls(rows, n, FX, FY, walls, wall_cells, c)
+        ways = order[:n], waypoint_index, routes
+        add_walls(rows, n, FX, FY, (walls, wall_cells), ways, c)
         set_targets(rows, order[:n], desired_speed, routes, waypoint_index, closed, c)
         detour(rows, n, vehicles, c)
         _integrate(rows, (n + BLOCK - 1) // BLOCK * BLOCK, dt, c)

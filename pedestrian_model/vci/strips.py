@@ -238,8 +238,8 @@ def step_domain(
             mine[PRIORITY, k] = scene.priority[who[k]]
     among = Traffic(vehicles, travelled, relied_on)
     add_vehicles_to_strips(rows, first, strips, among, constants)
-    add_walls(mine, n, FX, FY, scene.walls, scene.wall_cells, c)
-    at = state.waypoint_index
+    at, walls = state.waypoint_index, (scene.walls, scene.wall_cells)
+    add_walls(mine, n, FX, FY, walls, (who, at, scene.routes), c)
     set_targets(mine, who, scene.desired_speed, scene.routes, at, scene.closed, c)
     detour(mine, n, vehicles, c)
     _integrate(mine, n, dt, c)

@@ -192,7 +192,8 @@ def _fill_targets(
         index[0, i] = i
         rows[PX, i], rows[PY, i] = position[i, 0], position[i, 1]
         rows[FX, i], rows[FY, i] = 0.0, 0.0
-    add_walls(rows, n, FX, FY, walls, wall_cells, c)
+    ways = index[0, :n], waypoint_index, Routes(*routes)
+    add_walls(rows, n, FX, FY, (walls, wall_cells), ways, c)
     set_targets(rows, index[0, :n], desired_speed, Routes(*routes), waypoint_index, closed, c)
     detour(rows, n, vehicles, c)
     for i in range(n):

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pedestrian_model import (
+    OFF_WALKWAYS,
     OPEN_GROUND,
     SIM,
     Crowd,
@@ -168,6 +169,43 @@ def test_beside_or_before_a_line_nothing_is_passed():
     np.testing.assert_array_equal(after.waypoint_index == 1, passed)
 
 
+def test_who_is_pushed_back_through_a_line_passes_it_once_more():
+    """Otherwise a corner between them and the next line could catch them."""
+    line = [(0.0, 0.0), (5.0, -6.0)]
+    passages = [[(1.0, 0.0, 2.0), (0.0, -1.0, 1.0)]]
+    for place, index in (((-1.2, 1.5), 0), ((-0.8, 1.5), 1), ((-1.2, 2.5), 1)):
+        crowd = Crowd.create([place], [(0.0, 0.0)], V0, [line], passages=passages)
+        crowd.waypoint_index[:] = 1
+        CrowdModel().advance(crowd, NOBODY)
+        assert crowd.waypoint_index.tolist() == [index], place
+
+
+def test_who_turns_round_behind_a_line_does_not_pass_it_once_more():
+    """At a dead end people go back through the line that they came through."""
+    line = [(0.0, 0.0), (-8.0, 0.0)]
+    passages = [[(1.0, 0.0, 2.0), (-1.0, 0.0, 2.0)]]
+    crowd = Crowd.create([(0.2, 0.0)], [(0.0, 0.0)], V0, [line], passages=passages)
+    for _ in range(240):
+        CrowdModel().advance(crowd, NOBODY)
+    assert crowd.position[0, 0] < -7.0
+
+
+def test_walls_hold_nobody_on_the_way_off_the_walkways():
+    wall = Surroundings(Walls.create([(2.0, -50.0, 2.0, 50.0)]))
+    crowd = Crowd.create(
+        [(0.0, 0.0), (0.0, 9.0)],
+        [(0.0, 0.0)] * 2,
+        V0,
+        [[(5.0, 0.0)], [(5.0, 9.0)]],
+        signals=[[-1], [OFF_WALKWAYS]],
+    )
+    for _ in range(160):
+        CrowdModel().advance(crowd, NOBODY, wall)
+    held, free = crowd.position[:, 0]
+    assert held < 2.0
+    assert free > 4.0
+
+
 def test_the_aim_is_the_nearest_point_a_body_from_the_ends():
     crowd = abreast([-9.0, -1.0, 0.3, 2.0], 2.0)
     target = forces_apart(CrowdModel(), crowd, NOBODY).target
@@ -311,7 +349,7 @@ def test_a_selection_joined_with_the_others_is_everybody(lengths, bits):
         ({"passages": [[(1, 0, 1), (1, np.nan, 1)]]}, r"passages\[0\]\[1, 1\] = nan"),
         ({"passages": [[(1, 0, 1), (1, 0, -1)]]}, r"half-width of waypoint_passage\[1\] = -1"),
         ({"signals": [[0]]}, r"signals\[0\] has shape \(1,\), expected \(2\)"),
-        ({"signals": [[0, -2]]}, r"waypoint_signal\[1\] = -2, expected an index >= 0"),
+        ({"signals": [[0, -3]]}, r"waypoint_signal\[1\] = -3, expected an index >= 0"),
         ({"signals": [[0.5, 1.0]]}, r"signals\[0\] is float64, expected integers"),
     ],
 )

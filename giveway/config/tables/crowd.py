@@ -149,10 +149,11 @@ class CrowdConfig(Section):
         "ego, 'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
         flag="--zone",
     )
-    walls: bool = option(
-        False,
+    walls: bool | None = option(
         None,
-        "The edges of sidewalks, crossings and walkingareas hold people back",
+        None,
+        "The edges of sidewalks, crossings and walkingareas hold people back. By default they hold "
+        "the scenario's own people where the network has sidewalks, and not those who are added",
         flag="--walls",
     )
     threads: int = option(

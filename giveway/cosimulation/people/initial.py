@@ -45,8 +45,9 @@ def people_at_first(
     Raises:
         GivewayError: the people cannot be placed, or have no edge to live on.
     """
+    walled = bool(config.crowd.walls)
     if not config.crowd.pedestrians:
-        return Roster()
+        return Roster(walled=walled)
     prefix = free_prefix(PREFIX, (file for file in sumo.start.read if file != net_file))
     way = departures.first_path or way
     drive = free_drive(config, way) if config.crowd.sampler == ENCOUNTERS else None
@@ -58,7 +59,7 @@ def people_at_first(
     if not host:
         host = _host(_middle(config, drive), network or WalkNetwork.read(net_file), net_file)
     sumo.add_persons(spawned.ids, host)
-    return Roster(spawned.ids, _crowd(spawned), spawned.traits)
+    return Roster(spawned.ids, _crowd(spawned), spawned.traits, walled=walled)
 
 
 def people_to_come(

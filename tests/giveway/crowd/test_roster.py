@@ -9,7 +9,7 @@ from giveway.config.tables.people import PeopleConfig
 from giveway.crowd.generation.spawn import spawn
 from giveway.crowd.roster import Roster, Trait
 from giveway.geometry.path import EgoPath
-from pedestrian_model import Crowd
+from pedestrian_model import OFF_WALKWAYS, Crowd
 
 
 def at(*stations: float) -> Crowd:
@@ -29,6 +29,14 @@ def test_who_comes_back_has_its_own_name_and_index_but_a_new_row() -> None:
     assert roster.person_ids.tolist() == [1, 2, 0]
     assert [roster.ids[i] for i in roster.person_ids] == roster.names
     assert roster.crowd.position[:, 0].tolist() == [2.0, 3.0, 9.0]
+
+
+def test_walls_hold_those_who_were_added_only_if_asked_for() -> None:
+    for walled, signal in ((True, -1), (False, OFF_WALKWAYS)):
+        roster = Roster(["own"], at(0.0), walled=walled)
+        roster.add(["later"], at(1.0), {})
+        roster.take_in(["ann"], at(2.0))
+        assert roster.crowd.waypoint_signal.tolist() == [signal, signal, -1]
 
 
 def test_the_ledger_adds_up() -> None:
