@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from giveway.walkways.gates import TRACKS, Array, gate, turned
-from giveway.walkways.inside import Interior
+from giveway.walkways.inside import Interior, is_line
 from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Link, PedLane, Signal, Survey
 
@@ -119,6 +119,11 @@ class WalkGraph:
             for last in (False, True):
                 for area in self._links.get(End(signal.crossing, last), ()):
                     self._signal_of.setdefault((signal.crossing, area), i)
+
+    def at_dead_end(self, end: End) -> bool:
+        """Return whether people turn round at a lane's end on a walkingarea without an area."""
+        areas = self._links.get(end, ())
+        return bool(areas) and all(is_line(self._survey.walkingareas[area]) for area in areas)
 
     def _interior(self, area: str) -> Interior:
         """Return the inside of a walkingarea."""

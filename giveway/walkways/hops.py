@@ -13,6 +13,7 @@ from giveway.walkways.graph import End, WalkGraph
 from giveway.walkways.polyline import usable_half_width
 from giveway.walkways.reading import Survey
 
+_ROUND = 0.6  # Distance [m] behind the dead end of a road at which people turn round
 _AT_END = 1.0  # Distance [m] up to which two lanes' ends meet
 
 
@@ -128,7 +129,10 @@ class Pieces:
             onwards = g.turned(graph.lane_end(end))
         else:
             onwards = graph.follow(portal, graph.towards(end), track)
-        return np.concatenate([graph.lane_end(start), onwards])
+        gates = np.concatenate([graph.lane_end(start), onwards])
+        if graph.at_dead_end(start) and graph.at_dead_end(end):
+            gates[:, :2] += _ROUND * gates[0, 4:6]  # not before the cars that begin there
+        return gates
 
     def junction(self, end: End) -> str:
         """Return the junction at an end."""

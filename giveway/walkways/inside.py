@@ -23,16 +23,22 @@ def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
     An outline that crosses itself or is thinner than a body would fall into pieces, and gets room
     for a body along it. An outline without an area is widened to the width of its lane.
     """
-    if len(area.shape) >= 3:
+    if not is_line(area):
         polygon = shapely.make_valid(shapely.Polygon(area.shape))
         outline = shapely.LinearRing(area.shape)
-        if polygon.area > 0.01:
-            if outline.is_simple and polygon.area > BODY_RADIUS * outline.length:
-                return polygon
-            room = outline.buffer(BODY_RADIUS, join_style="mitre")
-            return shapely.union_all([polygon, room])
+        if outline.is_simple and polygon.area > BODY_RADIUS * outline.length:
+            return polygon
+        room = outline.buffer(BODY_RADIUS, join_style="mitre")
+        return shapely.union_all([polygon, room])
     line = shapely.Point(area.shape[0]) if len(area.shape) < 2 else shapely.LineString(area.shape)
     return line.buffer(area.width / 2)
+
+
+def is_line(area: PedLane) -> bool:
+    """Return whether a walkingarea's outline has no area, as at the dead end of a road."""
+    if len(area.shape) < 3:
+        return True
+    return bool(shapely.make_valid(shapely.Polygon(area.shape)).area <= 0.01)
 
 
 def rings(polygon: shapely.Polygon) -> list[Array]:
