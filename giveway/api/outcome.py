@@ -45,6 +45,7 @@ def outcome(
     rows = recorder.rows()
     egos = results_of_egos(parts.config, rows, ending, loop.endings)
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]
+    touched += [loop.meetings.touches.remark] if len(loop.meetings.touches) else []
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
     crowd_track = rows.crowd_track()
     remarks = (*remarks, *unreached(parts.config.measure, crowd_track))
@@ -71,7 +72,12 @@ def outcome(
                 vehicles={
                     ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos
                 },
-                traffic={} if parts.yielding is None else parts.yielding.report,
+                traffic=({} if parts.yielding is None else parts.yielding.report)
+                | (
+                    {"people_touched": len(loop.meetings.touches)}
+                    if len(loop.meetings.touches)
+                    else {}
+                ),
                 sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
                 time_step=parts.time_step,
                 code=provenance(parts.config),

@@ -74,7 +74,7 @@ class Loop:
         self.remarks: list[str] = []
         self._standstill = Standstill()
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
-        self._meetings = Meetings(parts.sumo, parts.yielding)
+        self.meetings = Meetings(parts.sumo, parts.yielding)
         self._instants = Instants(recorder, parts.config.record, parts.time_step)
         self._fronts = np.empty((0, 2))
         self._truth = Truth.of_people(parts.roster.crowd)
@@ -221,9 +221,9 @@ class Loop:
         self._mirror.read(self._egos, self._roster.crowd.position)
         if self._law.ruled:
             self._law.signals(clock)
-        background, meetings = self._mirror.background, self._meetings
+        background, meetings = self._mirror.background, self.meetings
         if background.ids or meetings.pending or any(ego.watches for ego in self._egos):
-            meetings.update(background, self._roster.crowd, self._egos)
+            meetings.update(background, self._roster, self._egos)
             self._mirror.mark_beside(self._egos)
         if self.followed is not None:
             self.followed.traffic.note(background)

@@ -116,7 +116,7 @@ class ReplayedLoop:
             parts.priority.update(crowd.crowd)
         self._mirror.read(self._egos, crowd.crowd.position)
         background = self._mirror.background
-        self._meetings.update(background, crowd.crowd, self._egos)
+        self._meetings.update(background, crowd, self._egos)
         self._notes.note(background)
 
     def _places(self) -> Array:

@@ -9,13 +9,14 @@ from collections.abc import Sequence
 from giveway.cosimulation.traffic.junction_approaches import TrafficWatch
 from giveway.cosimulation.traffic.merging import Merging
 from giveway.cosimulation.traffic.priority import rooms_before
+from giveway.cosimulation.traffic.touches import Touches
 from giveway.cosimulation.traffic.yielding import Yielding
+from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.ego.rules.junctions import Traffic
 from giveway.ego.rules.protocol import Told
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.session import SumoSession
-from pedestrian_model import Crowd
 
 
 class Meetings:
@@ -27,9 +28,11 @@ class Meetings:
 
     Attributes:
         pending: True if background vehicles that were slowed down may have to be released.
+        touches: Contacts of background vehicles with people.
     """
 
     pending: bool
+    touches: Touches
 
     def __init__(self, session: SumoSession, yielding: Yielding | None) -> None:
         self._session = session
@@ -37,8 +40,9 @@ class Meetings:
         self._traffic = TrafficWatch(session)
         self._merging = Merging(session.vehicles, session.lanes)
         self.pending = False
+        self.touches = Touches()
 
-    def update(self, background: BackgroundVehicles, crowd: Crowd, egos: Sequence[Ego]) -> None:
+    def update(self, background: BackgroundVehicles, roster: Roster, egos: Sequence[Ego]) -> None:
         """Update the egos' rules and the background vehicles' speed limits.
 
         Nothing happens if there are no background vehicles, no egos that watch others and nothing
@@ -46,9 +50,11 @@ class Meetings:
 
         Args:
             background: The background vehicles.
-            crowd: The pedestrians.
+            roster: The pedestrians.
             egos: Egos on the road.
         """
+        crowd = roster.crowd
+        self.touches.update(self._session.time, background, roster.names, crowd.position)
         rooms = self._look_ahead(background, egos)
         merging = [ego.rules.keeps_behind for ego in egos if ego.rules.situation.merging]
         yielding = self._yielding

@@ -71,9 +71,13 @@ def test_cars_that_yield_run_nobody_over_and_others_do(
     assert look.touched(ours, faster_than=2.0) == set()
     assert result.manifest["traffic"]["vehicles_that_yielded"] >= 3
     assert result.manifest["traffic"]["time_yielding"] > 10.0
+    assert "people_touched" not in result.manifest["traffic"]
     result, look = crossing(drive, zebra, step, False)
-    assert len(look.touched(ours, faster_than=2.0)) >= (5 if step == 1 else 1)
-    assert result.manifest["traffic"] == {}
+    touched = look.touched(ours, faster_than=2.0)
+    assert len(touched) >= (5 if step == 1 else 1)
+    assert len(touched) <= result.manifest["traffic"]["people_touched"]
+    (note,) = (text for text in result.remarks if "touched people" in text)
+    assert any(f"touched '{name}'" in note for name in ours)
 
 
 def test_cars_that_yielded_drive_on(drive: Drive) -> None:
