@@ -72,12 +72,7 @@ def outcome(
                 vehicles={
                     ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos
                 },
-                traffic=({} if parts.yielding is None else parts.yielding.report)
-                | (
-                    {"people_touched": len(loop.meetings.touches)}
-                    if len(loop.meetings.touches)
-                    else {}
-                ),
+                traffic=loop.meetings.report,
                 sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
                 time_step=parts.time_step,
                 code=provenance(parts.config),

@@ -62,6 +62,12 @@ class Meetings:
             yielding.update(background, crowd, egos, rooms, merging)
             self.pending = bool(yielding.limited)
 
+    @property
+    def report(self) -> dict[str, float]:
+        """The numbers of vehicles that yielded, of their time [s], and of people touched if any."""
+        report = {} if self._yielding is None else self._yielding.report
+        return report | ({"people_touched": len(self.touches)} if len(self.touches) else {})
+
     def _look_ahead(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> dict[str, float]:
         """Tell egos about lights and traffic; return the room [m] of each vehicle that waits."""
         session, rooms = self._session, dict[str, float]()
