@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from giveway.crowd.impasses import Impasses
+from giveway.crowd.red_walkers import RedWalkers
 from giveway.crowd.roster import Roster
 from giveway.crowd.zone import Zone
 from giveway.geometry.kernel import Array
@@ -48,9 +49,11 @@ class Exchange:
         for number, signal in enumerate(network.signals):
             self._crossings.setdefault(signal.tls, []).append((number, signal.link))
         self.unconnected = 0  # number of gaps in routes, between edges that are not connected
+        signals = len(network.signals)
+        self._red_walkers = RedWalkers(self._walkers.red_times(), signals, first=signals)
         self.surroundings = Surroundings(
             walls=Walls.create(network.wall_segments) if walls else None,
-            closed=np.zeros(len(network.signals), dtype=np.bool_),
+            closed=np.zeros(signals + self._red_walkers.size, dtype=np.bool_),
         )
         self._impasses = Impasses(roster, self.surroundings, network.walkable) if walls else None
 
@@ -72,15 +75,21 @@ class Exchange:
 
     def _read_lights(self) -> None:
         """Open or close every crossing by the state of its traffic light."""
-        if not len(self._roster):
+        bold = self._red_walkers
+        if not len(self._roster) and not bold:
             return
         closed = self.surroundings.closed
         for system, crossings in self._crossings.items():
             state = self._session.light_state(system)
-            if state != self._states.get(system):
+            before = self._states.get(system, "")
+            if state != before:
                 self._states[system] = state
                 for number, link in crossings:
                     closed[number] = state[link] in _CLOSED
+                    if bold and state[link] != before[link : link + 1]:
+                        bold.note(number, state[link], self._session.time)
+        if bold:
+            bold.close(closed, self._session.time)
 
     def _take_over(self, egos: Array) -> None:
         if self._zone.nowhere:
@@ -111,7 +120,10 @@ class Exchange:
             [w.desired_speed for w in walkers],
             [route.waypoints for route in routes],
             passages=[route.passages for route in routes],
-            signals=[route.signals for route in routes],
+            signals=[
+                self._red_walkers.signals_for(walker.type, route.signals)
+                for walker, route in zip(walkers, routes, strict=True)
+            ],
         )
 
     def _hand_back(self, egos: Array) -> None:

@@ -28,6 +28,7 @@ from giveway.sumo.persons.return_places import ReturnPlaces
 from giveway.sumo.persons.walk_speeds import WalkSpeeds
 
 _WALKING = 2  # SUMO's number of the walking stage type
+_RED_TIME = "junctionModel.jmDriveAfterRedTime"
 _SLOWEST = 0.1  # Smallest desired speed [m/s]
 _JUMPED = 2.0  # Share of the desired speed above which SUMO has moved a person, who has not walked
 
@@ -176,6 +177,12 @@ class ScenarioPersons:
 
     def _lose(self, name: str) -> None:
         self._release(name, "lost")
+
+    def red_times(self) -> dict[str, float]:
+        """Return the time [s] from the beginning of red on up to which people of types walk."""
+        types = self._sumo.vehicletype
+        told = {name: types.getParameter(name, _RED_TIME) for name in types.getIDList()}
+        return {name: float(time) for name, time in told.items() if time and float(time) > 0.0}
 
     # --- taking over --------------------------------------------------------------------------
 

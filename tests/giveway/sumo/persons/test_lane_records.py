@@ -95,6 +95,16 @@ def test_people_get_green_when_they_ask_for_it(
     assert 3.0 < stands < sum(plain) + 7 * 5.0
 
 
+@pytest.mark.parametrize("time", ["", 'jmDriveAfterRedTime="1000"'])
+def test_who_may_walk_at_red_does(written: Written, tmp_path: Path, time: str) -> None:
+    kind = f'<vType id="bold" vClass="pedestrian" {time}/>'
+    people = PEOPLE.format(period=25, at=50).replace("<personFlow", '<personFlow type="bold"')
+    red = '<phase duration="1000" state="GGr"/>'
+    light = f'<tlLogic id="m" type="static" programID="red" offset="0">{red}</tlLogic>'
+    result, _ = held_by_giveway(written(kind + people, light, 0.5), tmp_path / "run")
+    assert result.manifest["pedestrians"]["arrived"] == (7 if time else 0)
+
+
 @pytest.mark.parametrize("step", [0.1, 0.5])
 def test_counts_and_sums_are_those_of_the_trajectories(
     written: Written, tmp_path: Path, step: float
