@@ -164,3 +164,21 @@ def test_nobody_jumps_in_sumo_when_handed_back(
             name, place = element.attrib["id"], tuple(float(element.attrib[k]) for k in "xy")
             assert math.dist(place, last.get(name, place)) < 1.0 + 0.5 * 2.0, name
             last[name] = place
+
+
+def test_people_of_a_saved_state_are_taken_over_and_arrive(
+    scenario: Callable[..., Path], call_sumo: Callable[..., str]
+) -> None:
+    people = "".join(
+        f'<person id="p{i}" depart="{i * 10}"><walk from="A1B1" to="B1C1"/></person>'
+        for i in range(6)
+    )
+    config = scenario(people, '<load-state value="state.xml"/>', end=400, step=0.5)
+    loading = config.read_text()
+    config.write_text(loading.replace('<load-state value="state.xml"/>', ""))
+    saving = ("--save-state.times", "40", "--save-state.files", "state.xml", "--end", "41")
+    call_sumo("sumo", "-c", config, *saving, "--save-state.transportables", cwd=config.parent)
+    config.write_text(loading.replace('<begin value="0"/>', '<begin value="40"/>'))
+    result = giveway.run({"scenario": str(config), "ego": NO_EGO, "crowd": {"zone": "everywhere"}})
+    ledger = result.manifest["pedestrians"]
+    assert (ledger["taken_over"], ledger["arrived"]) == (6, 6)
