@@ -22,6 +22,7 @@ from giveway.errors import ScenarioError, SumoError
 from giveway.geometry.path import Pose, heading_to_angle
 from giveway.scenario_files import ScenarioFiles, StartOptions, prepare_start
 from giveway.scenario_files.outputs import is_file
+from giveway.sumo.devices import Devices
 from giveway.sumo.first_reading import read_first
 from giveway.sumo.library import direct, import_libsumo
 from giveway.sumo.network.footpaths import FootPaths
@@ -98,6 +99,7 @@ class SumoSession:
         self._moves_pending = False
         self.lanes = Lanes(self._sumo, self._config_file, scenario.net_file)
         self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)
+        self.devices = Devices(self._sumo)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._persons: ScenarioPersons | None = None

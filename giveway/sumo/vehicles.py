@@ -17,6 +17,7 @@ from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.types import ego_type, inserted_type
 
 _PARKING_AREA = 64  # SUMO's flag of a stop in a parking area
+_TRIGGERED = 2 | 4  # its flags of stops that wait for persons, and for containers
 _ALL_CHECKS, _WITHOUT_SAFE_SPEED = 31, 30  # SUMO's speed modes
 
 
@@ -48,6 +49,7 @@ class PlannedStop(NamedTuple):
     duration: float  # [s] duration; not given if it is not positive
     until: float  # [s] end of the stop on SUMO's clock; not given if negative
     beside: bool  # True if it is in a parking area beside the lane
+    triggered: bool = False  # True if it lasts until passengers or containers have boarded
 
 
 class SumoVehicles:
@@ -151,7 +153,9 @@ class SumoVehicles:
         """Return the stops that are ahead of the vehicle, in order."""
         return [
             PlannedStop(
-                s.lane, s.startPos, s.endPos, s.duration, s.until, bool(s.stopFlags & _PARKING_AREA)
+                *(s.lane, s.startPos, s.endPos, s.duration, s.until),
+                beside=bool(s.stopFlags & _PARKING_AREA),
+                triggered=bool(s.stopFlags & _TRIGGERED),
             )
             for s in self._vehicle.getStops(name)
         ]

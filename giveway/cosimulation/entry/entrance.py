@@ -1,10 +1,12 @@
 """The entrance of a waiting ego: inserted where its route begins, or taken over where it is."""
 
 import math
+from collections.abc import Sequence
 
 from giveway.config.option import LANE
 from giveway.config.tables.basics import DEFAULT_SPEED
 from giveway.cosimulation.entry.joining import join
+from giveway.cosimulation.entry.other_plans import remarks_on_route, require_own_plan
 from giveway.cosimulation.entry.smoothing import smoothed
 from giveway.cosimulation.entry.stop_places import SERVING, lanes_of, on_path, placed
 from giveway.cosimulation.law_records import LawfulPlaces, way_of
@@ -19,9 +21,10 @@ from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.geometry.slope import Slope
 from giveway.run_data.way import EgoWay, JunctionOnWay
+from giveway.scenario_files.rerouters import rerouters
 from giveway.sumo.network.lane_path import LanePath
 from giveway.sumo.session import SumoSession
-from giveway.sumo.vehicles import VehicleState
+from giveway.sumo.vehicles import PlannedStop, VehicleState
 from giveway.walkways import WalkNetwork
 
 _STEEP = 0.01  # Slope [rad] below which no remark is made
@@ -77,6 +80,8 @@ class Entrance:
         stops = vehicles.stops(ego.id)
         keep = ego.config.rules.stops
         serves = state.kind in SERVING if keep is None else keep
+        if ego.taken_over:
+            self._require_own_plan(ego.id, state, stops, serves)
         places = placed(stops, state) if serves else {}
         lane_path = self._session.lanes.along(
             state.edges,
@@ -107,6 +112,15 @@ class Entrance:
             on_path(places, stops, path, joined, self._session.lanes),
         )
         return self._on_the_road(route, speed)
+
+    def _require_own_plan(
+        self, name: str, state: VehicleState, stops: Sequence[PlannedStop], serves: bool
+    ) -> None:
+        """Refuse a vehicle that SUMO directs, and remark on what would change its route."""
+        devices = self._session.devices
+        require_own_plan(name, devices, stops, serves=serves)
+        found = rerouters(self._session.start.read)
+        self.remarks += remarks_on_route(name, state.edges, devices, found)
 
     def _remark_on_stops(self, ego: WaitingEgo, served: int, stops: int) -> None:
         """Add a remark on what becomes of the stops of a vehicle that is taken over."""
