@@ -20,6 +20,7 @@ from giveway.results.effect import Effect, who_gave_way
 from giveway.results.ego_result import EgoResult, results_of_egos
 from giveway.results.provenance import RunFacts, manifest
 from giveway.results.run_result import RunResult
+from giveway.run_data.footways import NO_FOOTWAYS
 from giveway.run_data.progress import Ending
 from giveway.sumo.network.painted_marks import road_marks
 from sumo_scenarios import Scenario
@@ -85,6 +86,7 @@ def outcome(
         sumo_messages=parts.sumo.messages,
         road=parts.sumo.lanes.areas(),
         marks=road_marks(parts.sumo.lanes),
+        footways=NO_FOOTWAYS if parts.exchange is None else parts.exchange.footways,
         remarks=remarks,
     )
 

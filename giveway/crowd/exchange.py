@@ -10,6 +10,7 @@ from giveway.crowd.red_walkers import RedWalkers
 from giveway.crowd.roster import Roster
 from giveway.crowd.zone import Zone
 from giveway.geometry.kernel import Array
+from giveway.run_data.footways import Footway, Footways
 from giveway.sumo.persons.scenario_persons import Arrival, Person
 from giveway.sumo.session import SumoSession
 from giveway.walkways import WalkNetwork
@@ -56,6 +57,16 @@ class Exchange:
             closed=np.zeros(signals + self._red_walkers.size, dtype=np.bool_),
         )
         self._impasses = Impasses(roster, self.surroundings, network.walkable) if walls else None
+
+    @property
+    def footways(self) -> Footways:
+        """The crossings and edges on which people walk."""
+        crossings = [
+            Footway(one.lane, one.ends, one.width, bool(one.system))
+            for one in self._session.lanes.crossings
+        ]
+        edges = [Footway(*line, 0.0, False) for line in self._network.centre_lines.items()]
+        return Footways(tuple(crossings), tuple(edges))
 
     def update(self, egos: Array) -> None:
         """Hand people back, take people over and read the lights, once after each SUMO step.

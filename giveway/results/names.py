@@ -16,6 +16,7 @@ TABLES = (
     "people",
     "signals",
     "signal_delays",
+    "waiting",
     "measures",
 )
 """All tables that a run can have; its ``schemas`` list the tables that it has."""

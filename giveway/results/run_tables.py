@@ -24,6 +24,7 @@ from giveway.metrics import (
 from giveway.metrics.baseline import BASELINE_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.metrics.travel import SIGNAL_DELAY_FIELDS, TRAVEL_FIELDS
+from giveway.metrics.waiting import WAITING_FIELDS, waiting_by_footway
 from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
 from giveway.results.law import (
@@ -43,6 +44,7 @@ from giveway.run_data.columns import (
     TRAJECTORY_COLUMNS,
     Column,
 )
+from giveway.run_data.footways import NO_FOOTWAYS, Footways
 from giveway.run_data.progress import Ending
 from giveway.run_data.road_marks import UNMARKED, RoadMarks
 from giveway.run_data.tracks import (
@@ -82,6 +84,7 @@ class RunTables:
         remarks: Remarks on differences from the scenario or from what the user may expect.
         effect: Comparison of the people with those of the counterfactual run, or None without one.
         marks: Crossings and stop lines of the network.
+        footways: Crossings and edges on which people walk, if any of SUMO's people were moved.
     """
 
     config: RunConfig
@@ -102,6 +105,7 @@ class RunTables:
     remarks: tuple[str, ...]
     effect: Effect | None = None
     marks: RoadMarks = UNMARKED
+    footways: Footways = NO_FOOTWAYS
 
     @property
     def completed(self) -> bool:
@@ -205,6 +209,14 @@ class RunTables:
         return pd.DataFrame(rows, columns=[column.name for column in SIGNAL_DELAY_COLUMNS])
 
     @cached_property
+    def waiting(self) -> "pd.DataFrame":
+        """The table of the time for which people stood, by crossing and by edge."""
+        import pandas as pd
+
+        rows = waiting_by_footway(self.time, self.crowd_track, self.footways)
+        return pd.DataFrame(rows, columns=[column.name for column in WAITING_FIELDS])
+
+    @cached_property
     def people(self) -> "pd.DataFrame":
         """The table of planned routes and desired speeds of people."""
         return people_table(self.time, self.people_track, self.crowd_track.ids)
@@ -299,6 +311,8 @@ class RunTables:
             optional |= {"signals": SIGNAL_COLUMNS}
         if any(ego.signal_delays for ego in self.egos):
             optional |= {"signal_delays": SIGNAL_DELAY_COLUMNS}
+        if self.footways.edges:
+            optional |= {"waiting": WAITING_FIELDS}
         if self.config.measure:
             optional |= {"measures": MEASURE_COLUMNS}
         return {

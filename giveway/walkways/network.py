@@ -83,6 +83,11 @@ class WalkNetwork:
         """
         return self._router.route(edges, position, lane, arrival_position, offset_side)
 
+    @property
+    def centre_lines(self) -> dict[str, Array]:
+        """The centre lines (k, 2) [m] of the edges on which people walk, by SUMO's id."""
+        return {edge: line.points for edge, line in self._graph.lines.items()}
+
     def nearest_lane(self, x: float, y: float) -> NearestLane | None:
         """Return the nearest lane outside of junctions on which SUMO lets people walk, or None."""
         edges, tree = self._index

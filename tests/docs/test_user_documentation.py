@@ -21,6 +21,7 @@ from giveway.metrics import (
 from giveway.metrics.baseline import BASELINE_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.metrics.travel import SIGNAL_DELAY_FIELDS, TRAVEL_FIELDS
+from giveway.metrics.waiting import WAITING_FIELDS
 from giveway.recordings import KNOWN
 from giveway.recordings.describing import RECORDING_FIELDS
 from giveway.recordings.measuring import DRIVE_FIELDS, PERSON_FIELDS
@@ -53,6 +54,7 @@ DOCS = Path(__file__).parents[2] / "docs"
         BASELINE_FIELDS,
         TRAVEL_FIELDS,
         SIGNAL_DELAY_FIELDS,
+        WAITING_FIELDS,
         LEDGER_COLUMNS,
         PEOPLE_COLUMNS,
         SIGNAL_COLUMNS,
