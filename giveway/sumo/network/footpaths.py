@@ -11,7 +11,9 @@ from typing import Any
 from giveway.sumo.network.lanes import admits
 
 _IN_JUNCTION = re.compile(r"^:(.*)_[wc]?\d+$")  # the edge of a crossing, walkingarea or turn
-_HALF_BODY = 0.25  # Distance [m] that a person keeps from the lane's edge
+_ASIDE = 1.0  # Distance [m] beside a lane, from which SUMO lets people walk back onto it
+_HALF_BODY = 0.25  # Distance [m] that a person keeps from the lane's edge near its ends
+_NEAR_END = 8.0  # Distance [m] to a lane's ends, from which on a person may be beside it
 _LANE_END = 0.05  # Distance [m] that a person keeps from the lane's ends
 
 
@@ -21,7 +23,7 @@ class Foot:
 
     lane: str
     position: float  # [m] place along the lane, in SUMO's metres
-    lateral: float  # [m] offset to the left of the centre line, at most half the usable width
+    lateral: float  # [m] offset to the left of the centre line, at most 1 m beside the lane
     distance: float  # [m] distance from the centre line
     apart: float = 0.0  # [m] distance from the place to which SUMO would move a person
 
@@ -76,7 +78,9 @@ class FootPaths:
             passed += length
         distance, along, side = best
         position = _inside(lane, along * lane.stretch)
-        lateral = min(max(side, -lane.half_width), lane.half_width)
+        far = _NEAR_END < position < lane.length - _NEAR_END
+        reach = lane.half_width + (_HALF_BODY + _ASIDE if far else 0.0)
+        lateral = min(max(side, -reach), reach)
         there = _point(lane.shape, position / lane.stretch, lateral)
         return Foot(lane.name, position, lateral, distance, math.dist(there, (x, y)))
 
@@ -143,10 +147,13 @@ class FootPaths:
         return end in touched
 
     def gap(self, edge: str, following: str) -> float:
-        """Return the smallest distance [m] between the ends of the footpaths of two edges."""
-        lanes = self._lane(edge), self._lane(following)
-        ends = [(lane.shape[0], lane.shape[-1]) for lane in lanes if lane is not None]
-        return min((math.dist(*pair) for pair in itertools.product(*ends[:2])), default=math.inf)
+        """Return the distance [m] from the end of a footpath to the beginning of the next one."""
+        lane, there = self._lane(edge), self._lane(following)
+        if lane is None or there is None:
+            return math.inf
+        last = self.forward(edge, following) is not False
+        meets = self.junctions(edge)[last] == self.junctions(following)[0]
+        return math.dist(lane.shape[-last], there.shape[0 if meets else -1])
 
     def is_straight(self, edge: str, position: float, reach: float) -> bool:
         """Return whether a footpath has no bend and no end within ``reach`` [m] of a position."""

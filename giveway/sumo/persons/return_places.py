@@ -85,7 +85,9 @@ class ReturnPlaces:
         edge = place.edges[0]
         if not following or following.startswith(":") or self._paths.gap(edge, following) < JUMP:
             return False
-        ends = (self._paths.end_at(edge, end) for end in self._paths.junctions(following))
+        own, others = self._paths.junctions(edge), self._paths.junctions(following)
+        shared = [end for end in own if end in others] or own  # SUMO throws over junctions, too
+        ends = (self._paths.end_at(edge, end) for end in shared)
         if any(end is not None and abs(end - place.foot.position) < _LAST for end in ends):
             self._before_gap[name] = edge
             return True

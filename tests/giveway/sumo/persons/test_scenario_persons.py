@@ -195,7 +195,7 @@ def test_sumo_finds_no_way_and_the_person_stays_held(look: Look) -> None:
         (50.0, 50.0, "no such edge"),
         (math.nan, 50.0, "A1B1"),
         (50.0, math.inf, "A1B1"),
-        (50.0, 97.9, "A1B1"),  # too far from the street's middle
+        (50.0, 98.9, "A1B1"),  # too far from the street's middle
     ]
     seen = look("refuse", "signals", person(EAST_AND_NORTH), places=nowhere)
     assert seen == {"answers": [False] * 4, "held": ["a"], "there": True}
