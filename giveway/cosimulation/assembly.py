@@ -17,7 +17,9 @@ from giveway.cosimulation.people.initial import people_at_first, people_to_come
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.traffic.yielding import Yielding
 from giveway.crowd.exchange import Exchange
+from giveway.crowd.gap_acceptance import GapAcceptance
 from giveway.crowd.models import model_of
+from giveway.crowd.motion.at_kerb import HeldAtKerb
 from giveway.crowd.priority import PriorityOnFoot
 from giveway.crowd.roster import Roster
 from giveway.crowd.zone import Zone
@@ -71,6 +73,11 @@ class Parts:
     net_file: Path  # Network file of the scenario
     secluded: bool  # True: only the egos and the added people are ever there
     remarks: tuple[str, ...]  # Remarks for the user
+
+    @property
+    def gaps(self) -> GapAcceptance | None:
+        """The people at crossings where vehicles have priority, or None without such a crossing."""
+        return None if self.exchange is None else self.exchange.gaps
 
     @property
     def all_remarks(self) -> tuple[str, ...]:
@@ -166,7 +173,12 @@ def assemble(
             zone if walkers else Zone("none", 0.0),
             roster,
             walls=walls,
+            seed=config.seed,
         )
+    model = model_of(config, time_step, roster, threads=config.crowd.threads)
+    if network is not None and exchange is not None and exchange.gaps is not None:
+        first, count = len(network.signals), len(network.gap_crossings)
+        model = HeldAtKerb(model, first, count, network.sidewalks(exchange.gaps.kerbs))
     yielding = None
     if config.traffic.yielding and (added or walkers or egos):
         yielding = Yielding(sumo.vehicles, sumo.step_length)
@@ -183,7 +195,7 @@ def assemble(
         departures=departures,
         roster=roster,
         arrivals=arrivals,
-        crowd_model=model_of(config, time_step, roster, threads=config.crowd.threads),
+        crowd_model=model,
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
         yielding=yielding,

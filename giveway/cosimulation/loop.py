@@ -74,7 +74,7 @@ class Loop:
         self.remarks: list[str] = []
         self._standstill = Standstill()
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
-        self.meetings = Meetings(parts.sumo, parts.yielding)
+        self.meetings = Meetings(parts.sumo, parts.yielding, parts.gaps)
         self._instants = Instants(recorder, parts.config.record, parts.time_step)
         self._fronts = np.empty((0, 2))
         self._truth = Truth.of_people(parts.roster.crowd)
@@ -222,6 +222,7 @@ class Loop:
         if self._law.ruled:
             self._law.signals(clock)
         background, meetings = self._mirror.background, self.meetings
+        meetings.let_cross(background, self._egos)
         if background.ids or meetings.pending or any(ego.watches for ego in self._egos):
             meetings.update(background, self._roster, self._egos)
             self._mirror.mark_beside(self._egos)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from giveway.crowd.gap_acceptance import GapAcceptance
 from giveway.crowd.impasses import Impasses
 from giveway.crowd.red_walkers import RedWalkers
 from giveway.crowd.roster import Roster
@@ -28,6 +29,10 @@ class Exchange:
         zone: Zone in which giveway moves pedestrians.
         roster: Crowd that walkers join.
         walls: Whether the edges of walkways are walls.
+        seed: Seed of the differences between people.
+
+    Attributes:
+        gaps: People at crossings where vehicles have priority, or None without such a crossing.
     """
 
     def __init__(
@@ -38,6 +43,7 @@ class Exchange:
         roster: Roster,
         *,
         walls: bool,
+        seed: int = 0,
     ) -> None:
         self._session = session
         self._network = network
@@ -51,12 +57,23 @@ class Exchange:
             self._crossings.setdefault(signal.tls, []).append((number, signal.link))
         self.unconnected = 0  # number of gaps in routes, between edges that are not connected
         signals = len(network.signals)
-        self._red_walkers = RedWalkers(self._walkers.red_times(), signals, first=signals)
+        waits = signals + 2 * len(network.gap_crossings)
+        self._red_walkers = RedWalkers(self._walkers.red_times(), signals, first=waits)
         self.surroundings = Surroundings(
             walls=Walls.create(network.wall_segments) if walls else None,
-            closed=np.zeros(signals + self._red_walkers.size, dtype=np.bool_),
+            closed=np.zeros(waits + self._red_walkers.size, dtype=np.bool_),
         )
         self._impasses = Impasses(roster, self.surroundings, network.walkable) if walls else None
+        self.gaps = self._gaps(seed) if network.gap_crossings else None
+
+    def _gaps(self, seed: int) -> GapAcceptance:
+        """Return the part that lets people wait at crossings where vehicles have priority."""
+        network, closed = self._network, self.surroundings.closed
+        known = {place.lane.rpartition("_")[0]: place for place in self._session.lanes.crossings}
+        crossings = [known.get(edge) for edge in network.gap_crossings]
+        first = len(network.signals)
+        closed[first : first + len(crossings)] = [crossing is not None for crossing in crossings]
+        return GapAcceptance(self._roster, crossings, first, self._session.step_length, seed)
 
     @property
     def footways(self) -> Footways:
@@ -112,6 +129,9 @@ class Exchange:
         walkers = self._walkers.take([ids[i] for i in np.flatnonzero(inside)])
         if walkers:
             self._roster.take_in([walker.id for walker in walkers], self._crowd(walkers))
+        if self.gaps is not None:
+            for walker in walkers:
+                self.gaps.meet(walker.id, self._walkers.gap_habit(walker))
 
     def _crowd(self, walkers: Sequence[Person]) -> Crowd:
         routes = [

@@ -77,12 +77,14 @@ class WalkGraph:
             name: Polyline.through(lane.shape) for name, lane in survey.crossings.items()
         }
         self.signals: list[Signal] = []
+        self.gap_crossings: list[str] = []  # edges of the crossings at which people wait for a gap
         self._signal_of: dict[tuple[str, str], int] = {}
         self._links: dict[End, list[str]] = defaultdict(list)
         self._ends_at: dict[str, list[End]] = defaultdict(list)
         for link in survey.links:
             self._add(link)
         self._inherit_signals()
+        self._number_gaps()
         self._portals: list[Portal] = []
         self.interior = cache(self._interior)
         self.portals_of = cache(self._portals_of)
@@ -106,6 +108,8 @@ class WalkGraph:
         self._ends_at[area].append(end)
         if link.signal is not None and end.edge in survey.crossings:
             self._signal_of[end.edge, area] = self._signal(*link.signal, end.edge)
+        elif not link.priority and end.edge in survey.crossings:
+            self.gap_crossings.append(end.edge)
 
     def _signal(self, tls: str, index: int, crossing: str) -> int:
         signal = Signal(tls, index, crossing)
@@ -119,6 +123,15 @@ class WalkGraph:
             for last in (False, True):
                 for area in self._links.get(End(signal.crossing, last), ()):
                     self._signal_of.setdefault((signal.crossing, area), i)
+
+    def _number_gaps(self) -> None:
+        """Let people wait for a gap at both ends of a crossing; gaps come after the signals."""
+        lit = {signal.crossing for signal in self.signals}
+        self.gap_crossings = [edge for edge in dict.fromkeys(self.gap_crossings) if edge not in lit]
+        for i, edge in enumerate(self.gap_crossings, len(self.signals)):
+            for last in (False, True):
+                for area in self._links.get(End(edge, last), ()):
+                    self._signal_of[edge, area] = i
 
     def at_dead_end(self, end: End) -> bool:
         """Return whether people turn round at a lane's end on a walkingarea without an area."""

@@ -31,12 +31,15 @@ class WalkNetwork:
 
     Attributes:
         signals: Traffic-light links that govern crossings.
+        gap_crossings: Edges of the crossings at which people wait for a gap. On routes, number k
+            of them is the signal ``len(signals) + k``.
         has_walkingareas: True if the network has any.
         has_sidewalks: True if there is a lane that pedestrians may use and cars may not.
         boundary: Extent x_min, y_min, x_max, y_max [m] of the network.
     """
 
     signals: tuple[Signal, ...]
+    gap_crossings: tuple[str, ...]
     has_walkingareas: bool
     has_sidewalks: bool
     boundary: tuple[float, float, float, float]
@@ -46,6 +49,7 @@ class WalkNetwork:
         self._graph = WalkGraph(found)
         self._router = Router(found, self._graph)
         self.signals = tuple(self._graph.signals)
+        self.gap_crossings = tuple(self._graph.gap_crossings)
         self.has_walkingareas = bool(found.walkingareas)
         self.has_sidewalks = found.has_sidewalks
         self.boundary = found.boundary or _extent(found)

@@ -14,6 +14,7 @@ from giveway.walkways.gates import Array
 _PEDESTRIAN = "pedestrian"
 _CAR = "passenger"
 _ON_FOOT = frozenset(("pedestrian", "bicycle"))
+_PRIORITY = "MOo"  # States of a link onto a crossing on which people have priority
 _DEFAULT_WIDTH = 3.2  # Width [m] of a lane in SUMO that names none
 
 
@@ -59,6 +60,7 @@ class Link:
     source: str  # edge id
     target: str  # edge id
     signal: tuple[str, int] | None  # the light's id and link index
+    priority: bool = True  # False if people wait for a gap here and there is no light
 
 
 @dataclass
@@ -154,7 +156,8 @@ class _Reader:
             return
         lit = "tl" in attributes
         signal = (attributes["tl"], int(attributes["linkIndex"])) if lit else None
-        found.links.append(Link(source, target, signal))
+        priority = lit or attributes.get("state", "M") in _PRIORITY
+        found.links.append(Link(source, target, signal, priority))
 
     def _walked(self, edge: str) -> bool:
         return edge in self.survey.walkingareas or edge in self.survey.crossings

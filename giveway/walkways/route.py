@@ -26,7 +26,8 @@ class WalkRoute:
         waypoints: Way-points (k, 2) [m] in the middle of the walkway, without the present place.
         passages: Unit direction in which a way-point's line is crossed, and distance [m] beside the
             way-point up to which a crossing of the line counts as a passage (k, 3).
-        signals: Index (k,) into ``WalkNetwork.signals`` where people wait for green, else -1.
+        signals: Index (k,) into ``WalkNetwork.signals`` where people wait for green, a larger one
+            where they wait for a gap, else -1.
         gaps: Number of missing connections, over which the route goes straight on.
     """
 

@@ -69,7 +69,7 @@ class ReplayedLoop:
         self._read = self._k - 1 if self._k == 0 else self._k
         self._driven = driven
         self._egos: list[Ego] = []
-        self._meetings = Meetings(parts.sumo, parts.yielding)
+        self._meetings = Meetings(parts.sumo, parts.yielding, parts.gaps)
 
     def run(self, last: int, interrupt: DeferredInterrupt, *, to_the_end: bool = False) -> bool:
         """Step up to the control step ``last``, or until nobody who counts is on the way.
@@ -116,6 +116,7 @@ class ReplayedLoop:
             parts.priority.update(crowd.crowd)
         self._mirror.read(self._egos, crowd.crowd.position)
         background = self._mirror.background
+        self._meetings.let_cross(background, ())
         self._meetings.update(background, crowd, self._egos)
         self._notes.note(background)
 

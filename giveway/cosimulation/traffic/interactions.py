@@ -1,16 +1,19 @@
 """The interactions of egos and background vehicles: at junctions, at merge points and on the road.
 
-Egos get the states of lights and traffic. Background vehicles let egos with priority go first, keep
+People get the vehicles that approach the crossings where they wait for a gap. Egos get the states
+of lights and traffic. Background vehicles let egos with priority go first, keep
 behind egos that merge, and brake for pedestrians.
 """
 
 from collections.abc import Sequence
 
+from giveway.cosimulation.traffic.crossing_traffic import CrossingTraffic
 from giveway.cosimulation.traffic.junction_approaches import TrafficWatch
 from giveway.cosimulation.traffic.merging import Merging
 from giveway.cosimulation.traffic.priority import rooms_before
 from giveway.cosimulation.traffic.touches import Touches
 from giveway.cosimulation.traffic.yielding import Yielding
+from giveway.crowd.gap_acceptance import GapAcceptance
 from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.ego.rules.junctions import Traffic
@@ -25,6 +28,7 @@ class Meetings:
     Args:
         session: The running simulation.
         yielding: Part that slows background vehicles down, or None if they do not yield.
+        gaps: People at crossings where vehicles have priority, or None without such a crossing.
 
     Attributes:
         pending: True if background vehicles that were slowed down may have to be released.
@@ -34,13 +38,27 @@ class Meetings:
     pending: bool
     touches: Touches
 
-    def __init__(self, session: SumoSession, yielding: Yielding | None) -> None:
+    def __init__(
+        self, session: SumoSession, yielding: Yielding | None, gaps: GapAcceptance | None = None
+    ) -> None:
         self._session = session
         self._yielding = yielding
         self._traffic = TrafficWatch(session)
         self._merging = Merging(session.vehicles, session.lanes)
+        self._gaps, self._approaches = gaps, CrossingTraffic(session)
         self.pending = False
         self.touches = Touches()
+
+    def let_cross(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> None:
+        """Let people at crossings where vehicles have priority decide whether they cross.
+
+        Args:
+            background: The background vehicles.
+            egos: Egos on the road.
+        """
+        if self._gaps is not None:
+            self._approaches.read(background, egos)
+            self._gaps.update(self._approaches.on)
 
     def update(self, background: BackgroundVehicles, roster: Roster, egos: Sequence[Ego]) -> None:
         """Update the egos' rules and the background vehicles' speed limits.
@@ -59,7 +77,8 @@ class Meetings:
         merging = [ego.rules.keeps_behind for ego in egos if ego.rules.situation.merging]
         yielding = self._yielding
         if yielding is not None and (background.ids or yielding.limited):
-            yielding.update(background, crowd, egos, rooms, merging)
+            held = None if self._gaps is None else self._gaps.held
+            yielding.update(background, crowd, egos, rooms, merging, held)
             self.pending = bool(yielding.limited)
 
     @property

@@ -18,6 +18,7 @@ from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller.driving_constants import CREEPING, STANDING
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
@@ -43,11 +44,15 @@ _DISTANCE = 2.0  # Distance [m] before a pedestrian at which vehicles want to st
 _CREEPS_TO = 0.8  # Distance [m] before a person who stands, to which a stuck vehicle creeps
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # Smallest lateral distance [m] that vehicles keep from an ego
+# Distance [m] from a vehicle's side to the middle of a person who waits for a gap, from which on
+# it passes: half of the shoulder breadth and 0.03 m
+_BESIDE = 0.3
 _BEHIND_EGO = 0.5  # Distance [m] behind an ego at which vehicles stand
 _BEFORE_LINE = 1.0  # Distance [m] before their line at which vehicles wait
 _PULLING_AWAY = 2.0  # Speed [m/s] at which a stuck vehicle pulls away
 _APART = 0.5  # Largest distance [m] between the points that stand for an ego's outline
 NOBODY: Mapping[str, float] = MappingProxyType({})
+Marks = NDArray[np.bool_]
 
 
 class Yielding:
@@ -87,6 +92,7 @@ class Yielding:
         egos: Sequence[Ego] = (),
         rooms: Mapping[str, float] = NOBODY,
         merging: Sequence[Mapping[str, FollowingConstraint]] = (),
+        held: Marks | None = None,
     ) -> None:
         """Limit the vehicles that have to yield, and release the others, after each SUMO step.
 
@@ -97,8 +103,9 @@ class Yielding:
             rooms: Distance [m] to the line of each vehicle that waits there for an ego, by its id.
             merging: Following constraints of the vehicles that let each ego merge before them, by
                 their ids.
+            held: Marks (n,) of the people who wait for a gap, or None without any.
         """
-        limits = self._limits(background, crowd) if background.ids and len(crowd) else {}
+        limits = self._limits(background, crowd, held) if background.ids and len(crowd) else {}
         if background.ids and egos:
             for name, limit in self._behind_egos(background, egos).items():
                 limits[name] = min(limit, limits.get(name, math.inf))
@@ -121,7 +128,9 @@ class Yielding:
         self._ever.update(limits)
         self._time += self._step_length * len(limits)
 
-    def _limits(self, background: BackgroundVehicles, crowd: Crowd) -> dict[str, float]:
+    def _limits(
+        self, background: BackgroundVehicles, crowd: Crowd, held: Marks | None
+    ) -> dict[str, float]:
         """The speed limit [m/s] of each vehicle with a pedestrian ahead."""
         # a vehicle decelerates with at least 2 m/s^2, from which this sight follows
         sight = (
@@ -131,7 +140,11 @@ class Yielding:
         self._lane_paths.forget(background.ids)
         found = (np.column_stack([background.x, background.y]), positions, numbers)
         half_width = background.width / 2 + CORRIDOR_MARGIN
-        gaps = self._gaps(found, sight, half_width, _expected(crowd))
+        waits = held is not None and bool(held.any())
+        gaps = self._gaps(found, sight, half_width, _expected(crowd, held if waits else None))
+        if waits:
+            beside = self._gaps(found, sight, background.width / 2 + _BESIDE, crowd.position[held])
+            gaps = np.minimum(gaps, beside)
         near = np.flatnonzero(gaps <= sight)
         stuck = self._waits.stuck(background, near, crowd, self._vehicles)
         here = gaps if not stuck else self._gaps(found, sight, half_width, crowd.position)
@@ -250,9 +263,11 @@ class Yielding:
         return limits
 
 
-def _expected(crowd: Crowd) -> Array:
-    """The present and expected positions (k, 2) [m] of people."""
+def _expected(crowd: Crowd, held: Marks | None = None) -> Array:
+    """The present and expected positions (k, 2) [m] of people, without those who wait for a gap."""
     places = [crowd.position, crowd.position + _LOOK_AHEAD * crowd.velocity]
+    if held is not None:
+        places = [place[~held] for place in places]
     relying = np.flatnonzero(crowd.priority)
     if len(relying):
         place = crowd.position[relying]

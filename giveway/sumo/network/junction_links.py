@@ -56,6 +56,18 @@ class Junctions:
         """Return the movements of the junction in which a link ends with the lane ``inside``."""
         return self.of(self._junctions.get(inside, ""))
 
+    def yielding_to(self, crossing: str) -> frozenset[str]:
+        """Return the lanes inside a junction whose vehicles give way to people on a crossing.
+
+        Args:
+            crossing: Lane of the crossing.
+        """
+        logic = self._logic.get(self._junctions.get(crossing, ""))
+        if logic is None or crossing not in logic.inside[: len(logic.requests)]:
+            return frozenset()
+        request = logic.requests[logic.inside.index(crossing)]
+        return frozenset(logic.inside[number] for number in request.meets - request.yields_to)
+
     @cached_property
     def _logic(self) -> dict[str, JunctionLogic]:
         return right_of_way(self._net_file)

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from giveway.geometry.path import angle_to_heading
 from giveway.sumo.library import direct
 from giveway.sumo.network.footpaths import FootPaths
+from giveway.sumo.persons.gap_habits import GapHabit, GapHabits
 from giveway.sumo.persons.handover import Handover, Route
 from giveway.sumo.persons.lane_records import LaneRecords
 from giveway.sumo.persons.observers import of_running
@@ -106,6 +107,7 @@ class ScenarioPersons:
         self._speeds = WalkSpeeds.of_running(sumo)
         self._handover = Handover(sumo, self._paths)
         self._places = ReturnPlaces(self._paths, self._handover)
+        self._gap_habits = GapHabits(sumo)
         self._position = direct(sumo, "person", "getPosition")
 
     # --- where everybody is --------------------------------------------------------------------
@@ -250,6 +252,10 @@ class ScenarioPersons:
         route = self._routes[name]
         self._handover.restart(name, route, edges)
         self._routes[name] = replace(route, edges=edges, was_inside=False)
+
+    def gap_habit(self, walker: Person) -> GapHabit:
+        """Return how a person who has just been taken over accepts gaps."""
+        return self._gap_habits.of(walker.id, walker.type)
 
     # --- giving back --------------------------------------------------------------------------
 
