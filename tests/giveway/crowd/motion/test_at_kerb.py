@@ -1,0 +1,45 @@
+"""People who wait for a gap are not pushed onto the roadway, by any model."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from giveway.crowd.motion.at_kerb import HeldAtKerb
+from pedestrian_model import (
+    PLAIN_MODELS,
+    SIM,
+    Crowd,
+    CrowdModel,
+    PlainModel,
+    Surroundings,
+    Vehicles,
+)
+
+STEP = 0.05
+SIDEWALK = shapely.box(-5.0, -2.0, 5.0, 0.0)
+
+
+def models() -> list:
+    return [CrowdModel(SIM, STEP), *(PlainModel(name, SIM, STEP) for name in PLAIN_MODELS)]
+
+
+@pytest.mark.parametrize("model", models(), ids=["vci", *PLAIN_MODELS])
+@pytest.mark.parametrize("waits", [True, False])
+def test_who_waits_stays_on_the_sidewalk(model, waits: bool) -> None:
+    crowd = Crowd.create(
+        [(0.0, -0.1), (0.0, 1.0)],
+        [(0.0, 1.2), (0.0, -1.0)],
+        1.2,
+        [[(0.0, 0.2), (0.0, 9.0)]] * 2,
+        signals=[[1, -1]] * 2,
+    )
+    surroundings = Surroundings(closed=np.array([False, waits]))
+    held = HeldAtKerb(model, 1, SIDEWALK)
+    assert held.time_step == STEP
+    for _ in range(6):
+        held.advance(crowd, Vehicles.empty(), surroundings)
+    assert bool(crowd.position[0, 1] <= 0.0) is waits
+    if waits:  # who stands on the roadway may walk, so as to come back
+        assert crowd.position[1, 1] < 1.0
