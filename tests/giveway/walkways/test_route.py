@@ -171,16 +171,18 @@ def test_both_directions_of_a_crossing_obey_its_light(grid: WalkNetwork) -> None
     assert crossed_westwards[0] == pytest.approx(120.0 + 3.2 + 0.4)
 
 
-def test_without_lights_nobody_waits(built: Callable[[str], Any]) -> None:
+def test_without_lights_people_wait_for_a_gap_or_have_priority(built: Callable[[str], Any]) -> None:
     network = built("random").network
     lit = {signal.crossing for signal in network.signals}
     dark = next(c for c in network._survey.crossings if c not in lit)
+    assert dark in network.gap_crossings
     links = network._survey.links
     before = next(link.source for link in links if link.target == dark)
     after = next(link.target for link in links if link.source == dark)
     lanes = [_lane_beside(network, area) for area in (before, after)]
     route = walk(network, lanes)
-    assert (route.signals == -1).all()
+    number = len(network.signals) + network.gap_crossings.index(dark)
+    assert set(route.signals) == {-1, number}
     assert route.gaps == 0
 
 

@@ -36,7 +36,7 @@ def test_who_waits_stays_on_the_sidewalk(model, waits: bool) -> None:
         signals=[[1, -1]] * 2,
     )
     surroundings = Surroundings(closed=np.array([False, waits]))
-    held = HeldAtKerb(model, 1, SIDEWALK)
+    held = HeldAtKerb(model, 1, 1, SIDEWALK)
     assert held.time_step == STEP
     for _ in range(6):
         held.advance(crowd, Vehicles.empty(), surroundings)
