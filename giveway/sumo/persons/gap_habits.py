@@ -1,4 +1,4 @@
-"""How SUMO's persons accept gaps at crossings where vehicles have priority, as a scenario says it.
+"""Reads how persons of SUMO accept gaps where vehicles have priority, as the scenario says it.
 
 SUMO 1.28 reads it from ``--pedestrian.timegap-crossing``, which a parameter of a person or a type
 overrides, and from the type's attributes ``jmTimegapMinor``, ``impatience``, ``jmIgnoreFoeProb``
@@ -13,7 +13,7 @@ _TIMEGAP_MINOR = 1.0  # SUMO's default [s] of jmTimegapMinor
 
 
 class GapHabit(NamedTuple):
-    """How a person accepts gaps."""
+    """The habit by which a person accepts gaps."""
 
     margin: float  # time [s] between the end of the crossing and the arrival of a vehicle
     impatience: float  # impatience without waiting; the person trusts vehicles to brake at 1
