@@ -12,6 +12,7 @@ from giveway.exports.fcd import write_fcd
 from giveway.exports.geojson import write_geojson
 from giveway.exports.people import write_jupedsim, write_pedpy
 from giveway.exports.sampling import Sampled, sampled
+from giveway.exports.trj import write_trj
 from giveway.replays.run_folder import RunFolder
 
 
@@ -32,6 +33,7 @@ FORMATS = {
     "pedpy": _Format(".txt", None, write_pedpy),
     "jupedsim": _Format(".sqlite", None, write_jupedsim),
     "geojson": _Format(".geojson", None, write_geojson),
+    "trj": _Format(".trj", 0.1, write_trj),
     "mp4": _Format(".mp4", 0.05, _film),
     "gif": _Format(".gif", 0.1, _film),
 }
