@@ -14,7 +14,7 @@ _NET = re.compile(rb"<net\s([^>]*)>")
 _ATTRIBUTE = re.compile(rb"([\w:.]+)\s*=\s*[\"']([^\"']*)[\"']")
 _WALKINGAREA: Final = b'function="walkingarea"'
 _CROSSING: Final = b'function="crossing"'
-_SIDEWALK: Final = b'allow="pedestrian"'
+_SIDEWALK = re.compile(rb"<lane\s+id=\"[^:\"][^>]*\sallow=\"pedestrian\"")
 
 
 @dataclass
@@ -57,7 +57,7 @@ def _count(text: bytes, into: Contents) -> None:
     into.elements.update(found[1].decode() for found in _DEMAND.finditer(text))
     into.elements["walkingarea"] += text.count(_WALKINGAREA)
     into.elements["crossing"] += text.count(_CROSSING)
-    into.elements["sidewalk"] += text.count(_SIDEWALK)
+    into.elements["sidewalk"] += len(_SIDEWALK.findall(text))  # not those inside junctions
     into.remote += [found[1].decode("utf-8", "replace") for found in _REMOTE.finditer(text)]
     if not into.network:
         network = _NET.search(text)

@@ -7,6 +7,7 @@ from typing import Final
 
 from giveway.doctor.contents import Contents, read_contents
 from giveway.doctor.finding import Finding, error, note, ok, warning
+from giveway.doctor.interplay import interplay
 from giveway.doctor.trial import PATIENCE, try_in_sumo
 from giveway.errors import GivewayError
 from giveway.errors import ScenarioError as UnusableScenario
@@ -51,6 +52,8 @@ def examine_scenario(scenario: str | Path, patience: float = PATIENCE) -> list[F
                 findings.append(error("files", text, "replace it by a whole one"))
     findings += [*_network(files, network, demand), *_demand(network, demand), *_time(files)]
     findings += [*_settings(files), *_remote(files, network, demand)]
+    if not any(finding.level == "error" for finding in findings):
+        findings += interplay(files)
     people = demand.persons > 0
     return findings + try_in_sumo(
         files.config_file, patience, people=people, net_file=files.net_file

@@ -88,6 +88,15 @@ def test_without_walkways_only_persons_of_the_scenario_suffer(
     assert about(examine_scenario(config), "walkways").level == "warning"
 
 
+def test_walkingareas_are_no_sidewalks(
+    small_scenario: Callable[..., Path], call_sumo: Callable[..., str]
+) -> None:
+    config = small_scenario()
+    grid = ("netgenerate", "--grid", "--grid.number", 3, "--default.spreadtype", "center")
+    call_sumo(*grid, "--walkingareas", "-o", "net.net.xml.gz", cwd=config.parent)
+    assert "no sidewalks" in about(examine_scenario(config), "walkways").text
+
+
 def test_an_old_network_and_one_with_traffic_on_the_left(
     small_scenario: Callable[..., Path],
 ) -> None:
