@@ -18,7 +18,7 @@ _Profile = Annotated[
 
 
 def _formats(incomplete: str) -> list[str]:
-    known = ("fcd", "pedpy", "jupedsim", "geojson", "mp4", "gif")
+    known = ("fcd", "pedpy", "jupedsim", "geojson", "trj", "mp4", "gif")
     return [name for name in known if name.startswith(incomplete)]
 
 
@@ -51,7 +51,7 @@ def _run(
         typer.Option(
             "--format",
             "-f",
-            help="fcd (SUMO replays it), pedpy, jupedsim, geojson, mp4 or gif.",
+            help="fcd (SUMO replays it), pedpy, jupedsim, geojson, trj (SSAM), mp4 or gif.",
             autocompletion=_formats,
         ),
     ],

@@ -9,9 +9,9 @@ import struct
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from giveway.exports.sampling import PEDESTRIAN, Sampled, Track
-from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 
 _VERSION = 1.04
@@ -46,10 +46,8 @@ def write_trj(run: RunFolder, sampled: Sampled, file: Path) -> str:
         for number, (track, body) in enumerate(zip(sampled.tracks, bodies, strict=True), start=1)
     ]
     x, y = (np.concatenate([row[name] for row in rows]) for name in ("front_x", "front_y"))
-    low, high = (
-        (int(np.floor(one.min())) for one in (x, y)),
-        (int(np.ceil(one.max())) for one in (x, y)),
-    )
+    low = np.floor((x.min(), y.min())).astype(int).tolist()
+    high = np.ceil((x.max(), y.max())).astype(int).tolist()
     with file.open("wb") as out:
         out.write(struct.pack("<Bcf", 0, b"L", _VERSION))
         out.write(struct.pack("<BBf4i", 1, _METRIC, _SCALE, *low, *high))
@@ -58,10 +56,11 @@ def write_trj(run: RunFolder, sampled: Sampled, file: Path) -> str:
             for number in numbers:
                 out.write(rows[number][index - sampled.tracks[number].first].tobytes())
     people = len(sampled.people())
-    return f"{len(rows) - people} vehicles (link 1) and {people} people (link 2) every {sampled.step:g} s"
+    vehicles = f"{len(rows) - people} vehicles (link 1)"
+    return f"{vehicles} and {people} people (link 2) every {sampled.step:g} s"
 
 
-def _rows(number: int, track: Track, body: tuple[float, float], step: float) -> Array:
+def _rows(number: int, track: Track, body: tuple[float, float], step: float) -> NDArray[np.void]:
     """Return the records (n,) of a track."""
     rows = np.zeros(len(track), dtype=_VEHICLE)
     length, width = body
