@@ -16,11 +16,19 @@ _SIMPLE = 0.02  # Tolerance [m] of the simplified outline
 _ASIDE = 0.5  # Distance [m] beside a crossing's marking, to which people evade one another
 _OVERLAP = 0.6  # Length [m] by which a crossing reaches into the walkingareas at its ends
 
+# Distance [m] behind a crossing to which people evade one another and vehicles, where no vehicle
+# waits for them. netconvert's walkingareas often meet only a corner of its end; own choice.
+_BEHIND = 4.0
+
 
 def walkable_area(survey: Survey) -> shapely.MultiPolygon:
     """Return the area of lanes, walkingareas, crossings, and junctions without these."""
     parts = [_lane(edge.lane) for edge in survey.edges.values()]
-    parts += [_lane(lane, _OVERLAP, _ASIDE) for lane in survey.crossings.values()]
+    gaps = {link.target for link in survey.links if not link.priority}
+    parts += [
+        _lane(lane, _BEHIND if name in gaps else _OVERLAP, _ASIDE)
+        for name, lane in survey.crossings.items()
+    ]
     parts += [polygon_of(area) for area in survey.walkingareas.values()]
     parts += _bare_junctions(survey)
     return _joined(parts)
