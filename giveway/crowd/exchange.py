@@ -91,12 +91,13 @@ class Exchange:
         Args:
             egos: Positions (e, 2) [m] of the egos' front bumpers.
         """
-        self._hand_back(egos)
-        self._take_over(egos)
-        if self._walkers.records:
-            places = self._roster.crowd.position.tolist()
-            names = zip(self._roster.names, places, strict=True)
-            self._walkers.records.update((name, x, y) for name, (x, y) in names)
+        with self._session.hushed:
+            self._hand_back(egos)
+            self._take_over(egos)
+            if self._walkers.records:
+                places = self._roster.crowd.position.tolist()
+                names = zip(self._roster.names, places, strict=True)
+                self._walkers.records.update((name, x, y) for name, (x, y) in names)
         self._read_lights()  # now, because people who have just joined may wait at a red light
         if self._impasses is not None:
             self._impasses.update(self._session.time)

@@ -1,4 +1,4 @@
-"""What in a scenario acts on people or egos, or waits for them: the doctor names it."""
+"""The elements of a scenario that act on people or egos, or wait for them."""
 
 import re
 from collections.abc import Iterable, Iterator

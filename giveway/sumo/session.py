@@ -152,6 +152,11 @@ class SumoSession:
         return of_others(self._stderr.text(), self._added | held)
 
     @property
+    def hushed(self) -> NativeStderr:
+        """A context in which the output of SUMO goes to the log instead of the terminal."""
+        return self._stderr
+
+    @property
     def expects_more(self) -> bool:
         """True if vehicles or persons are on the way or have yet to depart."""
         return bool(self._sumo.simulation.getMinExpectedNumber() > 0)

@@ -1,4 +1,4 @@
-"""What SUMO plans with a vehicle that an ego does not do: it is refused, or said.
+"""The plans of SUMO for a vehicle that an ego does not follow: refused, or told.
 
 An ego follows the route and the stops that its vehicle has as it departs.
 """

@@ -40,6 +40,7 @@ class Route:
     type: str
     own_speed: float | None  # [m/s] speed that the scenario gives to this walk alone, or None
     was_inside: bool  # True if it was taken over inside a junction
+    begun_anew: bool = False  # True if SUMO's walk began on the first of these edges
 
 
 class Handover:
@@ -53,12 +54,15 @@ class Handover:
 
     Attributes:
         refusals: The exceptions that SUMO's refusals become.
+        sums: Whether an output adds up the persons on edges. It leaves out those whose walk begins
+            anew on the edge where they are.
     """
 
     refusals: tuple[type[Exception], ...]
 
     def __init__(self, sumo: Any, paths: FootPaths) -> None:
         self._paths = paths
+        self.sums = False
         self._simulation = sumo.simulation
         self._person = sumo.person
         # usual speed factor; stages left when it applies again
@@ -109,10 +113,15 @@ class Handover:
 
     def _put(self, name: str, edges: tuple[str, ...], foot: Foot) -> None:
         """Put a person on the first of ``edges``, facing the second."""
-        following = self._paths.lane(edges[1])
-        if following is not None and self._paths.forward(*edges[:2]) is None:
-            self._person.moveTo(name, following, NOWHERE)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
+        if self._paths.forward(*edges[:2]) is not None:
+            return
+        junction = self._person.getNextEdge(name)[1:].rpartition("_")[0]
+        following = self._paths.lane(edges[1])
+        if junction != self._paths.junctions(edges[0])[1] and following is not None:
+            # outputs that add up persons on edges would count it twice, so only if needed
+            self._person.moveTo(name, following, NOWHERE)
+            self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
     def finish(self, name: str, lane: str, route: Route) -> None:
         """Put a person on the end of its route, so that SUMO's next step ends its walk."""
@@ -123,11 +132,13 @@ class Handover:
         last = route.edges[-1:]
         ahead = route.arrival_position >= foot.position
         behind = foot.position - _RUN_UP if ahead else foot.position + _RUN_UP
-        if route.was_inside or len(route.edges) > 1:
+        comes_to_it = route.was_inside or len(route.edges) > 1
+        if comes_to_it:
             self.restart(name, route, last)
         self._person.moveTo(name, foot.lane, max(behind, 0.0))
-        # the walk departs at once, since the person is on this edge already
-        self.restart(name, route, last)
+        if not (self.sums and (comes_to_it or route.begun_anew)):
+            # the walk departs at once, since the person is on this edge already
+            self.restart(name, route, last)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
     def restart(self, name: str, route: Route, edges: tuple[str, ...]) -> None:

@@ -28,6 +28,7 @@ _NEAR = 2.5  # largest distance [m] to a lane's end, at which SUMO moves a perso
 _ASIDE = 1.0  # distance [m] beside a lane, at which a person still walks on it
 _STRAIGHT = 2.0  # distance [m] to a lane's bends, from which on SUMO moves people onto it exactly
 _ROOM = 1.0  # distance [m] from its end, in which a person leaves room for others to enter
+_FRESH = 2  # number of steps after a take-over until SUMO's speed of a person is its own
 _TRIES = 3  # number of steps in a row in which SUMO may fail to move a person on
 
 BeginAnew = Callable[[str, tuple[str, ...]], None]
@@ -60,6 +61,7 @@ class LaneRecords:
         self._at: dict[str, list[str]] = {}  # remaining edges of each person's walk
         self._left: set[str] = set()  # persons who have left their present edge
         self._tries: dict[str, int] = {}
+        self._fresh: dict[str, int] = {}  # steps for which each person's speed in SUMO is wrong
         self._at_entry: dict[str, tuple[float, float]] = {}  # where each entered a walkingarea
         self._crossings: dict[str, str] = {}  # one crossing's lane of each junction
         for lane in sumo.lane.getIDList() if observers.edges or observers.junctions else ():
@@ -80,6 +82,7 @@ class LaneRecords:
         """Follow a person who has been taken over, from the first of ``edges`` on."""
         if self:
             self._at[name] = list(edges)
+            self._fresh[name] = _FRESH
 
     def end(self, name: str) -> None:
         """Follow a person no more."""
@@ -87,6 +90,7 @@ class LaneRecords:
         self._tries.pop(name, None)
         self._shown.discard(name)
         self._left.discard(name)
+        self._fresh.pop(name, None)
         self._at_entry.pop(name, None)
         self.moves.pop(name, None)
 
@@ -127,12 +131,17 @@ class LaneRecords:
             and self._is_on(foot)
             and self._paths.is_straight(edge, foot.position, _STRAIGHT)
         ):
-            self._shown.add(name)
+            if name not in self._shown:  # else SUMO's speed would be that of the move onto the lane
+                self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
+                self._shown.add(name)
             self.moves[name] = edge
             return
         if name in self._shown:
             self._shown.discard(name)
             self._person.moveTo(name, foot.lane, NOWHERE)
+        if self._fresh[name] > 0:  # detectors would take it for one that comes from far away
+            self._fresh[name] -= 1
+            return
         following = self._person.getNextEdge(name)
         if not following.startswith(":") or not self._follows(following):
             return

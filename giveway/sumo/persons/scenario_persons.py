@@ -103,9 +103,11 @@ class ScenarioPersons:
         self._leaving: dict[str, tuple[int, float]] = {}
         self._put_back: set[str] = set()  # persons handed back since SUMO's last step
         self._paths = FootPaths(sumo)
-        self.records = LaneRecords(sumo, self._paths, of_running(sumo), self._begin_anew)
+        observers = of_running(sumo)
+        self.records = LaneRecords(sumo, self._paths, observers, self._begin_anew)
         self._speeds = WalkSpeeds.of_running(sumo)
         self._handover = Handover(sumo, self._paths)
+        self._handover.sums = observers.edges
         self._places = ReturnPlaces(self._paths, self._handover)
         self._gap_habits = GapHabits(sumo)
         self._position = direct(sumo, "person", "getPosition")
@@ -251,7 +253,7 @@ class ScenarioPersons:
         """Let a held person's walk in SUMO begin anew on the first of ``edges``."""
         route = self._routes[name]
         self._handover.restart(name, route, edges)
-        self._routes[name] = replace(route, edges=edges, was_inside=False)
+        self._routes[name] = replace(route, edges=edges, was_inside=False, begun_anew=True)
 
     def gap_habit(self, walker: Person) -> GapHabit:
         """Return how a person who has just been taken over accepts gaps."""

