@@ -15,6 +15,7 @@ _ABOUT = tuple(
             r"^Warning: Collision of person '([^']*)' and person '([^']*)'",
             r"^Warning: Person '([^']*)' suddenly appeared inside detector",
             r"^Warning: Person '([^']*)' entered crossing lane .* without registering approach",
+            r"^Warning: Invalid departPos .* given for person '([^']*)'",
             r"^Warning: Could not map position .* for person '([^']*)'",
         ),
     )
