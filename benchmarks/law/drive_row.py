@@ -41,6 +41,7 @@ _AROUND = 0.5  # Time [s] around the beginning of a braking in which its cause i
 _NEEDED = 1.5  # Deceleration [m/s^2] from which on an obstacle is a cause of hard braking
 _AT = 3.0  # Distance [m] around a stop line or crossing at which a stop belongs to it
 _OVER = 0.3  # Speed [m/s] above a limit that is rounding of the controller
+_ROUNDING = 1e-6  # [m/s^2] of a braking with the firm limit itself
 _GRID = 0.5  # Distance [m] between the stations at which limits are known
 
 Mask = NDArray[np.bool_]
@@ -105,7 +106,7 @@ def _on_roads(ego: EgoResult, drive: Drive, plain: PlainDrive | None) -> dict[st
     return {
         "brakings": brakings,
         "take_over_braking": float(max(0.0, -drive.ego.acceleration[early].min())),
-        "take_over_felt": bool((drive.ego.acceleration[early] < -FIRM).any()),
+        "take_over_felt": bool((drive.ego.acceleration[early] < -FIRM - _ROUNDING).any()),
         "stands": _stands(road),
         "gaps_at_rest": _gaps_at_rest(drive),
         "car_contacts": contacts,
