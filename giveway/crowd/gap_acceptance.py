@@ -37,7 +37,7 @@ from pedestrian_model import targets
 
 PATIENCE: Final = 120.0  # waiting time [s] after which impatience is 1 (SUMO's MAX_WAIT_TOLERANCE)
 _REACTION: Final = 1.0  # reaction time [s] of drivers (SUMO's default tau)
-_BRAKING: Final = 4.5  # deceleration [m/s^2] of drivers (SUMO's default of passenger cars)
+_BRAKING: Final = 3.4  # comfortable deceleration [m/s^2] of drivers (AASHTO 2011, section 3.2)
 _CREEPS: Final = 0.5  # speed [m/s] up to which a vehicle gives way: it stands or creeps
 _AT_LINE: Final = 4.0  # distance [m] to a crossing within which the first vehicle stands
 _STARTS: Final = 4.0  # speed [m/s] of a vehicle that is about to start, as people expect it
@@ -195,7 +195,8 @@ class GapAcceptance:
         waited[people[(before >= 0) & (before != which)]] = 0.0
         self._at[people] = which
         speed = np.hypot(*self._roster.crowd.velocity[rows].T)
-        waited[people[(speed < _STANDS) & (to_kerb <= _QUEUE)]] += self._step_length
+        waits = (to_kerb <= _AT_KERB) | ((speed < _STANDS) & (to_kerb <= _QUEUE))
+        waited[people[waits]] += self._step_length
 
     def _goes(
         self,

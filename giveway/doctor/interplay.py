@@ -78,7 +78,7 @@ def _findings(found: _Found) -> list[Finding]:
         remedy = "they do in a run, too, but not at a second crossing in a row"
         findings.append(note("lights on request", text, remedy))
     if found.without_priority:
-        text = f"{_names(found.without_priority)}: vehicles have priority over people there"
+        text = f"{_names(found.without_priority)}: vehicles have priority, people wait for a gap"
         remedy = '<crossing priority="true"> in netconvert\'s connections makes a zebra crossing'
         findings.append(note("gap crossings", text, remedy))
     if found.waiting:

@@ -13,7 +13,8 @@
     they stop before the strip that it will sweep, unless it arrives later than their critical
     headway t_c = L / v_0 + t_s of the Highway Capacity Manual (2010, equation 19-69: the length of
     the crossing over the walking speed, plus 3 s to start and to clear it). People who have begun
-    to cross go on. A standing vehicle is a rectangle that repels as a wall does.
+    to cross go on. A standing vehicle is a rectangle that repels as a wall does. At a kerb with a
+    signal and behind it the signal decides: whoever sets it has judged the gap.
 ``orca``
     Optimal reciprocal collision avoidance (van den Berg et al. 2011): each person takes the
     velocity closest to the desired one that avoids collisions within the next 3 s, if the others
@@ -192,7 +193,8 @@ def _advance(
             pace = desired_speed[i]
             if stops:
                 pace *= left / math.sqrt(left * left + _ARRIVES * _ARRIVES)
-            if kind == _GAPS:
+            signal, kerb = routes[2], at > start[i] and routes[2][at - 1] >= 0
+            if kind == _GAPS and not kerb and signal[at] < 0:
                 before = speed_before((x, y), (e_x, e_y), pace, vehicles, radius, step * dt)
                 pace = min(pace, before)
             a_x = (pace * e_x - velocity[i, 0]) / RELAXATION

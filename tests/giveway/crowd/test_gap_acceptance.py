@@ -42,7 +42,7 @@ def test_critical_headway_is_that_of_the_highway_capacity_manual() -> None:
 
 
 def test_waiting_makes_bolder_down_to_the_time_in_which_a_car_can_stop() -> None:
-    floor = 1.0 + SPEED / 9.0
+    floor = 1.0 + SPEED / 6.8
     cars = arriving(SPEED * (floor - 0.01), SPEED * (floor + 0.01))
     assert takes(cars, impatience=0.9) == [False, False]
     assert takes(cars, impatience=1.0) == [False, True]

@@ -139,6 +139,19 @@ def test_who_is_on_the_strip_goes_on_and_who_leaves_is_not_held():
     assert walk("gap-acceptance", away, 40, car(4.0, -6.0))[-1, 0, 1] > 4.5
 
 
+def test_gaps_at_a_kerb_with_a_signal_are_judged_by_who_sets_it():
+    kerb, far = (0.0, -STRIP - 1.0), (0.0, 10.0)
+    comes, seen = car(4.0, -8.0), {}
+    for signal in (-1, 0):
+        crowd = Crowd.create(
+            [(0.0, -STRIP - 1.5)], [(0.0, 1.4)], 1.4, [[kerb, far]], signals=[[signal, -1]]
+        )
+        opened = Surroundings(closed=np.array([False]))
+        walk("gap-acceptance", crowd, 30, comes, surroundings=opened)
+        seen[signal] = crowd.position[0, 1]
+    assert seen[-1] < -1.0 < seen[0]
+
+
 @pytest.mark.parametrize("name", PLAIN_MODELS)
 def test_way_points_are_passed_and_a_closed_signal_holds(name):
     route = np.array([[5.0, 0.0], [5.0, 10.0]])
