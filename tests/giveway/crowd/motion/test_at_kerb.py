@@ -43,3 +43,20 @@ def test_who_waits_stays_on_the_sidewalk(model, waits: bool) -> None:
     assert bool(crowd.position[0, 1] <= 0.0) is waits
     if waits:  # who stands on the roadway may walk, so as to come back
         assert crowd.position[1, 1] < 1.0
+
+
+def test_who_has_come_to_the_kerb_is_not_pushed_to_and_fro() -> None:
+    moved = []
+    for held in (True, False):
+        crowd = Crowd.create(
+            [(0.0, -0.3), (0.4, -0.3)],
+            [(0.0, 0.0)] * 2,
+            1.2,
+            [[(0.0, -0.3), (0.0, 9.0)], [(0.4, -0.3), (0.4, 9.0)]],
+            signals=[[0, -1]] * 2,
+        )
+        model = CrowdModel(SIM, STEP)
+        model = HeldAtKerb(model, 0, 1, SIDEWALK) if held else model
+        model.advance(crowd, Vehicles.empty(), Surroundings(closed=np.array([True])))
+        moved.append(abs(crowd.position[0, 0]))
+    assert 0.0 < moved[0] < 0.5 * moved[1]
