@@ -8,6 +8,7 @@ import numpy as np
 from giveway.crowd.gap_acceptance import GapAcceptance
 from giveway.crowd.impasses import Impasses
 from giveway.crowd.red_walkers import RedWalkers
+from giveway.crowd.requests import Requests
 from giveway.crowd.roster import Roster
 from giveway.crowd.zone import Zone
 from giveway.geometry.kernel import Array
@@ -65,6 +66,7 @@ class Exchange:
         )
         self._impasses = Impasses(roster, self.surroundings, network.walkable) if walls else None
         self.gaps = self._gaps(seed) if network.gap_crossings else None
+        self._requests = Requests(session.light_requests, network.signals)
 
     def _gaps(self, seed: int) -> GapAcceptance:
         """Return the part that lets people wait at crossings where vehicles have priority."""
@@ -99,6 +101,9 @@ class Exchange:
                 names = zip(self._roster.names, places, strict=True)
                 self._walkers.records.update((name, x, y) for name, (x, y) in names)
         self._read_lights()  # now, because people who have just joined may wait at a red light
+        if self._requests and len(self._roster):
+            crowd, time = self._roster.crowd, self._session.time
+            self._requests.update(self._states, time, crowd, self.surroundings)
         if self._impasses is not None:
             self._impasses.update(self._session.time)
 

@@ -75,7 +75,9 @@ def _findings(found: _Found) -> list[Finding]:
     findings = []
     if asked := found.actuated & found.crossed:
         text = f"{_names(asked)}: people ask for green at {len(asked)} light(s)"
-        remedy = "they do in a run, too, but not at a second crossing in a row"
+        remedy = (
+            "they do in a run, too; at a second crossing in a row it takes a phase's longest time"
+        )
         findings.append(note("lights on request", text, remedy))
     if found.without_priority:
         text = f"{_names(found.without_priority)}: vehicles have priority, people wait for a gap"

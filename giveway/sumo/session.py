@@ -25,6 +25,7 @@ from giveway.scenario_files.outputs import is_file
 from giveway.sumo.devices import Devices
 from giveway.sumo.first_reading import read_first
 from giveway.sumo.library import direct, import_libsumo
+from giveway.sumo.light_requests import LightRequests
 from giveway.sumo.network.footpaths import FootPaths
 from giveway.sumo.network.junction_links import Junctions
 from giveway.sumo.network.lanes import Lanes
@@ -100,6 +101,7 @@ class SumoSession:
         self.lanes = Lanes(self._sumo, self._config_file, scenario.net_file)
         self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)
         self.devices = Devices(self._sumo)
+        self.light_requests = LightRequests(self._sumo)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._persons: ScenarioPersons | None = None

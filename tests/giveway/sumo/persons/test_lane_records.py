@@ -95,6 +95,18 @@ def test_people_get_green_when_they_ask_for_it(
     assert 3.0 < stands < sum(plain) + 7 * 5.0
 
 
+def test_people_whom_sumo_does_not_know_get_green_in_the_end(
+    written: Written, tmp_path: Path
+) -> None:
+    line = {"from": [[98.0, -4.5], [102.0, -4.5]], "to": [[98.0, 4.5], [102.0, 4.5]]}
+    crowd = {"flow": [{"name": "ours", "rate": 720.0, "end": 60.0, **line}], "zone": "everywhere"}
+    config = written(CARS, "", 0.5)
+    run = {"scenario": str(config), "ego": {"none": True}, "crowd": crowd, "time_limit": 250.0}
+    ledger = giveway.run(run).manifest["pedestrians"]
+    assert ledger["added"] >= 3
+    assert ledger["arrived"] == ledger["added"]
+
+
 @pytest.mark.parametrize("time", ["", 'jmDriveAfterRedTime="1000"'])
 def test_who_may_walk_at_red_does(written: Written, tmp_path: Path, time: str) -> None:
     kind = f'<vType id="bold" vClass="pedestrian" {time}/>'
