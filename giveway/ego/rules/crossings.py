@@ -250,11 +250,10 @@ class Crossings:
             return False
         kerb, along, length, half_width = place.area
         u, w = place_on(crowd.position, kerb, along)
-        enters_junction = self._enters_junction(number, front)
         sure = _SURE if number == self._waits_for else 0.0
         starts = speed <= CRAWLING or number == self._waits_for
         enters, clears = self._own_times(place, front, speed, starts)
-        within = self._kerb_time + sure + (enters if enters_junction else 0.0)
+        within = self._kerb_time + sure + (enters if self._enters_junction(number, front) else 0.0)
         reach = np.maximum(self._kerb_distance, within * crowd.desired_speed)
         near = is_near(u, w, length, half_width + reach, reach)
         if not near.any():
@@ -262,9 +261,7 @@ class Crossings:
         rows = np.flatnonzero(near)
         u, aside = u[rows], np.maximum(np.abs(w[rows]) - half_width, 0.0)
         use = use_of(crowd, rows, u, along, length)
-        # Those without priority enter as well, once a vehicle that turns is slow.
-        zebra = place.zebra or (enters_junction and not place.system)
-        opened = is_open(self._states.get(place.system, ""), place.link, zebra=zebra)
+        opened = is_open(self._states.get(place.system, ""), place.link, zebra=place.zebra)
         turning = turning_in(crowd, rows, kerb, along, length, reach[rows])
         coming = (aside <= 0.0) & have_priority(use, opened)
         coming |= ~use.on & (turning != 0.0) & opened

@@ -323,12 +323,12 @@ def test_before_a_junction_it_looks_for_who_will_cross_behind_it():
     assert stop_of(crossings(**THERE), EARLY, 6.0, walker(SOUTHERN_KERB - 30.0)) == math.inf
 
 
-def test_before_a_junction_it_heeds_those_without_priority_as_well():
+def test_before_a_junction_it_heeds_those_with_priority_alone():
+    """The others wait for a gap."""
     crowd = walker(-4.5)  # about to enter
-    assert stop_of(crossings(zebra=False), EARLY, 4.0, crowd) == math.inf
-    behind = crossings(zebra=False, **THERE)
+    behind = crossings(**THERE)
     assert stop_of(behind, EARLY, 4.0, crowd) == ENTRANCE - STOP_BEFORE
-    assert stop_of(behind, ENTRANCE + 1.0, 3.0, crowd) == math.inf
+    assert stop_of(crossings(zebra=False, **THERE), EARLY, 4.0, crowd) == math.inf
 
 
 def test_a_stream_of_people_does_not_hold_it_before_a_junction():
