@@ -169,7 +169,8 @@ class Following:
         falls = max(RESTORING, needed) * self._time_step
         self._last = max(wanted, min(self._last - falls, speed))
         # What is urgent is asked for earlier by the lag with which controllers follow a limit.
-        return self._last - _URGENT_LAG * max(0.0, needed - RESTORING)
+        lag = _URGENT_LAG if self._plans else _LAG
+        return self._last - lag * max(0.0, needed - RESTORING)
 
 
 def gap_kept(leader: Leader, ahead: Array, station: float, speed: float, usual: float) -> float:

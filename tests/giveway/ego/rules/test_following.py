@@ -99,10 +99,14 @@ def test_a_gap_is_restored_gently_unless_it_closes() -> None:
 
 
 def test_the_faster_a_vehicle_ahead_brakes_the_lower_is_the_limit() -> None:
-    """Braking builds up at once then, so that it need not become harder than 3 m/s² later."""
-    follows, ahead = following(), VehicleAhead(15.0, 10.7, decelerates=4.5, step=0.2)
-    limit = follows.speed_limit(Leader(55.0, 10.7), 40.0, 0.0, 11.6, ahead)
-    assert limit < 11.6 - 3.0
+    """A plan's braking builds up at once then, so that it need not become hard later."""
+    ahead = VehicleAhead(15.0, 10.7, decelerates=4.5, step=0.2)
+    planned, followed = (
+        following(plans=plans).speed_limit(Leader(55.0, 10.7), 40.0, 0.0, 11.6, ahead)
+        for plans in (True, False)
+    )
+    assert planned < 11.6 - 3.0
+    assert planned < followed < 11.6 - 0.5
 
 
 def test_the_gap_of_a_plan_relaxes_as_well() -> None:
