@@ -55,6 +55,7 @@ class FootPaths:
         self._sumo = sumo
         self._lane = cache(self._find)
         self.junctions = cache(self._ends)  # junctions at both ends of an edge
+        self._links_in, self._targets = cache(self._walks_in), cache(self._leads_to)
 
     def lane(self, edge: str) -> str | None:
         """Return the lane on which SUMO lets people walk along ``edge``, or None."""
@@ -154,6 +155,37 @@ class FootPaths:
         last = self.forward(edge, following) is not False
         meets = self.junctions(edge)[last] == self.junctions(following)[0]
         return math.dist(lane.shape[-last], there.shape[0 if meets else -1])
+
+    def joins(self, area: str, edge: str) -> bool:
+        """Return whether people can walk inside a junction from a walkingarea to an edge's lane.
+
+        Links of pedestrians are listed in one direction, and hold for both.
+        """
+        inside = _IN_JUNCTION.match(area)
+        own = self.lane(edge)
+        if inside is None or own is None:
+            return True  # nothing is known
+        links = self._links_in(inside.group(1))
+        reached, ahead = {f"{area}_0"}, [f"{area}_0"]
+        while ahead:
+            lane = ahead.pop()
+            if lane == own or own in links.get(lane, ()) or lane in self._targets(own):
+                return True
+            there = {*links.get(lane, ()), *(one for one, to in links.items() if lane in to)}
+            ahead += [one for one in there - reached if one in links]
+            reached |= there
+        return False
+
+    def _walks_in(self, junction: str) -> dict[str, frozenset[str]]:
+        """Return the lanes onto which each walkingarea and crossing of a junction leads."""
+        edges = self._sumo.edge.getIDList()
+        found = [(edge, _IN_JUNCTION.match(edge)) for edge in edges if edge.startswith(":")]
+        lanes = [f"{edge}_0" for edge, match in found if match and match[1] == junction]
+        return {lane: self._targets(lane) for lane in lanes}
+
+    def _leads_to(self, lane: str) -> frozenset[str]:
+        """Return the lanes to which the links of a lane lead."""
+        return frozenset(link[0] for link in self._sumo.lane.getLinks(lane))
 
     def is_straight(self, edge: str, position: float, reach: float) -> bool:
         """Return whether a footpath has no bend and no end within ``reach`` [m] of a position."""

@@ -83,6 +83,10 @@ class ReturnPlaces:
             following: Edge onto which SUMO lets it walk next; empty if there is none.
         """
         edge = place.edges[0]
+        onwards = place.edges[1:2]
+        if following.startswith(":") and not all(self._paths.joins(following, e) for e in onwards):
+            self._before_gap[name] = edge  # SUMO would end with "Disconnected walk"
+            return True
         if not following or following.startswith(":") or self._paths.gap(edge, following) < JUMP:
             return False
         own, others = self._paths.junctions(edge), self._paths.junctions(following)

@@ -60,6 +60,16 @@ def test_the_direction_follows_from_the_junctions(paths: FootPaths) -> None:
     assert paths.along("B1A1", 40.0, (2.0, 5.0)) == pytest.approx(-2.0)
 
 
+def test_walkingareas_join_the_edges_of_their_junction_over_crossings(paths: FootPaths) -> None:
+    areas = [edge for edge in libsumo.edge.getIDList() if edge.startswith(":B1_w")]
+    assert len(areas) == 4
+    for area in areas:
+        assert paths.joins(area, "A1B1")
+        assert paths.joins(area, "B1C1")
+        assert not paths.joins(area, "C1D1")
+    assert paths.joins("no walkingarea", "A1B1")  # nothing is known
+
+
 def test_gaps_and_bends(paths: FootPaths) -> None:
     width = 2 * (100.0 - libsumo.lane.getShape("A1B1_0")[-1][0])  # of the junction
     assert paths.gap("A1B1", "B1C1") == pytest.approx(width)
