@@ -58,12 +58,12 @@ class Impasses:
         if not len(rows):
             return
         at = crowd.waypoint_start[rows] + crowd.waypoint_index[rows]
-        signal, closed = crowd.waypoint_signal[at], self._surroundings.closed
-        waits = np.array([number >= 0 and closed[number] for number in signal], dtype=np.bool_)
+        # kerbs with a light or a gap keep their signals
+        at, rows = (one[crowd.waypoint_signal[at] < 0] for one in (at, rows))
         here, there = crowd.position[rows], there[rows]
         blocked = ~shapely.covers(self._walkable, shapely.linestrings(np.stack([here, there], 1)))
         blocked |= self._presses(here, there)
-        crowd.waypoint_signal[at[blocked & ~waits]] = OFF_WALKWAYS
+        crowd.waypoint_signal[at[blocked]] = OFF_WALKWAYS
 
     def _without_progress(self, time: float, there: Array) -> NDArray[np.int64]:
         """Return the rows of people who have not come nearer to ``there`` (n, 2) [m] for long."""

@@ -143,7 +143,9 @@ class Yielding:
         waits = held is not None and bool(held.any())
         gaps = self._gaps(found, sight, half_width, _expected(crowd, held if waits else None))
         if waits:
-            beside = self._gaps(found, sight, background.width / 2 + _BESIDE, crowd.position[held])
+            there, way = crowd.position[held], _LOOK_AHEAD * crowd.velocity[held]
+            there = np.concatenate([there, there + 0.5 * way, there + way])
+            beside = self._gaps(found, sight, background.width / 2 + _BESIDE, there)
             gaps = np.minimum(gaps, beside)
         near = np.flatnonzero(gaps <= sight)
         stuck = self._waits.stuck(background, near, crowd, self._vehicles)
