@@ -56,10 +56,14 @@ def test_a_rerouter_on_the_egos_way_is_named(
     assert any("'diversion' on its edge 'A0B0'" in remark for remark in result.remarks) is said
 
 
-def test_a_rerouting_device_does_not_change_the_route(street_scenario: Scenario) -> None:
+@pytest.mark.parametrize(("period", "is_said"), [(1, True), (0, False)])
+def test_a_rerouting_device_does_not_change_the_route(
+    street_scenario: Scenario, period: int, is_said: bool
+) -> None:
+    """Each trip has one with a period of 0, which finds its route at the departure."""
     device = '<param key="has.rerouting.device" value="true"/>'
-    device += '<param key="device.rerouting.period" value="1"/>'
+    device += f'<param key="device.rerouting.period" value="{period}"/>'
     car = f'<vehicle id="car" depart="0">{ROUTE}{device}</vehicle>'
     result = giveway.run({"scenario": street_scenario(car)} | EGO)
     assert result.completed
-    assert any("keeps the route of its departure" in remark for remark in result.remarks)
+    assert is_said is any("keeps the route of its departure" in text for text in result.remarks)
