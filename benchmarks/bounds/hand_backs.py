@@ -58,7 +58,7 @@ def comb(boundary: tuple[float, float, float, float], seed: int) -> str:
 
 
 def told_by_sumo(fcd: Path) -> dict[str, Walk]:
-    """Where SUMO has each person at the end of each step."""
+    """Return where SUMO has each person at the end of each step."""
     rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
     for _, element in ET.iterparse(fcd):
         if element.tag == "timestep":
@@ -71,7 +71,7 @@ def told_by_sumo(fcd: Path) -> dict[str, Walk]:
 
 
 def told_by_us(trajectories: Path) -> dict[str, Walk]:
-    """Where the run had each person whom it held."""
+    """Return where the run had each person whom it held."""
     rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
     with trajectories.open() as stream:
         for row in csv.DictReader(stream):

@@ -15,7 +15,10 @@ from giveway.metrics.law.drive import Drive
 from giveway.metrics.standing import stops
 from giveway.run_data.columns import Quantity, columns_of
 
-LEVELS: Final = ((10.0, "A"), (20.0, "B"), (35.0, "C"), (55.0, "D"), (80.0, "E"))
+Levels = tuple[tuple[float, str], ...]
+"""Largest delay [s] of each level of service, and the level; F beyond."""
+
+LEVELS: Final[Levels] = ((10.0, "A"), (20.0, "B"), (35.0, "C"), (55.0, "D"), (80.0, "E"))
 """Largest control delay [s] of each level of service at a traffic light, and the level; F beyond
 (Highway Capacity Manual, 6th ed., 2016, exhibit 19-8)."""
 
@@ -74,11 +77,11 @@ class _Profile(NamedTuple):
         return max(0.0, float(real - free))
 
 
-def level_of_service(delay: float) -> str:
-    """Return the level of a control delay [s]; empty if it is nan."""
+def level_of_service(delay: float, levels: Levels = LEVELS) -> str:
+    """Return the level of a mean delay [s], a control delay by default; empty if it is nan."""
     if delay != delay:
         return ""
-    return next((level for most, level in LEVELS if delay <= most), "F")
+    return next((level for most, level in levels if delay <= most), "F")
 
 
 def summarise_travel(drive: Drive, delays: Sequence[SignalDelay], fastest: float) -> TravelSummary:

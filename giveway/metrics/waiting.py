@@ -9,6 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
+from giveway.metrics.travel import level_of_service
 from giveway.run_data.columns import Quantity, columns_of
 from giveway.run_data.footways import Footways
 from giveway.run_data.tracks import CrowdTrack
@@ -120,10 +121,5 @@ def _rows(
             mean_waiting=mean,
             waiting_95=float(np.percentile(stood, 95)),
             longest_waiting=float(stood.max()),
-            level_of_service=_level(mean, levels) if is_crossing else "",
+            level_of_service=level_of_service(mean, levels) if is_crossing else "",
         )
-
-
-def _level(mean: float, levels: tuple[tuple[float, str], ...]) -> str:
-    """Return the level of a mean delay [s]."""
-    return next((level for most, level in levels if mean <= most), "F")

@@ -7,6 +7,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from crowd_forces import target_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from pedestrian_model import (
     Crowd,
@@ -131,3 +133,69 @@ def test_a_crowd_put_together_by_hand_is_checked_too(change, message):
 def test_a_mask_must_fit():
     with pytest.raises(CrowdError, match=r"mask is int64 of shape \(3,\)"):
         three().select(np.array([1, 0, 1]))
+
+
+def test_select_concatenate_and_copy_carry_passages_and_signals():
+    crowd = Crowd.create(
+        [(0, 0), (1, 0), (2, 0)],
+        np.zeros((3, 2)),
+        1.0,
+        [[(1, 1)], [(2, 2), (3, 3)], [(4, 4)]],
+        passages=[[(3, 4, 1)], [(0, 0, 7), (0, 2, 2)], [(-1, 0, 3)]],
+        signals=[[2], [-1, 5], [0]],
+    )
+    np.testing.assert_allclose(
+        crowd.waypoint_passage, [(0.6, 0.8, 1), (0, 0, 0), (0, 1, 2), (-1, 0, 3)]
+    )
+    assert crowd.signals == 6
+    rest = crowd.select(np.array([True, False, True]))
+    np.testing.assert_array_equal(rest.waypoint_passage, crowd.waypoint_passage[[0, 3]])
+    np.testing.assert_array_equal(rest.waypoint_signal, [2, 0])
+    assert rest.signals == 3
+    both = rest.concatenate(crowd)
+    np.testing.assert_array_equal(both.waypoint_signal, [2, 0, 2, -1, 5, 0])
+    np.testing.assert_array_equal(both.waypoint_start, [0, 1, 2, 3, 5, 6])
+    np.testing.assert_array_equal(both.copy().waypoint_passage, both.waypoint_passage)
+    replace(both)  # passes every check of a crowd put together by hand
+
+
+@settings(max_examples=30)
+@given(st.lists(st.integers(1, 4), min_size=1, max_size=12), st.integers(0, 2**12 - 1))
+def test_a_selection_joined_with_the_others_is_everybody(lengths, bits):
+    rng = np.random.default_rng(len(lengths) + bits)
+    n = len(lengths)
+    crowd = Crowd.create(
+        rng.normal(size=(n, 2)),
+        rng.normal(size=(n, 2)),
+        rng.uniform(1.0, 2.0, n),
+        [rng.normal(size=(k, 2)) for k in lengths],
+        passages=[rng.normal(size=(k, 3)) ** 2 for k in lengths],
+        signals=[rng.integers(-1, 4, k) for k in lengths],
+    )
+    mask = np.array([bits >> i & 1 for i in range(n)], dtype=bool)
+    order = np.concatenate([np.flatnonzero(mask), np.flatnonzero(~mask)])
+    joined = crowd.select(mask).concatenate(crowd.select(~mask))
+    replace(joined)
+    np.testing.assert_array_equal(joined.position, crowd.position[order])
+    for name in ("waypoints", "waypoint_passage", "waypoint_signal"):
+        one = np.split(getattr(crowd, name), crowd.waypoint_start[1:-1])
+        np.testing.assert_array_equal(
+            getattr(joined, name), np.concatenate([one[i] for i in order])
+        )
+
+
+@pytest.mark.parametrize(
+    ("features", "message"),
+    [
+        ({"passages": []}, "passages has 0 entries, expected one for each of 1"),
+        ({"passages": [[(1, 0, 1)]]}, r"passages\[0\] has shape \(1, 3\), expected \(2, 3\)"),
+        ({"passages": [[(1, 0, 1), (1, np.nan, 1)]]}, r"passages\[0\]\[1, 1\] = nan"),
+        ({"passages": [[(1, 0, 1), (1, 0, -1)]]}, r"half-width of waypoint_passage\[1\] = -1"),
+        ({"signals": [[0]]}, r"signals\[0\] has shape \(1,\), expected \(2\)"),
+        ({"signals": [[0, -3]]}, r"waypoint_signal\[1\] = -3, expected an index >= 0"),
+        ({"signals": [[0.5, 1.0]]}, r"signals\[0\] is float64, expected integers"),
+    ],
+)
+def test_bad_passages_and_signals_are_refused_by_index_and_value(features, message):
+    with pytest.raises(CrowdError, match=message):
+        Crowd.create([(0, 0)], [(0, 0)], 1.0, [[(1, 1), (2, 2)]], **features)

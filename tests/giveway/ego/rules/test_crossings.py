@@ -305,15 +305,10 @@ def test_it_waits_before_the_junction_rather_than_in_it():
     crowd = walker(-2.0, speed=0.5)
     assert stop_of(crossings(), EARLY, 4.0, crowd) == pytest.approx(LINE, abs=0.11)
     assert stop_of(crossings(**THERE), EARLY, 4.0, crowd) == ENTRANCE - STOP_BEFORE
-    inside = ENTRANCE + 1.0  # too late for that
-    assert stop_of(crossings(**THERE), inside, 3.0, crowd) == pytest.approx(LINE, abs=0.11)
-
-
-def test_a_stop_just_behind_the_line_is_not_in_the_junction():
-    near = {"junctions": [(18.0, 18.0, 30.0)]}
-    assert stop_of(crossings(**near), EARLY, 4.0, walker(-2.0, speed=0.5)) == pytest.approx(
-        LINE, abs=0.11
-    )
+    too_late = crossings(**THERE), ENTRANCE + 1.0, 3.0, crowd
+    assert stop_of(*too_late) == pytest.approx(LINE, abs=0.11)
+    near = crossings(junctions=[(18.0, 18.0, 30.0)])  # a stop just behind its line is not in it
+    assert stop_of(near, EARLY, 4.0, crowd) == pytest.approx(LINE, abs=0.11)
 
 
 def test_before_a_junction_it_looks_for_who_will_cross_behind_it():
@@ -325,10 +320,9 @@ def test_before_a_junction_it_looks_for_who_will_cross_behind_it():
 
 def test_before_a_junction_it_heeds_those_with_priority_alone():
     """The others wait for a gap."""
-    crowd = walker(-4.5)  # about to enter
-    behind = crossings(**THERE)
-    assert stop_of(behind, EARLY, 4.0, crowd) == ENTRANCE - STOP_BEFORE
-    assert stop_of(crossings(zebra=False, **THERE), EARLY, 4.0, crowd) == math.inf
+    there = EARLY, 4.0, walker(-4.5)  # about to enter
+    assert stop_of(crossings(**THERE), *there) == ENTRANCE - STOP_BEFORE
+    assert stop_of(crossings(zebra=False, **THERE), *there) == math.inf
 
 
 def test_a_stream_of_people_does_not_hold_it_before_a_junction():
@@ -343,8 +337,8 @@ def test_a_stream_of_people_does_not_hold_it_before_a_junction():
 
 def test_its_own_time_is_at_least_that_of_the_free_speed():
     crowd = walker(SOUTHERN_KERB - 1.0)  # on its way after 1.5 s, away from it after 3.6 s
-    slow = crossings(kerb_time=2.5, duration=lambda begin, end: (end - begin) / 2.0)
     assert stop_of(crossings(kerb_time=2.5), EARLY, 6.0, crowd) < math.inf
+    slow = crossings(kerb_time=2.5, duration=lambda begin, end: (end - begin) / 2.0)
     assert stop_of(slow, EARLY, 6.0, crowd) == math.inf
 
 
@@ -352,6 +346,5 @@ def test_it_waits_at_the_stop_line_that_the_network_sets():
     crowd = walker(-2.0, speed=0.5)
     line = {"lines": [(12.0, 19.0)]}  # 7 m before the lane's end, 8 m before the crossing
     assert stop_of(crossings(**line), EARLY, 4.0, crowd) == 12.0 - STOP_BEFORE
-    assert stop_of(crossings(**line), 12.5, 3.0, crowd) == pytest.approx(LINE, abs=0.11)
-    elsewhere = {"lines": [(2.0, 9.0)]}
-    assert stop_of(crossings(**elsewhere), 1.0, 4.0, crowd) == pytest.approx(LINE, abs=0.11)
+    for lines, front, speed in (([(12.0, 19.0)], 12.5, 3.0), ([(2.0, 9.0)], 1.0, 4.0)):
+        assert stop_of(crossings(lines=lines), front, speed, crowd) == pytest.approx(LINE, abs=0.11)
