@@ -18,13 +18,13 @@ from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
 from fmus.checking.model_fit.fitting import SETTLING, STANDSTILL, Drive, Fit, fit, prepare
 from fmus.checking.model_fit.prediction import position_errors, speed_errors
 from fmus.checking.model_fit.remarks import fit_remarks, saturation_remarks
-from fmus.checking.model_fit.saturation import force_limits
+from fmus.checking.model_fit.saturation import ResistanceModel, force_limits
 from fmus.checking.model_fit.sides import Sides, fit_apart, side_remarks
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
 from fmus.isolation import processes_reused
 from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
-from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
+from fmus.profile.vehicle_profile import FittedModel, SideModel, VehicleProfile
 
 LEVELS = (0.1, 0.25, 0.5, 1.0)  # Shares of the largest force in the tests
 SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] speeds at the start of the tests
@@ -132,8 +132,15 @@ def identify(
             f"{path}: it does not respond to forces like a vehicle; expected more speed with more "
             "force"
         )
-    model = _rated(found, validation, limits, mpc)
     sides = fit_apart(drives, found.delay)
+    model = _rated(found, validation, limits, mpc).model_copy(
+        update={
+            name: _side_model(side, limit)
+            for name, side, limit in zip(
+                ("drive", "brake"), (sides.drive, sides.brake), limits, strict=True
+            )
+        }
+    )
     if model.r_squared < NO_FIT:
         raise FmuOutputError(
             f"{path}: no M and alpha describe it (R² = {model.r_squared:.2f}): its speed does not "
@@ -262,6 +269,14 @@ def _rated(found: Fit, validation: Trace, limits: tuple[float, float], mpc: Mpc)
         horizon=mpc.horizon * mpc.step_size,
         time_step=mpc.step_size,
     )
+
+
+def _side_model(side: ResistanceModel | None, limit: float) -> SideModel | None:
+    """Return a side's table of the profile; its limit is None if it is infinite."""
+    if side is None:
+        return None
+    most = limit / side.mass if np.isfinite(limit) else None
+    return SideModel(mass=side.mass, lag=side.lag, delay=side.delay, limit=most)
 
 
 def _r_squared(found: Fit, drives: Sequence[Drive]) -> float:

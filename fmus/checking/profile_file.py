@@ -1,6 +1,9 @@
 """The identified model in a profile's file, whose comments and order are kept."""
 
+from typing import Any
+
 import tomlkit
+from tomlkit.items import Table
 
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
@@ -11,6 +14,10 @@ _COMMENTS = {
     "friction": "alpha [N.s/m]",
     "lag": "[s] of the actuator",
     "delay": "[s] dead time",
+    "sensor_lag": "[s] of the speed output",
+    "limit": "[m/s2] largest force over M",
+    "power_from": "[m/s] speed above which the power is constant",
+    "rate": "[m/s3] largest change of force over M",
     "r_squared": "of the speed's change per step, in a drive that was not fitted",
     "speed_error": "[m/s] of the MPC's prediction, one step ahead",
     "position_error": "[m] of it at the horizon: 95 % are smaller",
@@ -27,13 +34,7 @@ def with_model(text: str, model: FittedModel) -> str:
         model: Identified model.
     """
     document = tomlkit.parse(text)
-    table = tomlkit.table()
-    for key, value in model.model_dump().items():
-        rounded = 0.0 if abs(value) < ROUNDING else float(f"{value:.{DIGITS}g}")
-        number = tomlkit.item(rounded)
-        number.comment(_COMMENTS[key])
-        number.trivia.comment_ws = "  "
-        table.add(key, number)
+    table = _commented(model.model_dump(exclude_none=True))
     if "model" in document:
         document["model"] = table
     else:
@@ -41,6 +42,21 @@ def with_model(text: str, model: FittedModel) -> str:
             document.add(tomlkit.nl())
         document.add("model", table)
     return tomlkit.dumps(document)
+
+
+def _commented(values: dict[str, Any]) -> Table:
+    """Return a table of numbers, each with its meaning, and of such tables at its end."""
+    table = tomlkit.table()
+    for key, value in values.items():
+        if isinstance(value, dict):
+            table.add(tomlkit.nl())
+            table.add(key, _commented(value))
+            continue
+        number = tomlkit.item(0.0 if abs(value) < ROUNDING else float(f"{value:.{DIGITS}g}"))
+        number.comment(_COMMENTS[key])
+        number.trivia.comment_ws = "  "
+        table.add(key, number)
+    return table
 
 
 def profile_text(profile: VehicleProfile, comment: str) -> str:

@@ -111,6 +111,20 @@ class InverseMap(Table):
     friction: float = Field(100.0, ge=0, le=1e6)  # [N.s/m]
 
 
+class SideModel(Table):
+    """How a vehicle answers to the forces of one sign: driving, or braking."""
+
+    mass: float = Field(gt=0, le=1e6)  # M [kg]
+    lag: float = Field(0.0, ge=0, le=3)  # [s] first-order time constant of the actuator
+    delay: float = Field(0.0, ge=0, le=2)  # [s] dead time
+    # [m/s2] largest force over M, at low speed for driving; None if no limit was seen
+    limit: float | None = Field(None, gt=0, le=1e3)
+    # [m/s] speed above which the power is constant: limit * power_from / v; None if none was seen
+    power_from: float | None = Field(None, gt=0, le=200)
+    # [m/s3] largest change of force over M; None if none was seen
+    rate: float | None = Field(None, gt=0, le=1e4)
+
+
 class FittedModel(Table):
     """M v' + alpha v = u as identified, for the MPC, and how well it fits."""
 
@@ -119,12 +133,27 @@ class FittedModel(Table):
     lag: float = Field(0.0, ge=0, le=3)  # [s] first-order time constant of the actuator
     # [s] dead time; a vehicle with a longer one cannot be driven
     delay: float = Field(0.0, ge=0, le=2)
+    # [s] first-order lag of the speed output behind the motion
+    sensor_lag: float = Field(0.0, ge=0, le=3)
     r_squared: float = Field(le=1)  # share of the variation of speed changes that is explained
     speed_error: float = Field(ge=0)  # [m/s] root mean square, one step ahead
     # [m] value that 95 % of the errors at the horizon do not exceed
     position_error: float = Field(ge=0, le=1e4)
     horizon: float = Field(ge=1e-3, le=1e3)  # [s] horizon of position_error
     time_step: float = Field(gt=0)  # [s] time step of the fit
+    drive: SideModel | None = None  # model for driving forces, or None if it is not known
+    brake: SideModel | None = None  # model for braking forces, or None if it is not known
+
+    @model_validator(mode="after")
+    def _power_is_of_driving(self) -> FittedModel:
+        for side, other in (("drive", self.drive), ("brake", self.brake)):
+            if other is None or other.power_from is None:
+                continue
+            if side == "brake":
+                raise ValueError("brake.power_from: brakes have no limit of power; leave it out")
+            if other.limit is None:
+                raise ValueError("drive.power_from without drive.limit: add `limit` [m/s2]")
+        return self
 
 
 class VehicleProfile(Table):
