@@ -1,6 +1,7 @@
 """Tests of whether an FMU behaves like a vehicle: dry runs, step halving, identification."""
 
 from fmus.checking.check import CheckReport, check, expected_of
+from fmus.checking.coarse import coarse
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, Mpc, identify
 from fmus.checking.manoeuvres import (
@@ -30,6 +31,7 @@ __all__ = [
     "Trace",
     "Verdict",
     "check",
+    "coarse",
     "convergence",
     "drive",
     "expected_of",

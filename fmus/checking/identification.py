@@ -7,7 +7,7 @@ driven by an acceleration, a speed or pedals, this includes the inverse map.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
@@ -36,6 +36,7 @@ VALIDATION = (  # shares of the largest force, each held for HELD; none of them 
     0.05, -0.1, 0.65, -0.5, 0.4, -0.05, 0.0, -0.25,
 )  # fmt: skip
 HELD = 0.6  # [s]
+HEAVIEST = 1e6  # [kg] largest M that counts
 
 
 class Mpc(NamedTuple):
@@ -120,20 +121,44 @@ def identify(
     starter = _Starter(opener, 0.5 * largest, max(speeds))
     tests = _drive_tests(starter, largest, speeds, one_more)
     limits = force_limits(tests)
-    traces = tuple(trace for group in tests for trace in group)
-    drives = [prepare(trace, limits) for trace in traces]
-    found = fit(drives)
     validation = starter.drive(
         _validation(0.9 * min(largest, *limits), max(speeds)), float(np.median(speeds))
     )
     one_more()
+    found = modelled(tests, validation, mpc.horizon, path, profile)
+    return replace(found, largest_force=largest)
+
+
+def modelled(
+    tests: Sequence[Sequence[Trace]],
+    validation: Trace,
+    horizon: int,
+    path: Path,
+    profile: VehicleProfile | None = None,
+) -> Identification:
+    """Fit the model to drives that have been recorded.
+
+    Args:
+        tests: Drives by level of force, from weak to strong.
+        validation: Drive by which the model is judged.
+        horizon: Horizon of the MPC [steps].
+        path: Path of the FMU, for messages.
+        profile: Profile of the vehicle, for advice on its lines.
+
+    Raises:
+        FmuOutputError: the vehicle does not respond to forces like a vehicle.
+    """
+    limits = force_limits(tests)
+    traces = tuple(trace for group in tests for trace in group)
+    drives = [prepare(trace, limits) for trace in traces]
+    found = fit(drives)
     if found is None:
         raise FmuOutputError(
             f"{path}: it does not respond to forces like a vehicle; expected more speed with more "
             "force"
         )
     sides = fit_apart(drives, found.delay)
-    model = _rated(found, validation, limits, mpc).model_copy(
+    model = _rated(found, validation, limits, horizon).model_copy(
         update={
             name: _side_model(side, limit)
             for name, side, limit in zip(
@@ -151,14 +176,14 @@ def identify(
         intervals=found.intervals,
         drive_limit=_finite(limits[0]),
         brake_limit=_finite(limits[1]),
-        largest_force=largest,
+        largest_force=max(float(np.abs(trace.force).max()) for trace in traces),
         fit=found,
         tests=traces,
         validation=validation,
         remarks=(
             *saturation_remarks(limits),
             *fit_remarks(found, model, traces, limits),
-            *side_remarks(sides, mpc.step_size, profile),
+            *side_remarks(sides, validation.step_size, profile),
         ),
         sides=sides,
     )
@@ -253,10 +278,10 @@ def _validation(force: float, fastest: float) -> list[Phase]:
     return [Phase(0.0, LEAD_IN), *changes, Phase(-0.5 * force, 5.0, above=STANDSTILL)]
 
 
-def _rated(found: Fit, validation: Trace, limits: tuple[float, float], mpc: Mpc) -> FittedModel:
+def _rated(found: Fit, validation: Trace, limits: tuple[float, float], horizon: int) -> FittedModel:
     """Return the model with its errors in the drive that was held out."""
     held_out = prepare(validation, limits)
-    ahead = position_errors(validation, found.mass, found.friction, mpc.horizon)
+    ahead = position_errors(validation, found.mass, found.friction, horizon)
     one_step = speed_errors(validation, found.mass, found.friction)
     return FittedModel(
         mass=found.mass,
@@ -266,14 +291,14 @@ def _rated(found: Fit, validation: Trace, limits: tuple[float, float], mpc: Mpc)
         r_squared=_r_squared(found, [held_out]),
         speed_error=float(np.sqrt(np.mean(one_step**2))) if one_step.size else 0.0,
         position_error=float(np.quantile(ahead, 0.95)) if ahead.size else 0.0,
-        horizon=mpc.horizon * mpc.step_size,
-        time_step=mpc.step_size,
+        horizon=horizon * validation.step_size,
+        time_step=validation.step_size,
     )
 
 
 def _side_model(side: ResistanceModel | None, limit: float) -> SideModel | None:
     """Return a side's table of the profile; its limit is None if it is infinite."""
-    if side is None:
+    if side is None or side.mass > HEAVIEST:
         return None
     most = limit / side.mass if np.isfinite(limit) else None
     return SideModel(mass=side.mass, lag=side.lag, delay=side.delay, limit=most)
