@@ -67,11 +67,11 @@ class ControllerFmu:
             FmuStepError: the FMU does not do the step.
         """
         step_plan, instance = self.prepared.step_plan, self._instance
-        if self._steps % step_plan.stretch == 0:
+        steps = range(step_plan.steps_until(self._steps), step_plan.steps_until(self._steps + 1))
+        if steps:
             for index, value in enumerate(numbers[1:]):
                 instance.inputs[index] = value
-            first = self._steps // step_plan.stretch * step_plan.substeps
-            for number in range(first, first + step_plan.substeps):
+            for number in steps:
                 status = instance.tick(number * step_plan.step, step_plan.step)
                 if status > WARNING:
                     said = instance.messages.take() or "without a message"

@@ -17,7 +17,7 @@ from fmus.fmi import load
 from fmus.fmi.status import STATUS_NAMES, WARNING
 from fmus.interfaces.vehicle import Drivable
 from fmus.profile.preparation import Prepared, prepare, unpack
-from fmus.profile.step_plan import between, step_to_run_with
+from fmus.profile.step_plan import between
 from fmus.profile.vehicle_profile import VehicleProfile
 
 
@@ -77,7 +77,7 @@ class VehicleFmu(Drivable):
         self.knows_grades = self._grade is not None
         self._motion = Motion(prepared)
         self.warnings = self._motion.warnings
-        self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed at both ends of a longer FMU step
+        self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed at both ends of the last FMU step
         self._steps = self._earlier = 0  # since time 0, and during the run-up before it
         self._closed = False
         self._instance = load(
@@ -132,12 +132,12 @@ class VehicleFmu(Drivable):
         motion.begin(self._outputs)
         self._refusal = ""
         self._show(motion)
+        self._ends = ((0.0, 0.0), (self.position, self.speed))
         try:
             self._reach(position, speed)
         except BaseException:
             self._fail()
             raise
-        self._ends = ((0.0, 0.0), (self.position, self.speed))
 
     def _reach(self, position: float, speed: float) -> None:
         """Check the first position and speed, or drive up to the speed before time 0."""
@@ -151,15 +151,18 @@ class VehicleFmu(Drivable):
             )
         wiring = self.prepared.wiring
         if wiring.initial_position is None or wiring.output("position") is None or self._earlier:
-            self._motion.count_from(position)
+            motion, ((begin, v_0), (_, v_1)) = self._motion, self._ends
+            ahead = motion.position - self.position
+            self._ends = ((position + begin - self.position, v_0), (position + ahead, v_1))
+            motion.count_from(position + ahead)
+            self.position = position
         else:
             require_position(self, position)
-        self._show(self._motion)
 
     @property
     def between_steps(self) -> bool:
-        """True unless the FMU is within a step that is longer than the controller's."""
-        return (self._earlier + self._steps) % self._step_plan.stretch == 0
+        """True if an FMU step has ended within the last control step."""
+        return self._step_plan.has_ended(self._earlier + self._steps)
 
     # --- steps ---------------------------------------------------------------------------------
 
@@ -173,42 +176,49 @@ class VehicleFmu(Drivable):
         """
         if self._refusal or not isfinite(force):
             self._require_step(force)
-        motion, done, stretch = self._motion, self._earlier + self._steps, self._step_plan.stretch
-        if stretch == 1 or done % stretch == 0:
-            self._drive(force, grade, done)
+        motion, done, step_plan = self._motion, self._earlier + self._steps, self._step_plan
+        first = step_plan.steps_until(done)
+        last = step_plan.steps_until(done + 1)
+        if first < last:
+            self._drive(force, grade, range(first, last))
         self._steps += 1
         self.time = self._steps * self.step_size
         self.acceleration = motion.acceleration
-        if stretch == 1:
+        if step_plan.stretch == 1:
             self.position, self.speed = motion.position, motion.speed
         else:
-            share = (done % stretch + 1) / stretch
-            self.position, self.speed = between(*self._ends, self._step_plan.step, share)
+            share = step_plan.share(done + 1)
+            self.position, self.speed = between(*self._ends, step_plan.step, share)
 
-    def _drive(self, force: float, grade: float, done: int) -> None:
-        """Do the FMU's steps of one control step, or the FMU's one step if that is longer."""
+    def _drive(self, force: float, grade: float, steps: range) -> None:
+        """Do the FMU's steps that begin within one control step."""
         step_plan, motion, tick = self._step_plan, self._motion, self._tick
         self._command.apply(force, motion.speed, self._inputs)
         if self._grade is not None:
             self._inputs[self._grade] = self.prepared.wiring.grade_to_raw(grade)
         if self.prepared.bounds:
             motion.keep_bounds(self._inputs)
-        h, substeps = step_plan.step, step_plan.substeps
-        first = done // step_plan.stretch * substeps
-        for number in range(first, first + substeps):
+        h, each = step_plan.step, step_plan.stretch > 1
+        for number in steps:
             status = tick(number * h, h)
             if status > WARNING:
                 self._step_failed(force, status)
-        end = (self._steps + step_plan.stretch) * self.step_size
+            if each:
+                self._follow(force, h)
+                self._ends = (self._ends[1], (motion.position, motion.speed))
+        if not each:
+            self._follow(force, len(steps) * h)
+
+    def _follow(self, force: float, duration: float) -> None:
+        """Take over the motion after a step of some duration [s]."""
+        end = (self._steps + self._step_plan.ahead) * self.step_size
         try:
-            motion.follow(self._outputs, force, substeps * h, end)
+            self._motion.follow(self._outputs, force, duration, end)
         except FmuOutputError:
             self.time = end
-            self._show(motion)
+            self._show(self._motion)
             self._fail()
             raise
-        if step_plan.stretch > 1:
-            self._ends = (self._ends[1], (motion.position, motion.speed))
 
     def _show(self, motion: Motion) -> None:
         self.position, self.speed, self.acceleration = motion.state
@@ -230,13 +240,13 @@ class VehicleFmu(Drivable):
             return ""
         return (
             "; it does steps of one length only, and its default experiment's is "
-            f"{wanted:g} s: add step = {wanted:g} to [fmu]{step_to_run_with(wanted)}"
+            f"{wanted:g} s: add step = {wanted:g} to [fmu]"
         )
 
     def _step_failed(self, force: float, status: int) -> NoReturn:
         self._fail()
         said = self._instance.messages.take() or "without a message"
-        end = (self._steps + self._step_plan.stretch) * self.step_size
+        end = (self._steps + self._step_plan.ahead) * self.step_size
         raise FmuStepError(
             f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "
             f"FMU returned '{STATUS_NAMES[status]}', {said}{self._own_step()}"

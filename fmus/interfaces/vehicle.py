@@ -103,4 +103,4 @@ class Drivable(Vehicle):
     @property
     @abstractmethod
     def between_steps(self) -> bool:
-        """True unless the FMU is within a step that is longer than the controller's."""
+        """True if an FMU step has ended within the last control step."""

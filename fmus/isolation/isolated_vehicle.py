@@ -51,7 +51,7 @@ class IsolatedVehicle(Vehicle):
         self.warnings = []
         self._start_timeout = prepared.profile.fmu.start_timeout
         self._step_timeout = prepared.profile.fmu.step_timeout
-        self._stretch = prepared.step_plan.stretch
+        self._ahead = prepared.step_plan.ahead
         self.record = prepared.wiring.record
         self.knows_grades = prepared.wiring.grade is not None
         self._steps, self._force = 0, 0.0
@@ -130,5 +130,5 @@ class IsolatedVehicle(Vehicle):
         """Return the time of a request in words, for messages."""
         if what != STEP:
             return while_starting(what)
-        until = (self._steps + self._stretch) * self.step_size
+        until = (self._steps + self._ahead) * self.step_size
         return f"in the step from {self.time:.10g} s to {until:.10g} s under {self._force:g} N"

@@ -22,11 +22,10 @@ from fmus.profile.questions import (
     signed_question,
     unit_question,
 )
-from fmus.profile.step_plan import divides
 from fmus.profile.vehicle_profile import VehicleProfile, make_profile
 from fmus.text import listed, printable
 
-CONTROL_STEP: Final = 0.05  # Usual control step [s]
+LONGEST_STEP: Final = 10.0  # Longest step [s] that a profile may have
 NAMED: Final = 3  # Largest number of doubts in an error
 
 
@@ -68,7 +67,7 @@ def _fmu(model: Model) -> Entry:
         lines.append(Line("step", interface.fixed_internal_step, "s, its fixed internal step"))
     elif kind is Kind.CO_SIMULATION and not interface.variable_step and step is not None:
         comment = "s, of its default experiment; it takes steps of one length only"
-        lines.append(Line("step", step, comment, sure=divides(step, CONTROL_STEP)))
+        lines.append(Line("step", step, comment, sure=step <= LONGEST_STEP))
     return Entry("fmu", tuple(lines))
 
 

@@ -19,7 +19,7 @@ from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
 from fmus.profile.draft_profile import draft_profile, require_confident
 from fmus.profile.step_plan import StepPlan, step_plan_of
-from fmus.profile.vehicle_profile import VehicleProfile
+from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 from fmus.profile.wires import Wire
 from fmus.profile.wiring import Wiring, wire
 
@@ -72,6 +72,12 @@ class Prepared(PreparedFmu):
     wiring: Wiring
     command: Command
     ours: bool
+
+    @property
+    def fitted(self) -> FittedModel | None:
+        """Fitted model of the profile, with the delay of the FMU's own steps in its dead times."""
+        model = self.profile.model
+        return None if model is None else model.later(self.step_plan.delay)
 
 
 def prepare(

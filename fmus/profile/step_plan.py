@@ -1,36 +1,61 @@
 """The communication step plan: the relation of the controller's steps to an FMU's own steps."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 from fmus.description.model import Interface, Kind
 from fmus.errors import FmuProfileError
 
 _FIT = 1e-9  # Relative tolerance of a whole number of steps
-_MOST = 1_000_000  # Largest number of substeps; more would take minutes
+_MOST = 1_000_000  # Largest number of substeps, and of control steps in a plan's period
 
 
 @dataclass(frozen=True)
 class StepPlan:
-    """The plan: ``substeps`` FMU steps per control step, or ``stretch`` control steps per FMU step.
+    """The plan: ``substeps`` steps of the FMU take as long as ``stretch`` control steps.
+
+    At the first of the control instants that it reaches, an FMU step begins with the force that is
+    held then. It may end after the next control instant, where the motion is interpolated.
 
     Attributes:
         step: Step of the FMU [s].
-        substeps: Number of FMU steps per control step; 1 unless the FMU's step is shorter.
-        stretch: Number of control steps per FMU step, over which the force is held; 1 unless the
-            FMU's step is longer.
+        substeps: Number of FMU steps; 1 if the FMU's step is a multiple of the control step.
+        stretch: Number of control steps in the same time; 1 if the FMU's step is a part of one.
     """
 
     step: float
     substeps: int = 1
     stretch: int = 1
 
+    @property
+    def delay(self) -> float:
+        """Longest time [s] from a control instant to the FMU's step that gets its force."""
+        return self.step * (1.0 - 1.0 / self.stretch)
+
+    @property
+    def ahead(self) -> int:
+        """Largest number of control steps that end within one FMU step."""
+        return -(-self.stretch // self.substeps)
+
+    def steps_until(self, instant: int) -> int:
+        """Return the number of FMU steps that reach a control instant, counted from 0."""
+        return -(-instant * self.substeps // self.stretch)
+
+    def share(self, instant: int) -> float:
+        """Return the share of the last of these steps that has passed at the instant."""
+        return instant * self.substeps % self.stretch / self.stretch or 1.0
+
+    def has_ended(self, instant: int) -> bool:
+        """Return whether an FMU step has ended within the control step before the instant."""
+        return instant * self.substeps % self.stretch < self.substeps
+
 
 def make_step_plan(control_step: float, fmu_step: float | None) -> StepPlan:
     """Return the plan for a control step [s] and the FMU's own step [s], by default the same.
 
     Raises:
-        FmuProfileError: neither is a whole multiple of the other, or there are too many substeps.
+        FmuProfileError: there are too many substeps.
     """
     if fmu_step is None:
         return StepPlan(control_step)
@@ -43,14 +68,10 @@ def make_step_plan(control_step: float, fmu_step: float | None) -> StepPlan:
     if abs(substeps * fmu_step - control_step) <= _FIT * control_step:
         return StepPlan(control_step / substeps, substeps=substeps)
     stretch = max(1, round(fmu_step / control_step))
-    if abs(stretch * control_step - fmu_step) <= _FIT * fmu_step:
+    if abs(stretch * control_step - fmu_step) <= _FIT * fmu_step or stretch > _MOST:
         return StepPlan(stretch * control_step, stretch=stretch)
-    near = control_step / max(1, round(control_step / fmu_step))
-    raise FmuProfileError(
-        f"an FMU step of {fmu_step:g} s does not fit the control step of {control_step:g} s; "
-        f"expected a whole part or multiple of it: add step = {near:.6g} to [fmu], or change "
-        "--time-step"
-    )
+    ratio = Fraction(control_step / fmu_step).limit_denominator(_MOST)
+    return StepPlan(fmu_step, ratio.numerator, ratio.denominator)
 
 
 def step_plan_of(
@@ -70,27 +91,14 @@ def step_plan_of(
         step_size: Step size of the controller [s].
 
     Raises:
-        FmuProfileError: the steps do not fit each other.
+        FmuProfileError: there are too many substeps.
     """
     fixed = interface.fixed_internal_step
     if wanted is None and fixed is not None and not divides(fixed, step_size):
         wanted = fixed
-        if not divides(step_size, fixed):
-            raise FmuProfileError(
-                f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
-                f"step of {step_size:g} s; expected a whole part or multiple of it: change "
-                "--time-step, or export the model with another step"
-            )
     one_length = interface.kind is Kind.CO_SIMULATION and not interface.variable_step
     if wanted is None and fixed is None and one_length and default is not None:
         wanted = default
-        if not (divides(default, step_size) or divides(step_size, default)):
-            raise FmuProfileError(
-                f"{path}: the FMU does steps of one length only, and that of its default "
-                f"experiment, {default:g} s, does not fit the control step of {step_size:g} s; "
-                f"expected a whole part or multiple of it: run with --time-step {default:g}, or "
-                "write the length that it does as step in [fmu] of the profile"
-            )
     try:
         return make_step_plan(step_size, wanted)
     except FmuProfileError as error:
@@ -102,15 +110,6 @@ def divides(part: float, whole: float) -> bool:
     if part < 1e-9 * whole:
         return True  # the part is finer than the resolution of floating-point numbers
     return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
-
-
-def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
-    """Return the flag that a run needs for an FMU's step [s], or "" if the usual one fits."""
-    try:
-        make_step_plan(usual, fmu_step)
-    except FmuProfileError:
-        return f" and run with --time-step {fmu_step:g}"
-    return ""
 
 
 def between(

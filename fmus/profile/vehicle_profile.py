@@ -155,6 +155,16 @@ class FittedModel(Table):
                 raise ValueError("drive.power_from without drive.limit: add `limit` [m/s2]")
         return self
 
+    def later(self, delay: float) -> FittedModel:
+        """Return the model of the vehicle that gets each force later by ``delay`` [s]."""
+        sides = {"drive": self.drive, "brake": self.brake}
+        later: dict[str, object] = {
+            name: side.model_copy(update={"delay": side.delay + delay})
+            for name, side in sides.items()
+            if side is not None
+        }
+        return self.model_copy(update={"delay": self.delay + delay, **later})
+
 
 class VehicleProfile(Table):
     """The settings that giveway needs to drive a foreign FMU."""

@@ -76,5 +76,5 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         margin=_MARGIN + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,
         force_limit=config.vehicle.force_limit,
-        reaction_time=identified_reaction_time(config),
+        reaction_time=identified_reaction_time(config, time_step),
     )

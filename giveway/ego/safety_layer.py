@@ -108,7 +108,8 @@ def vehicle_layer_of(config: EgoRunConfig, time_step: float) -> VehicleLayer | N
     return VehicleLayer(
         LongitudinalModel(vehicle.mass, vehicle.friction, time_step),
         VehicleLimits(
-            force_limit=vehicle.force_limit, reaction_time=identified_reaction_time(config)
+            force_limit=vehicle.force_limit,
+            reaction_time=identified_reaction_time(config, time_step),
         ),
     )
 

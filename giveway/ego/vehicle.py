@@ -178,17 +178,35 @@ def model_margin(config: EgoRunConfig, time_step: float) -> float:
     return model.position_error * max(1.0, config.model_steps * time_step / model.horizon) ** 2
 
 
-def identified_reaction_time(config: EgoRunConfig) -> float:
+def identified_reaction_time(config: EgoRunConfig, time_step: float) -> float:
     """The dead time plus the lag [s] of the actuator from the profile; 0 without a model.
 
     Args:
         config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
 
     Raises:
-        VehicleError: the profile cannot be read.
+        VehicleError: the profile or the FMU cannot be read.
     """
-    model = _model(config)
+    model = driven_model(config, time_step)
     return 0.0 if model is None else model.delay + model.lag
+
+
+def driven_model(config: EgoRunConfig, time_step: float) -> FittedModel | None:
+    """The identified model, with the delay of the FMU's own steps in its dead times.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+
+    Raises:
+        VehicleError: the profile or the FMU cannot be read.
+    """
+    if _model(config) is None:
+        return None
+    with retold(FmuError, VehicleError):
+        path, profile = fmu_path(config.vehicle), _profile(config.vehicle)
+        return prepare(path, step_size=time_step, profile=profile).fitted
 
 
 def model_remark(config: EgoRunConfig, time_step: float) -> str:

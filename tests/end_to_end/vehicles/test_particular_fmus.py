@@ -73,11 +73,6 @@ def test_its_time_is_k_h_also_after_a_long_drive(zoo, opened):
     assert vehicle.time == 15_000 * H
 
 
-def test_a_step_that_does_not_divide_the_control_step_is_refused(zoo, opened):
-    with pytest.raises(Exception, match=r"0\.03 s does not fit .* 0\.05 s"):
-        opened(zoo.car(only_step=0.03))
-
-
 def test_a_slow_fmu_is_waited_for(zoo, opened, as_usual):
     assert drive(opened(zoo.car(behaviour="slow"), isolated=True)) == as_usual
 

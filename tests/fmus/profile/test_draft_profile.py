@@ -203,8 +203,8 @@ ME = Interface(Kind.MODEL_EXCHANGE, "car")
         ((ME, CS), None, {"kind": "co-simulation"}),
         ((FIXED,), None, {"kind": "co-simulation", "step": 0.002}),
         ((RIGID,), 0.01, {"kind": "co-simulation", "step": 0.01}),
-        ((RIGID,), 0.02, {"kind": "co-simulation"}),  # does not fit into 0.05 s: a question
-        ((RIGID,), 1.0, {"kind": "co-simulation"}),
+        ((RIGID,), 0.02, {"kind": "co-simulation", "step": 0.02}),
+        ((RIGID,), 11.0, {"kind": "co-simulation"}),  # no profile may say so: a question
         ((RIGID,), None, {"kind": "co-simulation"}),
     ],
 )

@@ -1,4 +1,4 @@
-"""The controller's steps and the FMU's own: whole parts, whole multiples, nothing else."""
+"""The controller's steps and the FMU's own: whole parts, whole multiples, and any others."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmus import FmuProfileError
-from fmus.profile.step_plan import StepPlan, between, make_step_plan, step_to_run_with
+from fmus.profile.step_plan import StepPlan, between, make_step_plan
 
 H = 0.05  # [s]
 
@@ -29,6 +29,10 @@ H = 0.05  # [s]
         (0.1, 1, 2),
         (0.15, 1, 3),
         (5.0, 1, 100),
+        (0.03, 5, 3),
+        (0.07, 5, 7),
+        (0.02, 5, 2),
+        (1e9, 1, 20_000_000_000),
     ],
 )
 def test_steps_that_fit(fmu_step, substeps, stretch):
@@ -37,16 +41,21 @@ def test_steps_that_fit(fmu_step, substeps, stretch):
     assert step_plan.step == pytest.approx(H if fmu_step is None else fmu_step, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("fmu_step", "advice"),
-    [(0.03, "step = 0.025 "), (0.07, "step = 0.05 "), (0.02, "step = 0.025 ")],
-)
-def test_steps_that_do_not_fit_are_refused_with_one_that_does(fmu_step, advice):
-    with pytest.raises(FmuProfileError, match=advice) as caught:
-        make_step_plan(H, fmu_step)
-    assert f"{fmu_step:g} s" in str(caught.value)
-    assert "--time-step" in str(caught.value)
-    make_step_plan(H, float(advice.removeprefix("step = ")))
+@given(st.floats(0.001, 0.5), st.floats(0.001, 2.0), st.integers(0, 5000))
+def test_any_other_step_reaches_every_instant_and_no_further(control_step, fmu_step, instant):
+    """An instant lies within the last step, or at its end; the delay is never longer than told."""
+    plan = make_step_plan(control_step, fmu_step)
+    time, end = instant * control_step, plan.steps_until(instant) * plan.step
+    slack = 1e-5 * plan.step
+    assert time - slack <= end <= time + plan.delay + slack
+    assert end - (1.0 - plan.share(instant)) * plan.step == pytest.approx(time, abs=slack)
+    ended = [number * plan.substeps // plan.stretch for number in (instant, instant + 1)]
+    assert plan.has_ended(instant + 1) == (ended[0] < ended[1])
+
+
+@pytest.mark.parametrize(("fmu_step", "delay"), [(0.01, 0.0), (0.1, 0.05), (0.03, 0.02)])
+def test_the_delay_is_the_longest_wait_for_a_step(fmu_step, delay):
+    assert make_step_plan(H, fmu_step).delay == pytest.approx(delay)
 
 
 @pytest.mark.parametrize("fmu_step", [1e-9, 1e-300, 5e-324])
@@ -156,10 +165,47 @@ def test_a_longer_step_holds_the_force_and_is_smooth_in_between(zoo, open_car):
         assert long.speed == pytest.approx(short.speed, abs=1e-12)
 
 
+@pytest.mark.parametrize("step", [0.03, 0.07, 0.1 / 3])
+def test_an_fmu_does_its_own_steps_past_the_instants(clocked, step):
+    """Its clock at each instant is the vehicle's time, by interpolation."""
+    car = clocked(step, only_step=step, values={"friction": 0.0})
+    car.start(speed=1.0)
+    for k in range(1, 400):
+        car.step(0.0)
+        assert car.position == pytest.approx(k * H, abs=1e-9)
+
+
+@pytest.mark.parametrize("step", [0.03, 0.07])
+def test_a_force_acts_from_the_next_step_of_the_fmu_on(zoo, open_car, step):
+    car = open_car(zoo.car(values={"friction": 0.0}), fmu={"step": step})
+    car.start(position=5.0, speed=4.0)
+    begins = [number * step for number in range(200)]
+    force = [1000.0 * (number % 7 - 3) for number in range(100)]
+    for k in range(100):
+        car.step(force[k])
+        held = [force[int(begin / H + 1e-9)] for begin in begins if begin < (k + 1) * H - 1e-9]
+        over = len(held) * step - (k + 1) * H  # [s] by which the last step is ahead
+        speed = 4.0 + (sum(held) * step - held[-1] * over) / 1000.0
+        assert car.speed == pytest.approx(speed, abs=1e-9)
+
+
+def test_driving_up_to_a_speed_leaves_its_clock_between_two_instants(zoo, open_car):
+    car = open_car(zoo.car(initial=(), strict_time=True), fmu={"step": 0.03})
+    car.start(position=7.0, speed=4.0)
+    assert (car.time, car.position) == (0.0, 7.0)
+    assert car.speed == pytest.approx(4.0, abs=0.01)
+    for _ in range(19):
+        before = car.position, car.speed
+        car.step(400.0)
+        way = 0.5 * H * (before[1] + car.speed)
+        assert car.position - before[0] == pytest.approx(way, abs=1e-4)
+    assert car.time == 19 * H
+
+
 # ---- an FMU that knows its step itself ----
 
 
-@pytest.mark.parametrize("fixed", [0.01, 0.05, 0.1])
+@pytest.mark.parametrize("fixed", [0.01, 0.02, 0.05, 0.1])
 def test_a_fixed_internal_step_is_found_in_the_description(zoo, open_car, fixed):
     car = open_car(zoo.car(fmi="3.0", only_step=fixed), fmu={"step": fixed if fixed < H else None})
     car.start()
@@ -168,14 +214,6 @@ def test_a_fixed_internal_step_is_found_in_the_description(zoo, open_car, fixed)
         car.step(1000.0)
         positions.append(car.position)
     assert all(b > a for a, b in pairwise(positions))
-
-
-def test_a_fixed_internal_step_that_does_not_fit_is_refused(zoo, open_car):
-    """No step in [fmu] would help: the FMU has its own."""
-    with pytest.raises(FmuProfileError, match=r"fixed step of 0\.02 s") as caught:
-        open_car(zoo.car(fmi="3.0", only_step=0.02), fmu={"step": None})
-    assert "--time-step" in str(caught.value)
-    assert "[fmu]" not in str(caught.value)
 
 
 @pytest.mark.parametrize("fixed", ["1e-320", "0", "nan", "-1"])
@@ -191,7 +229,7 @@ def test_a_fixed_internal_step_that_means_nothing_is_none(zoo, open_car, redescr
 # ---- an FMU that does steps of one length only, and tells it by its default experiment ----
 
 
-@pytest.mark.parametrize("only", [0.01, 0.05, 0.1])
+@pytest.mark.parametrize("only", [0.01, 0.03, 0.05, 0.1])
 @pytest.mark.parametrize("fmi", ["2.0", "3.0"])
 def test_a_profile_without_a_step_has_the_default_experiments(
     zoo, open_car, redescribed, fmi, only
@@ -208,13 +246,6 @@ def test_a_profile_without_a_step_has_the_default_experiments(
     assert car.speed > 0.0
 
 
-def test_a_default_step_that_does_not_fit_is_refused_at_set_up(zoo, open_car):
-    path = zoo.car(only_step=0.03)
-    with pytest.raises(FmuProfileError, match=r"0\.03 s, does not fit the control step of 0\.05 s"):
-        open_car(path, fmu={"step": None})
-    open_car(path, step=0.06, fmu={"step": None})
-
-
 def test_the_default_step_of_an_fmu_that_can_do_any_is_none(zoo, open_car):
     assert open_car(zoo.car(step=0.03)).prepared.step_plan.step == H
 
@@ -224,8 +255,13 @@ def test_a_step_of_the_profile_comes_first(zoo, open_car):
     assert car.prepared.step_plan.step == 0.025
 
 
-@pytest.mark.parametrize(
-    ("fmu_step", "flag"), [(0.05, ""), (0.025, ""), (0.02, " and run with --time-step 0.02")]
-)
-def test_the_flag_that_a_run_needs_for_an_fmus_own_step(fmu_step, flag):
-    assert step_to_run_with(fmu_step) == flag
+def test_the_dead_times_of_the_model_include_its_steps(zoo, open_car):
+    """A force waits up to 20 ms for an FMU step of 30 ms."""
+    side = {"mass": 900.0, "delay": 0.1}
+    fit = {"r_squared": 1.0, "speed_error": 0.0, "position_error": 0.0, "horizon": 0.75}
+    model = {"mass": 1000.0, "friction": 1.0, "delay": 0.3, "time_step": H, "brake": side, **fit}
+    late = open_car(zoo.car(), fmu={"step": 0.03}, model=model).prepared.fitted
+    assert [late.delay, late.brake.delay] == pytest.approx([0.32, 0.12])
+    assert late.drive is None
+    assert open_car(zoo.car(), model=model).prepared.fitted.delay == 0.3
+    assert open_car(zoo.car(), fmu={"step": 0.03}).prepared.fitted is None
