@@ -12,7 +12,7 @@ The floor of the critical headway is thus the time in which a vehicle can stop. 
 at once of a vehicle that turns and has to give way to them, by the junction's right of way.
 
 A vehicle that stands or creeps gives way, unless it waits for people on the crossing: who comes
-later lets it go first then, as in SUMO.
+later lets it go first then, as in SUMO, unless they have waited for long.
 A vehicle that passes before the person has come to the kerb does not count. People on the crossing
 go on.
 
@@ -41,6 +41,7 @@ _BRAKING: Final = 3.4  # comfortable deceleration [m/s^2] of drivers (AASHTO 201
 _CREEPS: Final = 0.5  # speed [m/s] up to which a vehicle gives way: it stands or creeps
 _AT_LINE: Final = 4.0  # distance [m] to a crossing within which the first vehicle stands
 _STARTS: Final = 4.0  # speed [m/s] of a vehicle that is about to start, as people expect it
+_BOLD: Final = 10.0  # time [s] waited, beyond which people go before a standing vehicle; own choice
 _SPREAD: Final = 0.5  # largest relative deviation of a person's t_s from the mean; own choice
 _STANDS: Final = 0.3  # speed [m/s] below which a person counts as standing; people in a jam sway
 _QUEUE: Final = 10.0  # distance [m] to the kerb up to which people who stand wait for a gap
@@ -224,8 +225,12 @@ class GapAcceptance:
         margin, impatience, waited = self._traits[people].T
         impatience = np.clip(impatience + waited / PATIENCE, 0.0, 1.0)
         pace = crowd.desired_speed[rows]
-        vehicles = _with_intent(vehicles, used=used)
-        fine = accepts(to_kerb, to_clear, pace, margin, impatience, vehicles)
+        fine = np.zeros(to_clear.shape, dtype=np.bool_)
+        bold = waited > _BOLD
+        for some, heeded in ((~bold, used), (bold, False)):
+            expected = _with_intent(vehicles, used=heeded)
+            who = to_kerb[some], to_clear[some], pace[some], margin[some], impatience[some]
+            fine[some] = accepts(*who, expected)
         for row, person in enumerate(people.tolist()):
             if person in self._ignoring:
                 probability, slow, random = self._ignoring[person]

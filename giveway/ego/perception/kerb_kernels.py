@@ -11,6 +11,7 @@ _DEEPEST = NEAR  # largest width [m] of a sidewalk
 _BEHIND = 2.0  # distance [m] behind a sidewalk, within which people count as on it; own choice
 _MOUTH = 1.5  # distance [m] to a crossing, within which people are about to enter it
 _ON_LINE = 0.05  # tolerance [m] of a point on a kerb's line
+_STANDS = 0.3  # speed [m/s] up to which a person at a crossing waits for a gap there
 _SETS_OUT = 0.6  # acceleration [m/s^2] of a person towards a kerb: a_k of docs/safety.md
 
 
@@ -30,7 +31,7 @@ def fill_kerbs(
         velocity: Velocities (n, 2) [m/s] of the people.
         edges: Edges (k, 4) [m] of sidewalks, which are on the left of each edge.
         is_kerb: Whether the road is on the right of each edge, (k,).
-        mouths: Crossings (c, 6), as :func:`giveway.ego.perception.kerbs._mouths` returns them.
+        mouths: Crossings (c, 7), as :func:`giveway.ego.perception.kerbs._mouths` returns them.
         found: Kerbs (n, 3), filled.
     """
     for p in range(position.shape[0]):
@@ -53,7 +54,8 @@ def fill_kerbs(
                 nearest, beside = i, 0.0 < share < 1.0
                 behind = left and beside
         on = inside or (behind and closest <= _BEHIND)
-        if not on or nearest_kerb > _DEEPEST or in_mouth(x, y, mouths):
+        stands = is_standing(velocity[p])
+        if not on or nearest_kerb > _DEEPEST or in_mouth(x, y, mouths, stands):
             continue
         found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
         found[p, 2] = nearest_kerb
@@ -96,7 +98,7 @@ def drop_kerbs(
         people: Positions (n, 2) [m], velocities (n, 2) [m/s] and desired speeds (n,) [m/s].
         ways: Way-points (w, 2) [m] of all people, one after the other; index (n + 1,) of each
             person's first one, and number (n,) of the next one.
-        mouths: Crossings (c, 6), as :func:`giveway.ego.perception.kerbs._mouths` returns them.
+        mouths: Crossings (c, 7), as :func:`giveway.ego.perception.kerbs._mouths` returns them.
         kerbs: Kerbs (n, 3), changed.
     """
     (position, velocity, desired_speed), (waypoints, start, index) = people, ways
@@ -105,7 +107,8 @@ def drop_kerbs(
             continue
         x, y = position[p, 0], position[p, 1]
         at, last = start[p] + index[p], start[p + 1] - 1
-        if in_mouth(x, y, mouths):
+        stands = is_standing(velocity[p])
+        if in_mouth(x, y, mouths, stands):
             kerbs[p] = 0.0
             continue
         for look in range(1, LOOKS + 1):
@@ -122,7 +125,7 @@ def drop_kerbs(
                     at += 1
             t = look * LOOK
             s_x, s_y = position[p, 0] + t * velocity[p, 0], position[p, 1] + t * velocity[p, 1]
-            if in_mouth(x, y, mouths) or in_mouth(s_x, s_y, mouths):
+            if in_mouth(x, y, mouths, stands) or in_mouth(s_x, s_y, mouths, stands):
                 kerbs[p] = 0.0
                 break
 
@@ -140,9 +143,20 @@ def arrival(depth: float, pace: float) -> float:
 
 
 @inner
-def in_mouth(x: float, y: float, mouths: Array) -> bool:
-    """Return whether the point (x, y) [m] is beside, before or on a crossing."""
+def is_standing(velocity: Array) -> bool:
+    """Return whether a person with this velocity (2,) [m/s] stands."""
+    return bool(velocity[0] ** 2 + velocity[1] ** 2 <= _STANDS * _STANDS)
+
+
+@inner
+def in_mouth(x: float, y: float, mouths: Array, stands: bool) -> bool:
+    """Return whether the point (x, y) [m] is beside, before or on a crossing.
+
+    People who stand do not count at crossings where they have to wait for a gap.
+    """
     for i in range(mouths.shape[0]):
+        if stands and mouths[i, 6] > 0.0:
+            continue
         d_x, d_y = x - mouths[i, 0], y - mouths[i, 1]
         u = d_x * mouths[i, 2] + d_y * mouths[i, 3]
         w = d_y * mouths[i, 2] - d_x * mouths[i, 3]

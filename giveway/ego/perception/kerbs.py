@@ -193,16 +193,19 @@ def _near(crossings: Sequence[Crossing], line: shapely.LineString) -> list[Cross
 
 
 def _mouths(crossings: Sequence[Crossing]) -> Array:
-    """Return the crossings as rows (k, 6): kerb, unit vector to the other kerb, length, half width.
+    """Return the crossings as rows (k, 7).
 
-    Kerb, length and half width are in metres.
+    Each row has a kerb [m], the unit vector to the other one, length and half width [m], and 1 if
+    people have to wait for a gap there, else 0.
     """
     rows = []
     for crossing in crossings:
         kerb, other = crossing.ends
         length = float(np.hypot(*(other - kerb)))
-        rows.append((*kerb, *(other - kerb) / length, length, crossing.width / 2.0))
-    return np.array(rows, dtype=np.float64).reshape(-1, 6)
+        across = (other - kerb) / length
+        waits = not (crossing.zebra or crossing.system)
+        rows.append((*kerb, *across, length, crossing.width / 2.0, waits))
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 def _closed_for(

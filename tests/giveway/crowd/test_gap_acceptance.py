@@ -128,5 +128,11 @@ def test_standing_car_gives_way_but_not_to_who_follows_others() -> None:
     roster.crowd.waypoint_index[0] = 1
     gaps.update(lambda _: stands)
     assert gaps.held.tolist() == [False, True]
+    for _ in range(100):  # 10 s later they go before it
+        gaps.update(lambda _: stands)
+    assert not gaps.held.any()
+    gaps, roster = at_the_kerb(2)
+    roster.crowd.position[0, 1] = 2.0
+    roster.crowd.waypoint_index[0] = 1
     gaps.update(lambda _: stands._replace(yields=np.ones(1)))
     assert not gaps.held.any()

@@ -56,6 +56,17 @@ def test_behind_the_mouth_of_a_zebra_there_is_a_kerb_again():
     assert found[:, 2] == pytest.approx([0.25, 1.75])
 
 
+@pytest.mark.parametrize(("pace", "has_kerb"), [(0.2, True), (0.5, False)])
+def test_who_stands_where_cars_have_priority_is_on_the_sidewalk(pace, has_kerb):
+    ways = kerbs(crossings=[ZEBRA._replace(zebra=False)])
+    one, walks = np.array([[60.0, -2.0]]), np.array([[pace, 0.0]])
+    found = ways.of(one, walks, 15.0)
+    assert (found[0, 2] == pytest.approx(0.25)) if has_kerb else not found.any()
+    waiting = Crowd.create(one, walks, [1.3], [[(60.0, -1.75), (60.0, 5.25)]])
+    kept = ways.kept(waiting, np.array([[0.0, 1.0, 0.25]]), None)
+    assert bool(kept.any()) == has_kerb
+
+
 SIGNALS = Crossing("s", ZEBRA.ends, 4.0, False, "tls", 0)
 
 
