@@ -41,6 +41,11 @@ DRIVING = (
 )  # fmt: skip
 """Rooms that decide how an ego drives and how that is measured."""
 
+CLAIRVOYANT = tuple(
+    f"benchmarks/bounds/clairvoyant{part}.py"
+    for part in ("", "_encroachment", "_front", "_front_tables", "_lattice", "_search")
+)
+
 
 class Block(NamedTuple):
     """A block of a page: what is run for it, and how its lines are made of that."""
@@ -59,6 +64,7 @@ class Page(NamedTuple):
         blocks: Blocks that are filled.
         rooms: Code on which the numbers depend.
         kept: Whether it is made only when ``--kept`` names it.
+        junctions: Whether it has drives on roads that meet.
     """
 
     name: str
@@ -66,6 +72,7 @@ class Page(NamedTuple):
     blocks: tuple[Block, ...]
     rooms: tuple[str, ...] = DRIVING
     kept: bool = False
+    junctions: bool = False
 
 
 def _told(name: str, *command: str) -> Block:
@@ -113,6 +120,7 @@ PAGES: dict[str, Page] = {
                 Block("on roads", samples.ON_ROADS, means(*ROAD_COLUMNS)),
                 Block("on roads, differences", samples.ON_ROADS, comparisons.differences),
             ),
+            junctions=True,
         ),
         Page(
             "ablation",
@@ -177,13 +185,13 @@ PAGES: dict[str, Page] = {
                     "--seeds 2 --rows {out}.csv",
                 ),
             ),
-            (*DRIVING, "benchmarks/bounds"),
+            (*DRIVING, *CLAIRVOYANT),
         ),
         Page(
             "encounter",
             "docs/encounter.md",
             (_told("densities", "bounds/encounters.py --seeds 40", "seeds 1 to 40", "--seeds 2"),),
-            (*DRIVING, "benchmarks/bounds"),
+            (*DRIVING, *CLAIRVOYANT, "benchmarks/bounds/encounters.py"),
         ),
         Page(
             "law",
@@ -206,6 +214,7 @@ PAGES: dict[str, Page] = {
                 ),
             ),
             (*DRIVING, "benchmarks/law"),
+            junctions=True,
         ),
         Page(
             "pid",
@@ -313,6 +322,7 @@ PAGES: dict[str, Page] = {
                 ),
             ),
             kept=True,
+            junctions=True,
         ),
         Page(
             "recorded-people",

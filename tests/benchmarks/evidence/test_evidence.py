@@ -11,6 +11,7 @@ from pathlib import Path
 
 import blocks
 import digests
+import fingerprints
 import ledger
 import pytest
 from pages import PAGES
@@ -84,14 +85,16 @@ def test_other_code_with_the_same_drives_can_be_confirmed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     page, file = PAGES["pid"], tmp_path / "evidence.json"
-    monkeypatch.setattr(ledger, "drives_digest", lambda: "of before")
+    before = dict.fromkeys(fingerprints.RUNS, "of before")
+    monkeypatch.setattr(ledger, "drive_digests", lambda: before)
     ledger.enter(page, 1.0, file)
     entries = ledger.read_ledger(file)
     entries["pid"]["digest"] = "of other code"
     file.write_text(json.dumps(entries), encoding="utf-8")
-    monkeypatch.setattr(ledger, "drives_digest", lambda: "of now")
+    monkeypatch.setattr(ledger, "drive_digests", lambda: before | {"mpc": "of now"})
     assert ledger.confirm({"pid": page}, file) == []
-    monkeypatch.setattr(ledger, "drives_digest", lambda: "of before")
+    monkeypatch.setattr(ledger, "drive_digests", lambda: before | {"junction, walls": "of now"})
+    assert ledger.confirm({"pid": page._replace(junctions=True)}, file) == []
     other_samples = page._replace(blocks=page.blocks[:1])
     assert ledger.confirm({"pid": other_samples}, file) == []
     assert ledger.confirm({"pid": page}, file) == ["pid"]
