@@ -28,6 +28,7 @@ def build_fmu() -> typer.Typer:
     app.add("inspect", _inspect)
     app.add("check", ungrouped(_check))
     app.add("identify", ungrouped(_identify))
+    app.add("passport", _passport)
     app.add("compile", _compile)
     return app
 
@@ -115,6 +116,23 @@ def _identify(
     name = f"{fmu.stem}_identify"
     picture = tests.picture or Path("results") / name / f"{name}.png"
     identify_command(fmu, profile, tests._replace(picture=picture), starts)
+
+
+def _passport(
+    fmu: _Fmu,
+    profile: _Profile = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder (default results/FMU_passport).")
+    ] = None,
+    mass: Annotated[
+        float | None, typer.Option(help="What the vehicle weighs in kg.", min=1e-3)
+    ] = None,
+) -> None:
+    """Write what is known of an FMU: check, model, limits and a comparison, as JSON and page."""
+    from giveway.cli.commands.fmu_tools.fmu_passport import passport_command
+
+    folder = out or Path("results") / f"{fmu.stem}_passport"
+    raise typer.Exit(passport_command(fmu, profile, folder, mass))
 
 
 def _compile(

@@ -122,7 +122,7 @@ def write_report(
             for name in ("differences", "cells", "trade-off")
         }
         html = (
-            _environment()
+            page_environment()
             .get_template("report.html.j2")
             .render(**content, pictures=by_section, examples=drawn, missing=missing)
         )
@@ -278,7 +278,8 @@ def _factors(study: StudyFolder) -> list[tuple[str, str, str]]:
     ]
 
 
-def _environment() -> Environment:
+def page_environment() -> Environment:
+    """Return the environment of the templates, with the style and the script of a page."""
     environment = Environment(
         loader=PackageLoader("giveway.reports", "templates"),
         autoescape=True,
