@@ -15,9 +15,10 @@ from typing import Final
 from fmus.archive.archive_check import DESCRIPTION, ROOT, Archive, open_archive
 from fmus.archive.markup import Element, parse
 from fmus.description.binaries import platforms_of
-from fmus.description.model import FmuDescription, Interface, Kind, Model, Unit, Variable
+from fmus.description.model import FmuDescription, Interface, Kind, Model, Unit, Value, Variable
 from fmus.description.variables import (
     MAX_DESCRIPTION,
+    MAX_SIZE,
     MAX_UNIT,
     VARIABLE_TAGS,
     broken,
@@ -25,7 +26,7 @@ from fmus.description.variables import (
     read_variables,
     whole,
 )
-from fmus.errors import FmuInterfaceError
+from fmus.errors import FmuInterfaceError, FmuVariableError
 from fmus.text import LIMIT, clean, printable
 
 VERSIONS: Final = re.compile(r"(1\.0|2\.0|3\.0)(\.\d+)?")
@@ -42,19 +43,41 @@ KEPT: Final = VARIABLE_TAGS | {
 BASE: Final = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
-def read_model(path: Path) -> Model:
+def read_model(path: Path, start_values: Mapping[str, Value] | None = None) -> Model:
     """Read an FMU's model description, without loading or unpacking the FMU.
+
+    Args:
+        path: File of the FMU.
+        start_values: Start values by name. Those of structural parameters give the sizes of arrays.
 
     Raises:
         FmuFileError: the file is missing or refused, or its model description is broken.
         FmuInterfaceError: the FMU has a version of FMI, or an interface, that cannot be run.
+        FmuVariableError: no array has a size that a start value demands.
     """
-    return model_of(open_archive(path))
+    archive = open_archive(path)
+    model = model_of(archive)
+    sizes = []
+    for name, value in (start_values or {}).items():
+        variable = model.variables.get(name)
+        if variable is None or variable.causality != "structuralParameter":
+            continue
+        if isinstance(value, int) and not 0 <= value <= MAX_SIZE:
+            what = f"start value {printable(name)} = {value}: expected a size, 0 to {MAX_SIZE}"
+            raise FmuVariableError(f"{path}: {what}; change it under [parameters]")
+        if isinstance(value, int):  # another type is refused with the other start values
+            sizes.append((name, int(value)))
+    return model_of(archive, tuple(sizes)) if sizes else model
 
 
-@lru_cache(maxsize=2)  # preparing a vehicle needs it repeatedly
-def model_of(archive: Archive) -> Model:
-    """Return the same as :func:`read_model` for an archive that is open already."""
+@lru_cache(maxsize=4)  # preparing a vehicle needs it repeatedly
+def model_of(archive: Archive, sizes: tuple[tuple[str, int], ...] = ()) -> Model:
+    """Return the same as :func:`read_model` for an archive that is open already.
+
+    Args:
+        archive: Archive of the FMU.
+        sizes: Structural parameters and their values.
+    """
     path, where = archive.path, f"{archive.path}: {DESCRIPTION}"
     root = parse(archive.description, where, ROOT, KEPT)
     version = _version(root, path)
@@ -65,7 +88,7 @@ def model_of(archive: Archive) -> Model:
     interfaces = _interfaces(root, version, where)
     if not interfaces:
         raise FmuInterfaceError(f"{path}: {_nothing_to_run(root)}")
-    variables = read_variables(root, version, where)
+    variables = read_variables(root, version, where, dict(sizes))
     states, indicators = _structure(root, version, where, variables)
     experiment = root.first("DefaultExperiment")
     return Model(

@@ -56,23 +56,26 @@ def _converted(
         raise _bad(where, element, name, expected) from None
 
 
-def read_variables(root: Element, version: str, where: str) -> dict[str, Variable]:
+def read_variables(
+    root: Element, version: str, where: str, extents: Mapping[str, int]
+) -> dict[str, Variable]:
     """Return all variables by name, in the order of the file.
 
     Args:
         root: Root of the model description.
         version: "1.0", "2.0" or "3.0".
         where: Name of the file in errors.
+        extents: Values of structural parameters by name, in place of their start values.
 
     Raises:
         FmuFileError: a variable is malformed; the message names the line.
     """
     types = _types(root, version)
-    extents = _extents(root, where) if version == "3.0" else {}
+    by_reference = _extents(root, where, extents) if version == "3.0" else {}
     variables: dict[str, Variable] = {}
     lines: dict[str, int] = {}
     for element, value in _elements(root, version, where):
-        variable = _variable(element, value, version, where, types, extents)
+        variable = _variable(element, value, version, where, types, by_reference)
         for name in (variable.name, *(alias.get("name") for alias in element.every("Alias"))):
             if not name:
                 raise broken(where, element, "a variable without a name")
@@ -203,13 +206,14 @@ def _expected(kind: str) -> str:
     return "a number" if kind in REAL_TYPES else "a whole number"
 
 
-def _extents(root: Element, where: str) -> dict[int, str]:
-    """Return the start values of the variables to which an FMI 3 array's dimensions may refer."""
-    return {
-        _reference(where, element): element.get("start")
-        for element in _children(root, "ModelVariables")
-        if element.tag in INTEGER_TYPES and element.get("start")
-    }
+def _extents(root: Element, where: str, given: Mapping[str, int]) -> dict[int, str]:
+    """Return the values of the variables to which an FMI 3 array's dimensions may refer."""
+    found = {}
+    for element in _children(root, "ModelVariables"):
+        if element.tag in INTEGER_TYPES and element.get("start"):
+            value = given.get(element.get("name"), element.get("start"))
+            found[_reference(where, element)] = str(value)
+    return found
 
 
 def _shape(element: Element, where: str, extents: Mapping[int, str]) -> tuple[int, ...]:

@@ -42,7 +42,7 @@ def load(
         folder: Folder with the extracted FMU; the caller removes it after :meth:`Instance.close`.
         binary: Library for this platform, by its name in the archive.
         stepping: Settings of the profile: the solver of Model Exchange, its tolerance (or that of
-            the FMU in Co-Simulation), and the end of the simulation that the FMU is given.
+            the FMU in Co-Simulation), and the first and last time that the FMU is given.
         rewinds: True to keep the state before each step, so that a discarded step can be repeated
             in smaller ones. It works only with Co-Simulation FMUs that can save their state.
 
@@ -58,7 +58,7 @@ def load(
     library = Library(folder / binary, model.path)
     try:
         calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
-        calls.stop_time = stepping.stop_time
+        calls.start_time, calls.stop_time = stepping.start_time, stepping.stop_time
         if interface.kind == Kind.MODEL_EXCHANGE:
             from fmus.fmi.model_exchange import ModelExchange  # Co-Simulation needs no numpy
 

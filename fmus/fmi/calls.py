@@ -107,6 +107,7 @@ class Calls(ABC):
         self.folder = folder
         self.messages = messages
         self.component: c_void_p | None = None
+        self.start_time = 0.0  # [s] first time of the FMU
         # [s] end of the simulation that the FMU is given, or None
         self.stop_time: float | None = None
         self.event_mode = False  # FMI 3's Co-Simulation: True for instances with event mode
@@ -147,7 +148,7 @@ class Calls(ABC):
 
     @abstractmethod
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:
-        """Bring the instance to time 0 and set the inputs' start values."""
+        """Bring the instance to its first time and set the inputs' start values."""
 
     def terminate(self) -> None:
         """End the simulation."""

@@ -111,9 +111,10 @@ class Fmi1Calls(Calls):
         self.configure(inputs)
         if not self.exchanges:
             stops = c_byte(self.stop_time is not None)
-            self.call(self._initialise, c_double(0.0), stops, c_double(self.stop_time or 0.0))
+            stop = c_double(self.stop_time or 0.0)
+            self.call(self._initialise, c_double(self.start_time), stops, stop)
             return
-        self.call(self.name("SetTime"), c_double(0.0))
+        self.call(self.name("SetTime"), c_double(self.start_time))
         info = _EventInfo()
         controlled = c_byte(tolerance is not None)
         self.call(self._initialise, controlled, c_double(tolerance or 0.0), byref(info))

@@ -81,7 +81,7 @@ class Fmi2Calls(Calls):
             "fmi2SetupExperiment",
             c_int(tolerance is not None),
             c_double(tolerance or 0.0),
-            c_double(0.0),
+            c_double(self.start_time),
             c_int(self.stop_time is not None),
             c_double(self.stop_time or 0.0),
         )

@@ -86,7 +86,7 @@ class Fmi3Calls(Calls):
             "fmi3EnterInitializationMode",
             c_bool(tolerance is not None),
             c_double(tolerance or 0.0),
-            c_double(0.0),
+            c_double(self.start_time),
             c_bool(self.stop_time is not None),
             c_double(self.stop_time or 0.0),
         )

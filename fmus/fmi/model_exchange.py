@@ -61,7 +61,7 @@ class ModelExchange(Instance):
     def prepare(self) -> None:  # noqa: D102 - as in Instance
         try:
             self._system = ContinuousSystem(self.calls)
-            self._iterate(0.0)
+            self._iterate(self.calls.start_time)
             self.calls.enter_continuous_time_mode()
             self._solver = self._make_solver()
             self._nominals = self._system.nominals()

@@ -51,7 +51,9 @@ class Instance(ABC):
         inputs: Sequence[Channel],
         outputs: Sequence[Channel],
     ) -> None:
-        """Make a new instance with these start values, initialise it at time 0, read its outputs.
+        """Make a new instance with these start values, initialise it, read its outputs.
+
+        Time 0 of the steps is the FMU's ``start_time``.
 
         Raises:
             FmuStartError: the FMU refuses, or a value does not fit its variable.
@@ -77,9 +79,18 @@ class Instance(ABC):
             raise
 
     def _initialise(self) -> None:
-        """Make an instance and bring it to time 0."""
+        """Make an instance and bring it to its first time."""
         self.calls.instantiate()
         self.calls.configure(self._before_start)
+        try:  # an FMU may compute with its inputs as soon as it enters initialization mode
+            self.calls.configure(self._at_start)
+        except CallFailedError as error:
+            if error.status == FATAL:
+                raise
+            self.messages.take()  # it takes inputs in that mode only
+            self.calls.free()
+            self.calls.instantiate()
+            self.calls.configure(self._before_start)
         self.calls.initialise(self._at_start, self.tolerance)
         self._initialised = True
         self.prepare()
@@ -99,7 +110,9 @@ class Instance(ABC):
         status = self.note_status(out.function(*out.arguments))
         if status > WARNING:
             raise CallFailedError("the reading of its outputs", status)
-        self.tick = self.make_tick(into, out)
+        tick = self.tick = self.make_tick(into, out)
+        if first := self.calls.start_time:
+            self.tick = lambda time, size: tick(first + time, size)
 
     def prepare(self) -> None:  # noqa: B027
         """Prepare the instance between its initialisation and the first step."""

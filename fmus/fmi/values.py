@@ -41,8 +41,8 @@ def start_list(variable: Variable) -> list[Any]:
     text = variable.kind == "String"
     words = [variable.start] if text or variable.scalar else variable.start.split()
     words = [word for word in words if word] or [""]
-    if len(words) != variable.size:  # one value counts for all elements
-        words = [words[0]] * variable.size
+    # One value counts for all elements, and for those that a structural parameter has added.
+    words = (words + words[:1] * variable.size)[: variable.size]
     return words if text else [_number(word) for word in words]
 
 
@@ -188,6 +188,9 @@ class _Group:
         references = [variable.reference for variable in variables]
         self.function = calls.function(calls.name(verb, ctype.suffix))
         self.arguments = calls.arguments(references, self._values)
+        if verb == "Set" and any(len(v.start.split()) not in (0, 1, v.size) for v in variables):
+            # A structural parameter has changed an array's size; its own values are the FMU's.
+            calls.function(calls.name("Get", ctype.suffix))(*self.arguments)
 
     def fill(self, view: memoryview[float]) -> None:
         values, convert = self._values, self._convert

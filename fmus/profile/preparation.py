@@ -108,6 +108,7 @@ def prepare(
         raise FmuVariableError(f"{path}: step size {step_size:g} s; expected a number above 0")
     model = read_model(path)
     profile = _chosen(model, profile)
+    model = read_model(path, {**profile.parameters, **(start_values or {})})
     wiring = wire(model, profile, start_values)
     return Prepared(
         model=model,

@@ -58,6 +58,7 @@ def prepare_controller(
     """
     model = read_model(path)
     profile = profile or draft_controller(model).profile()
+    model = read_model(path, {**profile.parameters, **(start_values or {})})
     wiring = wire_controller(model, profile, setup, start_values or {})
     interface = wiring.interface
     return PreparedController(

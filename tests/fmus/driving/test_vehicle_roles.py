@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fmus import FmuStartError
+from fmus import FmuError, FmuStartError, FmuVariableError
 
 H = 0.05  # [s]
 FORCES = [2000.0] * 10 + [0.0] * 5 + [-1500.0] * 10 + [300.0] * 5  # it never stands
@@ -185,3 +185,21 @@ def test_an_fmu_that_wants_a_stop_time_is_told_the_profiles(zoo, open_car, fmi, 
     car.start()
     car.step(1000.0)
     assert car.speed > 0.0
+
+
+def test_a_structural_parameter_sizes_arrays_and_their_buffers(zoo, open_car):
+    path = zoo.car(fmi="3.0", array="structural", outputs=("speed",))
+    units = {"inputs": {"force": {"unit": "N"}}, "outputs": {"speed": {"unit": "m/s"}}}
+    usual = open_car(path, **units)
+    longer = open_car(path, parameters={"array_size": 12, "u[12]": 0.5}, **units)
+    shorter = open_car(path, start_values={"array_size": 1}, **units)
+    for car in (usual, longer, shorter):
+        car.start(speed=4.0)
+        car.step(900.0)
+    assert usual.speed == longer.speed == shorter.speed > 4.0
+    assert longer.prepared.model.variables["u"].size == 12
+    for size, told in ((-1, "expected a size, 0 to"), (20, "does not start")):
+        with pytest.raises(FmuError, match=told):
+            open_car(path, parameters={"array_size": size}, **units).start()
+    with pytest.raises(FmuVariableError, match=r"'u' has 2 element\(s\)"):
+        open_car(path, parameters={"array_size": 2, "u[3]": 1.0}, **units)

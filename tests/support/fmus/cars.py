@@ -95,6 +95,7 @@ class Car:
         only_step: [s] the one communication step it accepts.
         constant_step: it refuses a step that differs from its first.
         keeps_final_only: it keeps a step only if its state will not be set back before it.
+        divides: by its spare input, as soon as it enters initialization mode.
         needs_event_mode: FMI 3: it refuses steps before its events are handled.
         needs_stop_time: [s] it wants to be told a stop time as late as this.
         strict_time: it refuses a step that does not begin where the last one ended.
@@ -126,6 +127,7 @@ class Car:
     only_step: float | None = None
     constant_step: bool = False
     keeps_final_only: bool = False
+    divides: bool = False
     needs_event_mode: bool = False
     needs_stop_time: float | None = None
     strict_time: bool = False
@@ -205,7 +207,7 @@ def settings(car: Car, token: str, calls: str) -> str:
     """The text of resources/car.txt, which the library reads about itself."""
     lines = [f"token {token}", f"role {car.role}", f"nominal {car.nominal!r}"]
     flags = ("euler", "once_per_process", "strict_time", "constant_step", "keeps_final_only",
-             "needs_event_mode")  # fmt: skip
+             "needs_event_mode", "divides")  # fmt: skip
     lines += [flag for flag in flags if getattr(car, flag)]
     if car.needs_stop_time:
         lines.append(f"needs_stop_time {car.needs_stop_time!r}")

@@ -31,10 +31,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
     return fmi2OK;
 }
 
-fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-    instance_called(c, "enter");
-    return fmi2OK;
-}
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return (fmi2Status)instance_enter(c); }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return (fmi2Status)instance_initialise(c); }
 

@@ -62,10 +62,9 @@ NOTED(fmi3EnterStepMode, "step_mode")
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean stopDefined, fmi3Float64 stop) {
-    instance_called(c, "enter");
     ((Instance *)c)->car.time = start;
     ((Instance *)c)->stop_time = stopDefined ? stop : 0.0;
-    return fmi3OK;
+    return (fmi3Status)instance_enter(c);
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return (fmi3Status)instance_initialise(c); }

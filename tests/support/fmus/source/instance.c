@@ -43,6 +43,7 @@ static void read_line(Instance *self, char *line) {
     else if (strcmp(key, "strict_time") == 0) self->strict_time = true;
     else if (strcmp(key, "constant_step") == 0) self->constant_step = true;
     else if (strcmp(key, "keeps_final_only") == 0) self->keeps_final_only = true;
+    else if (strcmp(key, "divides") == 0) self->divides = true;
     else if (strcmp(key, "needs_event_mode") == 0) self->needs_event_mode = true;
     else if (strcmp(key, "needs_stop_time") == 0) self->needs_stop_time = number(&rest);
     else if (strcmp(key, "only_step") == 0) self->only_step = number(&rest);
@@ -149,6 +150,13 @@ void instance_called(Instance *self, const char *function) {
     fclose(file);
 }
 
+Status instance_enter(Instance *self) {
+    instance_called(self, "enter");
+    if (!self->divides || self->car.value[Q_spare_input] != 0.0) return OK;
+    self->say(self, ERROR, "spare_input is 0: division by zero");
+    return ERROR;
+}
+
 Status instance_initialise(Instance *self) {
     instance_called(self, "initialise");
     Status status = misbehave(self, AT_INITIALISE, 0.0, 0.0);
@@ -253,9 +261,11 @@ Status instance_set(Instance *self, unsigned reference, const double values[], i
             self->say(self, ERROR, "a parameter cannot be set any more");
             return ERROR;
         }
-        if (quantity == Q_array_size && values[i] != self->car.value[quantity]) {
-            self->say(self, ERROR, "array_size: this model has one size only");
-            return ERROR;
+        if (quantity == Q_array_size) { /* the array of inputs; further elements are spare */
+            if (values[i] < 1.0 || values[i] > MAX_ELEMENTS) return ERROR;
+            for (int j = self->variables[INPUT_ARRAY].count; j < (int)values[i]; ++j)
+                self->variables[INPUT_ARRAY].quantity[j] = Q_spare_input;
+            self->variables[INPUT_ARRAY].count = (int)values[i];
         }
         if (quantity >= Q_mass && has_fault(self, "refuse_start_value")) {
             self->say(self, ERROR, "I do not like this start value");

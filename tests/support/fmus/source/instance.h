@@ -12,7 +12,7 @@ typedef enum { OK, WARNING, DISCARD, ERROR, FATAL, PENDING } Status;
 
 typedef enum { AT_LOAD, AT_INSTANTIATE, AT_INITIALISE, AT_STEP, AT_EVENT, AT_TERMINATE, AT_FREE, AT_UNLOAD } Phase;
 
-enum { MAX_VARIABLES = 64, MAX_ELEMENTS = 16, MAX_FAULTS = 8, MAX_TEXT = 256 };
+enum { MAX_VARIABLES = 64, MAX_ELEMENTS = 16, MAX_FAULTS = 8, INPUT_ARRAY = 60, MAX_TEXT = 256 };
 
 typedef struct {
     char name[40];
@@ -37,6 +37,7 @@ struct Instance {
     bool keeps_final_only; /* a step after which its state may be set back is not kept */
     bool needs_event_mode; /* FMI 3: no step without it, nor before its events are handled */
     bool event_mode, event_pending;
+    bool divides;         /* by an input, as it enters initialization mode */
     double needs_stop_time; /* [s] it has to be told one as late as this; 0: none */
     double stop_time;
     double only_step;   /* [s] refuses every other one */
@@ -57,6 +58,7 @@ bool read_settings(Instance *self, const char *resources);
 
 /* Every call: keeps the journal of calls, and dies of a call after 'fatal'. */
 void instance_called(Instance *self, const char *function);
+Status instance_enter(Instance *self);
 Status instance_initialise(Instance *self);
 Status instance_step(Instance *self, double time, double step, bool final);
 Status instance_get(Instance *self, unsigned reference, double values[], int *count);
