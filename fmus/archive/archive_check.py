@@ -15,7 +15,7 @@ import unicodedata
 import zipfile
 import zlib
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -42,6 +42,8 @@ CHUNK: Final = 1 << 20  # [bytes] size of one read
 READABLE: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
 DRIVE: Final = re.compile(r"[A-Za-z]:")
 TWICE: Final = "twice in the archive (capitals and how accents are coded do not count)"
+EXECUTABLE: Final = 0o111  # bits of a file's mode
+FOLDER: Final = ("/", "\\")  # end of a folder's name
 LOCAL_HEADER: Final = 30  # [bytes] size of the header before the name of a member
 
 
@@ -50,7 +52,7 @@ class Archive:
     """An FMU's archive that has passed the check; an unchanged file may give the same object."""
 
     path: Path
-    members: Mapping[str, zipfile.ZipInfo]  # files only, by their name
+    members: Mapping[str, zipfile.ZipInfo]  # files only, by their plain name
     description: bytes = field(repr=False)  # modelDescription.xml
     sha256: str  # SHA-256 of the whole file
 
@@ -91,22 +93,21 @@ def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
     return Archive(path, MappingProxyType(members), description, digest)
 
 
-def extract(archive: Archive, folder: Path, prefixes: Sequence[str]) -> None:
-    """Unpack the members whose names begin with one of the prefixes.
+def extract(archive: Archive, folder: Path, wanted: Callable[[str], bool]) -> None:
+    """Unpack members; a file that may be executed in the archive may be executed in the folder.
 
     Args:
         archive: Archive from :func:`open_archive`.
         folder: Existing folder. Nothing is written outside it, and nothing in it is replaced.
-        prefixes: Beginnings of names, such as ``"binaries/linux64/"``, ``"resources/"``.
+        wanted: Function that says by its name whether a member is unpacked.
 
     Raises:
         FmuArchiveError: a member is damaged.
         FmuFileError: the file has changed since, or cannot be read or written.
     """
-    beginnings = tuple(prefixes)
     with _reading(archive.path) as source:
         for name, info in archive.members.items():
-            if not name.startswith(beginnings):
+            if not wanted(name):
                 continue
             target = folder.joinpath(*name.split("/"))
             try:
@@ -114,6 +115,9 @@ def extract(archive: Archive, folder: Path, prefixes: Sequence[str]) -> None:
                 with target.open("xb") as out:
                     for chunk in _chunks(source, info):
                         out.write(chunk)
+                    if info.external_attr >> 16 & EXECUTABLE and os.name == "posix":
+                        mode = os.fstat(out.fileno()).st_mode
+                        os.fchmod(out.fileno(), mode | (mode & 0o444) >> 2)
             except OSError as error:
                 reason = error.strerror or printable(error)
                 msg = f"{archive.path}: {printable(name)} cannot be unpacked: {reason}"
@@ -204,15 +208,16 @@ def _examined(
     copies: list[zipfile.ZipInfo] = []
     folded: dict[str, str] = {}
     for info in infos:
-        fault = _fault(info)
+        name = _plain(info)
+        fault = _fault(info, name)
         if fault:
             raise _refused(path, info, fault)
-        if info.is_dir():
+        if info.orig_filename.endswith(FOLDER):
             continue
-        plain = unicodedata.normalize("NFC", info.filename).casefold()
-        if folded.setdefault(plain, info.filename) != info.filename:
+        plain = unicodedata.normalize("NFC", name).casefold()
+        if folded.setdefault(plain, name) != name:
             raise _refused(path, info, TWICE)
-        if members.setdefault(info.filename, info) is not info:
+        if members.setdefault(name, info) is not info:
             copies.append(info)
     for name, info in members.items():
         parents = unicodedata.normalize("NFC", name).casefold().split("/")[:-1]
@@ -235,25 +240,29 @@ def _require_same(
         FmuArchiveError: the archive's reader would decide which content counts.
     """
     for info in copies:
-        pairs = zip_longest(_chunks(archive, members[info.filename]), _chunks(archive, info))
+        pairs = zip_longest(_chunks(archive, members[_plain(info)]), _chunks(archive, info))
         if any(one != other for one, other in pairs):
             raise _refused(path, info, f"{TWICE}, with different contents")
 
 
-def _fault(info: zipfile.ZipInfo) -> str:
-    """Return the fault of a member as a phrase, or an empty text."""
-    name = info.orig_filename  # zipfile cuts it at a NUL
+def _plain(info: zipfile.ZipInfo) -> str:
+    """Return the name that is judged and unpacked: that without ``./``, and with ``/`` only."""
+    parts = info.orig_filename.replace("\\", "/").split("/")  # zipfile cuts its own at a NUL
+    return "/".join(part for part in parts if part != ".")
+
+
+def _fault(info: zipfile.ZipInfo, name: str) -> str:
+    """Return the fault of a member with a plain name as a phrase, or an empty text."""
     file_type = stat.S_IFMT(info.external_attr >> 16)
     parts = name.removesuffix("/").split("/")
-    if not name.isprintable() or len(name) > MAX_NAME:
+    if not name.isprintable() or len(info.orig_filename) > MAX_NAME:
         return "a name with control characters, or too long"
-    if "\\" in name:
-        return "a name with a backslash"
     if name.startswith("/") or any(DRIVE.match(part) for part in parts):
         return "an absolute path"
     if ".." in parts:
         return "a path that leads out of the archive"
-    if not all(part.strip(". ") for part in parts):  # ".. " is ".." on Windows
+    whole = not name and info.orig_filename.endswith(FOLDER)  # "./", the archive itself
+    if not whole and not all(part.strip(". ") for part in parts):  # ".. " is ".." on Windows
         return "not a plain path"
     if file_type not in (0, stat.S_IFREG, stat.S_IFDIR):
         return "a symbolic link" if file_type == stat.S_IFLNK else "a special file"

@@ -2,17 +2,25 @@
 
 import struct
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 
-def write_archive(path: Path, members: Mapping[str, bytes]) -> None:
-    """Write a zip archive whose bytes depend on its members only."""
+def write_archive(
+    path: Path, members: Mapping[str, bytes], executables: Collection[str] = ()
+) -> None:
+    """Write a zip archive whose bytes depend on its members only.
+
+    Args:
+        path: File to write.
+        members: Contents by name.
+        executables: Names of the members that may be executed.
+    """
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
         for name, data in members.items():
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
             info.create_system = 3  # Unix, on every platform
-            info.external_attr = 0o100644 << 16
+            info.external_attr = (0o100755 if name in executables else 0o100644) << 16
             archive.writestr(info, data)
 
 

@@ -71,10 +71,10 @@ def binary_of(model: Model, interface: Interface) -> str:
     archive = open_archive(model.path)
     here = this_platform()
     misfits = []
-    for folder in here.folders(model.fmi_version):
-        member = f"binaries/{folder}/{interface.identifier}{here.suffix}"
-        if member not in archive.members:
-            continue
+    folders = here.folders(model.fmi_version)
+    named = [f"binaries/{folder}/{interface.identifier}{here.suffix}" for folder in folders]
+    present = [member for member in named if member in archive.members]
+    for member in present or _only_library(archive, folders, here):
         fault = misfit(read_start(archive, member, START), here)
         if not fault:
             return member
@@ -83,6 +83,45 @@ def binary_of(model: Model, interface: Interface) -> str:
         what = f"{misfits[0]}; expected a library for {here}; export the FMU for {here}"
         raise FmuPlatformError(f"{model.path}: {what}")
     raise FmuPlatformError(f"{model.path}: {_no_binary(model, interface, archive)}")
+
+
+def _only_library(archive: Archive, folders: tuple[str, ...], here: Platform) -> list[str]:
+    """Return the library of a platform's first folder that has one, if it has only one."""
+    for folder in folders:
+        found = [
+            name
+            for name in archive.members
+            if name.rpartition("/")[0] == f"binaries/{folder}" and name.endswith(here.suffix)
+        ]
+        if found:
+            return found if len(found) == 1 else []
+    return []
+
+
+def name_note(interface: Interface, binary: str) -> str:
+    """Return the remark on a binary that has not the name that it must have, or an empty text."""
+    name = binary.rpartition("/")[2]
+    if name.rpartition(".")[0] == interface.identifier:
+        return ""
+    return (
+        f"its only library is called {printable(name, 60)}, not by its modelIdentifier "
+        f"'{printable(interface.identifier, 60)}'"
+    )
+
+
+def is_platform(folder: str) -> bool:
+    """Return whether a folder's name is that of a platform, in the words of FMI 1, 2 or 3."""
+    processor, _, system = folder.partition("-")
+    known = X86 | {"x86_64", "aarch64", "riscv64", "ppc32", "ppc64"}
+    named = processor in known or processor.startswith(("aarch", "arm", "riscv", "ppc"))
+    old = folder.removesuffix("32").removesuffix("64")
+    return (named and system != "") or (old != folder and old in OLD_SYSTEMS.values())
+
+
+def is_library(name: str) -> bool:
+    """Return whether a file's name is that of a shared library, such as ``libm.so.6``."""
+    file = name.rpartition("/")[2]
+    return file.endswith(tuple(SUFFIXES.values())) or ".so." in file
 
 
 def platforms_of(archive: Archive) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
     """
     here, variables = f"{model.path}: {place}", model.variables
     if name in variables:
-        variable = variables[name]
+        variable = _single(here, variables[name])
         if variable.size == 1:
             return Channel(variable)
         if variable.size == 0:
@@ -38,10 +38,21 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
         )
     element = _ELEMENT.fullmatch(name)
     if element is not None and element["name"] in variables:
-        return _element(here, name, variables[element["name"]], int(element["number"]))
+        array = _single(here, variables[element["name"]])
+        return _element(here, name, array, int(element["number"]))
     close = get_close_matches(name, variables, n=1)
     hint = f"did you mean '{close[0]}'?" if close else f"it has {known_names(variables)}"
     raise FmuVariableError(f"{here} no variable '{name}' in the FMU; {hint}")
+
+
+def _single(here: str, variable: Variable) -> Variable:
+    """Return a variable if no other one has its name."""
+    if variable.again_on:
+        raise FmuVariableError(
+            f"{here} variable '{variable.name}': the model description declares it again on line "
+            f"{variable.again_on}; name another variable, or export the model again"
+        )
+    return variable
 
 
 def _element(here: str, name: str, variable: Variable, number: int) -> Channel:
@@ -74,7 +85,11 @@ def start_channels(model: Model, values: Mapping[str, Value]) -> dict[Channel, V
 
 def _start_channel(model: Model, name: str, value: Value) -> Channel:
     whole = name in model.variables and isinstance(value, list)
-    channel = Channel(model.variables[name]) if whole else find_channel(model, "start value:", name)
+    place = "start value:"
+    if whole:
+        channel = Channel(_single(f"{model.path}: {place}", model.variables[name]))
+    else:
+        channel = find_channel(model, place, name)
     variable = channel.variable
     if not variable.settable:
         problem = f"'{name}' is {variable.causality}; expected a parameter or an input"

@@ -70,6 +70,7 @@ class Variable:
     minimum: float | None = None  # smallest value, in the variable's unit
     maximum: float | None = None
     settable: bool = False  # True if it can be set before the start
+    again_on: int = 0  # line of another variable of the same name; 0 without one
     negated: bool = False  # FMI 1's negatedAlias: the value is that of the reference, times -1
 
     @property

@@ -73,7 +73,6 @@ def read_variables(
     types = _types(root, version)
     by_reference = _extents(root, where, extents) if version == "3.0" else {}
     variables: dict[str, Variable] = {}
-    lines: dict[str, int] = {}
     for element, value in _elements(root, version, where):
         variable = _variable(element, value, version, where, types, by_reference)
         for name in (variable.name, *(alias.get("name") for alias in element.every("Alias"))):
@@ -82,10 +81,10 @@ def read_variables(
             if clean(name, MAX_NAME) != name:  # the name is shown in messages
                 what = f"name {printable(name, 60)} too long or with control characters"
                 raise broken(where, element, what)
-            if name in variables:
-                what = f"variable {printable(name, 100)} again, as on line {lines[name]}"
-                raise broken(where, element, what)
-            lines[name] = element.line
+            if name in variables:  # refused only if something uses it
+                again = variables[name].again_on or element.line
+                variables[name] = dataclasses.replace(variables[name], again_on=again)
+                continue
             variables[name] = (
                 variable if name == variable.name else dataclasses.replace(variable, name=name)
             )

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from fmus.archive.archive_check import open_archive
+from fmus.archive.place import unpacking_place
 from fmus.profile.preparation import Prepared, unpack
 
 PREFIX: Final = "vehicle-fmu-"
@@ -35,7 +36,7 @@ def kept(prepared: Prepared) -> Path | None:
         return None
     digest = open_archive(prepared.path).sha256
     if digest not in _folders:
-        folder = Path(tempfile.mkdtemp(prefix=PREFIX))
+        folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=unpacking_place()))
         unpack(prepared, folder)
         _folders[digest] = folder
     return _folders[digest]

@@ -30,7 +30,7 @@ class Motion:
     def __init__(self, prepared: Prepared) -> None:
         wiring = prepared.wiring
         self.position = self.speed = self.acceleration = 0.0
-        self.warnings: list[str] = []
+        self.warnings = [f"{prepared.path.name}: {note}" for note in prepared.notes]
         self.names = names_of(wiring)
         self._path = prepared.path
         self._wires = wiring.outputs

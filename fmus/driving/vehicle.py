@@ -8,6 +8,7 @@ from math import isclose, isfinite
 from pathlib import Path
 from typing import NoReturn, Self
 
+from fmus.archive.place import unpacking_place
 from fmus.description.model import Value
 from fmus.driving.kept_folder import PREFIX, kept
 from fmus.driving.motion import Motion
@@ -53,7 +54,9 @@ class VehicleFmu(Drivable):
         with ExitStack() as stack:  # if a later part fails, the earlier ones are undone
             folder = kept(prepared)
             if folder is None:
-                own = tempfile.TemporaryDirectory(prefix=PREFIX, ignore_cleanup_errors=True)
+                own = tempfile.TemporaryDirectory(
+                    prefix=PREFIX, dir=unpacking_place(), ignore_cleanup_errors=True
+                )
                 folder = Path(stack.enter_context(own))
                 unpack(prepared, folder)
             self._set_up(prepared, folder, stack)

@@ -55,7 +55,7 @@ def load(
             f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
         )
     (folder / "resources").mkdir(exist_ok=True)  # its path is given to the FMU even if it is empty
-    library = Library(folder / binary, model.path)
+    library = Library(folder / binary, model.path, folder)
     try:
         calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
         calls.start_time, calls.stop_time = stepping.start_time, stepping.stop_time

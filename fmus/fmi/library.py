@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from fmus.description.binaries import is_library
 from fmus.errors import FmuPlatformError
 from fmus.text import printable
 
@@ -22,21 +23,27 @@ class Library:
     Args:
         path: Path of the library.
         fmu: Name of the FMU in errors.
+        folder: Folder with the libraries that it may need; by default its own.
 
     Raises:
         FmuPlatformError: the library cannot be loaded.
     """
 
-    def __init__(self, path: Path, fmu: Path) -> None:
+    def __init__(self, path: Path, fmu: Path, folder: Path | None = None) -> None:
         self._fmu = fmu
         try:
             neighbours = [file for file in path.parent.iterdir() if file != path]
+            if folder is not None:
+                found = (file for file in folder.rglob("*") if is_library(file.name))
+                neighbours += [file for file in found if file.parent != path.parent]
             self._library = _load_with(path, neighbours, ctypes.DEFAULT_MODE)
         except OSError as error:
             reason = printable(str(error).replace(str(path.parent), "").lstrip("/\\"))
+            remedy = "install what it needs, or export the FMU again for this platform"
+            if "failed to map segment" in reason:
+                remedy = f"nothing may be executed in {path.parent}: name another folder in TMPDIR"
             raise FmuPlatformError(
-                f"{fmu}: its binary {printable(path.name)} cannot be loaded: {reason}; "
-                "install what it needs, or export the FMU again for this platform"
+                f"{fmu}: its binary {printable(path.name)} cannot be loaded: {reason}; {remedy}"
             ) from error
 
     def function(self, name: str) -> Function:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus import errors
+from fmus.archive.place import unpacking_place
 from fmus.errors import FmuCrashError, FmuError, FmuStartCrashError, FmuStepError
 from fmus.isolation.cleanup import remove
 from fmus.isolation.hosted import Hosted
@@ -48,7 +49,7 @@ class FmuProcess:
         self.last_time = 0.0
         self._numbers = hosted.numbers(prepared)
         self._client: Client | None = None
-        folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-"))
+        folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-", dir=unpacking_place()))
         try:
             self._host = make_process_host(Order(hosted, prepared, folder / "fmu"), folder)
         except BaseException:

@@ -27,7 +27,7 @@ class IsolatedController:
 
     def __init__(self, prepared: PreparedController) -> None:
         self.path = prepared.path
-        self.warnings: list[str] = []
+        self.warnings = [f"{prepared.path.name}: {note}" for note in prepared.notes]
         self._prepared = prepared
         self._nothing = prepared.profile.inputs.nothing
         self._process: FmuProcess | None = None

@@ -11,8 +11,9 @@ from math import inf, isfinite, isnan
 from pathlib import Path
 
 from fmus.archive.archive_check import extract, open_archive
-from fmus.description.binaries import binary_of
-from fmus.description.model import Model, Value
+from fmus.archive.place import place_note
+from fmus.description.binaries import binary_of, is_library, is_platform, name_note
+from fmus.description.model import Interface, Model, Value
 from fmus.description.reading import read_model
 from fmus.errors import FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
@@ -43,6 +44,7 @@ class PreparedFmu:
         bounds: Bounds of the inputs.
         step_size: Step size of the controller [s].
         binary: Library for this platform, by its name in the archive.
+        notes: Remarks on the FMU for the user.
     """
 
     model: Model
@@ -50,6 +52,7 @@ class PreparedFmu:
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
+    notes: tuple[str, ...]
 
     @property
     def path(self) -> Path:
@@ -120,7 +123,8 @@ def prepare(
         ),
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
-        binary=binary_of(model, wiring.interface),
+        binary=(binary := binary_of(model, wiring.interface)),
+        notes=notes_on(wiring.interface, binary),
         ours=profile is BUNDLED_PROFILE,
     )
 
@@ -144,15 +148,29 @@ def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
 
 
 def unpack(prepared: PreparedFmu, folder: Path) -> None:
-    """Unpack the members for this platform into ``folder``.
+    """Unpack all members into ``folder`` but libraries for other platforms, sources and documents.
+
+    A library may load others by their places from its own (``$ORIGIN``), wherever these are.
 
     Raises:
         FmuArchiveError: a member is damaged.
     """
-    binaries = prepared.binary.rpartition("/")[0]
-    wanted = ("modelDescription.xml", f"{binaries}/", "resources/", "extra/")
+    own = prepared.binary.split("/")[1]
+
+    def wanted(name: str) -> bool:
+        place, _, rest = name.partition("/")
+        if place == "binaries":
+            other = rest.partition("/")[0]
+            return other == own or not is_platform(other)
+        return place not in {"sources", "documentation"} or is_library(name)
+
     extract(open_archive(prepared.path), folder, wanted)
     (folder / "resources").mkdir(exist_ok=True)  # its path is given to the FMU even if it is empty
+
+
+def notes_on(interface: Interface, binary: str) -> tuple[str, ...]:
+    """Return the remarks on an FMU's library and on the folder from which it is loaded."""
+    return tuple(note for note in (name_note(interface, binary), place_note()) if note)
 
 
 def bounds_of(inputs: Sequence[Wire]) -> tuple[Bound, ...]:

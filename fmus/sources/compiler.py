@@ -124,7 +124,14 @@ def _zig(folder: Path, *arguments: str) -> None:
 
 # ---- any compiler, for FMUs of other origin ----
 
-FOREIGN: Final = ("-O2", "-g0", "-fPIC", "-w", "-ffp-contract=off")
+OLD_C: Final = (  # faults of old C that recent compilers no longer take for warnings
+    "implicit-function-declaration", "implicit-int", "int-conversion",
+    "incompatible-pointer-types", "incompatible-function-pointer-types",
+)  # fmt: skip
+FOREIGN: Final = (
+    *("-O2", "-g0", "-fPIC", "-w", "-ffp-contract=off"),
+    *(f"-Wno-error={fault}" for fault in OLD_C),
+)
 LONGEST: Final = 600.0  # [s] longest compilation of one file
 
 
@@ -177,7 +184,10 @@ class Compiler:
         if done.returncode != 0:
             lines = done.stderr.splitlines() or ["without a message"]
             reason = next((line for line in lines if "error" in line), lines[0])
-            raise FmuBuildError(f"its sources do not compile: {printable(reason, 300)}")
+            raise FmuBuildError(
+                f"its sources do not compile with {self.name}: {printable(reason, 300)}; "
+                "the variable CC names another compiler"
+            )
 
 
 def find_compiler() -> Compiler:

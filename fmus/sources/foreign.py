@@ -9,11 +9,19 @@ import posixpath
 import re
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.archive_check import DESCRIPTION, ROOT, Archive, extract, open_archive, read_start
+from fmus.archive.archive_check import (
+    DESCRIPTION,
+    EXECUTABLE,
+    ROOT,
+    Archive,
+    extract,
+    open_archive,
+    read_start,
+)
 from fmus.archive.markup import Element, parse
 from fmus.archive.packing import write_archive
 from fmus.description.binaries import START, Platform, misfit, this_platform
@@ -26,6 +34,7 @@ from fmus.text import printable
 SOURCES: Final = "sources/"
 BUILD: Final = "sources/buildDescription.xml"  # FMI 3's build description
 C_SUFFIXES: Final = (".c", ".cc", ".cpp", ".cxx")
+INCLUDE: Final = re.compile(rb'^[ \t]*#[ \t]*include[ \t]*"([^"\n]+)"', re.MULTILINE)
 LARGEST: Final = 1 << 30  # [bytes] largest FMU that is packed again in memory
 ENTRIES: Final = {"1.0": "{0}_fmi", "2.0": "fmi2Instantiate", "3.0": "fmi3Instantiate"}
 
@@ -72,7 +81,7 @@ def compile_fmu(path: Path, out: Path) -> list[str]:
     compiler, here = find_compiler(), this_platform()
     binaries = {}
     with tempfile.TemporaryDirectory(prefix="fmu-sources-") as folder:
-        extract(archive, Path(folder), (SOURCES,))
+        extract(archive, Path(folder), lambda name: name.startswith(SOURCES))
         for sources in wanted:
             name = f"{sources.identifier}{here.suffix}"
             place = f"binaries/{here.folders(model.fmi_version)[0]}/{name}"
@@ -84,7 +93,8 @@ def compile_fmu(path: Path, out: Path) -> list[str]:
             for name, info in archive.members.items()
             if name not in binaries
         }
-        write_archive(made, kept | binaries)
+        programs = {n for n, i in archive.members.items() if i.external_attr >> 16 & EXECUTABLE}
+        write_archive(made, kept | binaries, programs)
         made.replace(out)
     return list(binaries)
 
@@ -153,7 +163,19 @@ def _sources(archive: Archive, model: Model) -> Iterator[Sources]:
     listed = _of_build_description(archive) if described else _of_description(archive, model)
     everything = tuple(name for name in code if name.count("/") == 1)
     for identifier in dict.fromkeys(i.identifier for i in model.interfaces.values()):
-        yield listed.get(identifier) or Sources(identifier, everything or tuple(code))
+        sources = listed.get(identifier) or Sources(identifier, everything or tuple(code))
+        yield replace(sources, files=_without_included(archive, sources.files))
+
+
+def _without_included(archive: Archive, files: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the files that no other one includes, as Dymola's all.c includes all others."""
+    included: set[str] = set()
+    for name in files:
+        text = read_start(archive, name, archive.members[name].file_size)
+        for line in INCLUDE.findall(text):
+            place = posixpath.join(posixpath.dirname(name), line.decode(errors="replace"))
+            included.add(posixpath.normpath(place))
+    return tuple(name for name in files if name not in included) or files
 
 
 def _of_description(archive: Archive, model: Model) -> dict[str, Sources]:

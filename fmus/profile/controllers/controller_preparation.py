@@ -15,7 +15,7 @@ from fmus.description.reading import read_model
 from fmus.profile.controllers.controller_draft import draft_controller
 from fmus.profile.controllers.controller_profile import ControllerProfile
 from fmus.profile.controllers.controller_wiring import ControllerWiring, wire_controller
-from fmus.profile.preparation import PreparedFmu, bounds_of
+from fmus.profile.preparation import PreparedFmu, bounds_of, notes_on
 from fmus.profile.step_plan import step_plan_of
 
 
@@ -68,7 +68,8 @@ def prepare_controller(
         step_plan=step_plan_of(path, profile.fmu.step, interface, model.default_step, step_size),
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
-        binary=binary_of(model, interface),
+        binary=(binary := binary_of(model, interface)),
+        notes=notes_on(interface, binary),
     )
 
 

@@ -151,9 +151,15 @@ def test_an_fmu_in_an_archive(archive, refused):
         ("C:/evil.txt", "absolute"),
         ("c:evil.txt", "absolute"),
         ("resources/D:/evil.txt", "absolute"),
-        ("..\\evil.txt", "backslash"),
-        ("resources\\data.txt", "backslash"),
-        ("resources/./data.txt", "plain path"),
+        ("..\\evil.txt", "leads out"),
+        (".\\resources\\..\\..\\evil.txt", "leads out"),
+        ("./../evil.txt", "leads out"),
+        ("\\\\server\\evil.txt", "absolute"),
+        (".//etc/evil", "absolute"),
+        ("D:\\evil.txt", "absolute"),
+        ("./C:evil.txt", "absolute"),
+        ("resources\\ .\\data.txt", "plain path"),
+        (".", "plain path"),
         ("resources//data.txt", "plain path"),
         ("resources/\x1b[2J.txt", "control characters"),
         ("resources/two\nlines.txt", "control characters"),
@@ -164,6 +170,27 @@ def test_a_name_that_no_fmu_needs(archive, name, reason, refused):
     path = archive((name, b"evil"))
     with refused(FmuArchiveError, path, reason):
         open_archive(path)
+
+
+def test_names_are_judged_as_they_are_unpacked(archive, tmp_path, refused):
+    folder = ("./", b""), (".\\", b""), ("./resources\\", b"")
+    written = (*folder, ("./binaries\\linux64/.\\a.so", b"one"), ("resources\\a.txt", b"two"))
+    path = archive(*written)
+    opened = open_archive(path)
+    (tmp_path / "out").mkdir()
+    names = {"modelDescription.xml", "binaries/linux64/a.so", "resources/a.txt"}
+    assert set(opened.members) == names
+    extract(opened, tmp_path / "out", lambda _name: True)
+    found = (p for p in (tmp_path / "out").rglob("*") if p.is_file())
+    assert {p.relative_to(tmp_path / "out").as_posix() for p in found} == names
+    other = archive(("resources/a.txt", b"one"), (".\\resources\\a.txt", b"two"), name="two.fmu")
+    with refused(FmuArchiveError, other, "with different contents"):
+        open_archive(other)
+    for twice in ("RESOURCES\\a.txt", "./modelDescription.XML"):
+        with refused(FmuArchiveError, "twice"):
+            open_archive(archive(("resources/a.txt", b""), (twice, b""), name="case.fmu"))
+    with refused(FmuArchiveError, "also a file"):
+        open_archive(archive(("resources", b""), ("./resources\\a.txt", b""), name="f.fmu"))
 
 
 def test_a_name_that_hides_its_end_behind_a_nul(archive, refused):
@@ -199,7 +226,7 @@ def test_the_same_file_twice_is_that_file(archive, tmp_path):
     members = [("resources/a.txt", b"one"), ("resources/a.txt", b"one")]
     opened = open_archive(archive(*members, ("modelDescription.xml", DESCRIPTION)))
     (tmp_path / "out").mkdir()
-    extract(opened, tmp_path / "out", ("resources/",))
+    extract(opened, tmp_path / "out", lambda name: name.startswith("resources/"))
     assert (tmp_path / "out/resources/a.txt").read_bytes() == b"one"
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import zipfile
+
+import pytest
 
 from fmus.archive.archive_check import extract, open_archive
 from fmus.errors import FmuArchiveError, FmuFileError
@@ -19,7 +22,7 @@ def test_only_what_is_asked_for_is_unpacked(archive, tmp_path):
     path = archive(*((name, name.encode()) for name in members))
     folder = tmp_path / "out"
     folder.mkdir()
-    extract(open_archive(path), folder, ["resources/", "binaries/linux64/"])
+    extract(open_archive(path), folder, lambda n: n.startswith(("resources/", "binaries/")))
     unpacked = {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*.*")}
     assert unpacked == {name: name.encode() for name in members[:3]}
 
@@ -30,7 +33,7 @@ def test_nothing_is_written_through_a_link_that_waits_there(archive, tmp_path, r
     (folder / "resources").mkdir(parents=True)
     (folder / "resources" / "a.txt").symlink_to(victim)
     with refused(FmuFileError, path, "resources/a.txt", "exists"):
-        extract(open_archive(path), folder, ["resources/"])
+        extract(open_archive(path), folder, lambda _name: True)
     assert not victim.exists()
 
 
@@ -41,7 +44,7 @@ def test_a_file_that_changed_since_it_was_examined(archive, tmp_path, refused):
     folder = tmp_path / "out"
     folder.mkdir()
     with refused(FmuArchiveError, path, "damaged"):
-        extract(examined, folder, ["resources/"])
+        extract(examined, folder, lambda _name: True)
 
 
 def test_damage_in_a_large_archive_shows_when_it_is_unpacked(
@@ -54,4 +57,19 @@ def test_damage_in_a_large_archive_shows_when_it_is_unpacked(
     assert b"good good" in data
     path.write_bytes(data.replace(b"good good", b"evil good", 1))
     with refused(FmuArchiveError, path, "resources/a.txt"):
-        extract(open_archive(path), tmp_path, ["resources/"])
+        extract(open_archive(path), tmp_path, lambda _name: True)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="files have no such modes")
+def test_only_what_may_be_executed_may_be_executed(archive, tmp_path):
+    modes = {"resources/tool": 0o100755, "resources/setuid": 0o104711, "resources/data": 0o100644}
+    members = []
+    for name, mode in modes.items():
+        members.append((zipfile.ZipInfo(name), b"#!/bin/sh\n"))
+        members[-1][0].external_attr = mode << 16
+    extract(open_archive(archive(*members)), tmp_path, lambda name: name.startswith("resources/"))
+    found = {name: (tmp_path / name).stat().st_mode & 0o7777 for name in modes}
+    usual = found["resources/data"]
+    assert not usual & 0o111
+    with_x = usual | (usual & 0o444) >> 2
+    assert found["resources/tool"] == found["resources/setuid"] == with_x

@@ -8,7 +8,15 @@ import zipfile
 import pytest
 
 from fmus import bundled_fmu
-from fmus.description.binaries import Platform, binary_of, misfit, this_platform
+from fmus.description.binaries import (
+    Platform,
+    binary_of,
+    is_library,
+    is_platform,
+    misfit,
+    name_note,
+    this_platform,
+)
 from fmus.description.model import Kind
 from fmus.description.reading import read_model
 from fmus.errors import FmuPlatformError
@@ -92,7 +100,11 @@ def test_the_shipped_fmus_run_on_every_platform(version):
         ({}, "binaries for: none"),
         ({"binaries/win64/car_cs.dll": b""}, "binaries for: win64; export it for x86_64-linux"),
         ({"sources/car.c": b""}, "and C sources; compile them: giveway fmu compile"),
-        ({"binaries/linux64/car.so": elf(62)}, "but binaries/linux64/car.so"),
+        ({"binaries/linux64/car.so": elf(183)}, "car.so is for aarch64"),
+        (
+            {"binaries/linux64/car.so": elf(62), "binaries/linux64/tyre.so": elf(62)},
+            "but binaries/linux64/car.so",
+        ),
         ({"binaries/linux64/car_cs.so": elf(183)}, "car_cs.so is for aarch64"),
         ({"binaries/linux64/car_cs.so": pe(0x8664)}, "car_cs.so is for windows"),
         ({"binaries/linux64/car_cs.so": b"no library"}, "car_cs.so is no library"),
@@ -102,3 +114,20 @@ def test_no_binary_for_this_platform(fmi2, members, said, refused):
     model = read_model(fmi2(**members))
     with refused(FmuPlatformError, model.path, said):
         binary_of(model, model.interfaces[Kind.CO_SIMULATION])
+
+
+@pytest.mark.skipif(str(this_platform()) != "x86_64-linux", reason="names this platform")
+def test_the_only_library_counts_whatever_its_name(fmi2):
+    model = read_model(fmi2(**{"binaries/linux64/car.so": elf(62), "binaries/linux64/x.txt": b""}))
+    interface = model.interfaces[Kind.CO_SIMULATION]
+    assert binary_of(model, interface) == "binaries/linux64/car.so"
+    assert "called car.so" in name_note(interface, "binaries/linux64/car.so")
+    assert not name_note(interface, f"binaries/linux64/{interface.identifier}.so")
+
+
+def test_folders_of_platforms_and_names_of_libraries():
+    platforms = ("linux64", "win32", "darwin64", "x86_64-linux", "aarch64-darwin", "armv7a-linux")
+    assert all(map(is_platform, platforms))
+    assert not any(map(is_platform, ("common", "lib", "linux", "lib64", "libs-x86", "64")))
+    assert all(map(is_library, ("a/libm.so.6", "car.so", "b/x.dll", "x.dylib")))
+    assert not any(map(is_library, ("a.so/readme", "sources/so.c", "x.dll.txt")))

@@ -6,8 +6,9 @@ import re
 
 import pytest
 
+from fmus.description.channels import find_channel, start_channels
 from fmus.description.reading import read_model
-from fmus.errors import FmuFileError, FmuInterfaceError
+from fmus.errors import FmuFileError, FmuInterfaceError, FmuVariableError
 
 # ---- broken descriptions ----
 
@@ -16,7 +17,6 @@ BROKEN = [
     ("no guid", 'guid="{2}"', "", "no guid"),
     ("no identifier", 'modelIdentifier="car_cs"', "", "modelIdentifier"),
     ("path as identifier", '"car_cs"', '"../car"', "modelIdentifier"),
-    ("same name twice", 'name="v"', 'name="u"', "variable u again"),
     ("no name", 'name="v"', "", "without a name"),
     ("endless name", 'name="v"', f'name="{"v" * 2000}"', "too long"),
     ("name that turns the line", 'name="v"', 'name="v&#x202e;"', "control characters"),
@@ -71,7 +71,6 @@ def test_a_dangling_reference_in_fmi3(fmu, more, said, refused, fmi3_xml):
         ('start="2"/></Float64>', 'start="4000000000"/></Float64>', "4000000000"),
         ('start="1 2 3 4 5 6"', 'start="1 2 3 4 5 x"', "x"),
         ('instantiationToken="{3}"', "", "no instantiationToken"),
-        ('<Alias name="speed"/>', '<Alias name="x"/>', "variable x again"),
     ],
 )
 def test_a_broken_description_in_fmi3(fmu, old, new, said, refused, fmi3_xml):
@@ -125,3 +124,15 @@ def test_no_interface(fmu, refused, fmi3_xml):
     text = re.sub("<CoSimulation[^>]*>|<ModelExchange[^>]*>", "", fmi3_xml())
     with refused(FmuInterfaceError, "neither Co-Simulation nor Model Exchange"):
         read_model(fmu(text))
+
+
+def test_a_name_given_twice_matters_only_where_it_is_used(fmi2, fmu, fmi3_xml, refused):
+    twice = read_model(fmi2('name="v"', 'name="u"'))
+    assert find_channel(twice, "test:", "gear").name == "gear"
+    with refused(FmuVariableError, twice.path, "test: variable 'u'", "again on line"):
+        find_channel(twice, "test:", "u")
+    with refused(FmuVariableError, twice.path, "start value: variable 'u'", "again on line"):
+        start_channels(twice, {"u": 1.0})
+    aliased = fmi3_xml().replace('<Alias name="speed"/>', '<Alias name="x"/>')
+    with refused(FmuVariableError, "variable 'x'", "again on line"):
+        find_channel(read_model(fmu(aliased)), "test:", "x")

@@ -49,6 +49,21 @@ def test_what_lies_beside_a_binary_is_found(tmp_path):
 
 
 @needs_compiler
+def test_what_lies_elsewhere_in_the_archive_is_found(tmp_path):
+    binaries, deep = tmp_path / "binaries/linux64", tmp_path / "resources/lib/deep"
+    binaries.mkdir(parents=True)
+    deep.mkdir(parents=True)
+    compiled(deep, "libwing.so", "int wing(void) { return 3; }")
+    car = "int wing(void); int car(void) { return wing() + 1; }"
+    path = compiled(binaries, "car.so", car, f"-L{deep}", "-lwing")
+    with pytest.raises(FmuPlatformError, match=r"libwing\.so"):
+        Library(path, tmp_path / "car.fmu")
+    library = Library(path, tmp_path / "car.fmu", tmp_path)
+    assert library.function("car")() == 4
+    library.close()
+
+
+@needs_compiler
 def test_what_a_binary_needs_and_nobody_has_is_named(tmp_path):
     compiled(tmp_path, "libdoor.so", "int door(void) { return 3; }")
     car = "int door(void); int car(void) { return door(); }"

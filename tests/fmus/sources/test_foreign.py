@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 
 import pytest
@@ -65,13 +66,36 @@ def test_names_meant_for_static_linking_are_those_of_a_library(remake, tmp_path)
     assert driven(out) == driven(bundled_fmu("2.0"))
 
 
+def test_what_another_file_includes_is_not_compiled_twice(tmp_path):
+    """Dymola lists no files: its all.c includes the others, in C that is older than C99."""
+    path, out = tmp_path / "dymola.fmu", tmp_path / "here.fmu"
+    first = b"static int old() { return getpid(); }\n"
+    with zipfile.ZipFile(bundled_fmu("2.0")) as ours, zipfile.ZipFile(path, "w") as theirs:
+        names = [name for name in ours.namelist() if without_binaries(name)]
+        for name in names:
+            data = ours.read(name)
+            if name == "modelDescription.xml":
+                data = re.sub(rb"<SourceFiles>.*</SourceFiles>", b"", data, flags=re.DOTALL)
+            theirs.writestr(name, data)
+        included = (n.removeprefix("sources/") for n in names if n.endswith(".c"))
+        every = b"".join(b'#include "%s"\n' % name.encode() for name in included)
+        theirs.writestr("sources/all.c", first + every)
+        tool = zipfile.ZipInfo("resources/tool")
+        tool.external_attr = 0o100755 << 16
+        theirs.writestr(tool, b"#!/bin/sh\n")
+    compile_fmu(path, out)
+    assert driven(out) == driven(bundled_fmu("2.0"))
+    with zipfile.ZipFile(out) as made:
+        assert made.getinfo("resources/tool").external_attr >> 16 == 0o100755
+
+
 @pytest.mark.parametrize("fmi_version", ["2.0"], indirect=True)
 def test_sources_that_do_not_compile_are_one_line_without_traces(remake, tmp_path, refused):
     broken = remake(
         keep=without_binaries,
         replace=lambda name: b"int main( {\n" if name == "sources/plant.c" else None,
     )
-    with refused(FmuBuildError, broken, "its sources do not compile", "plant.c"):
+    with refused(FmuBuildError, broken, "its sources do not compile", "plant.c", "CC names"):
         compile_fmu(broken, tmp_path / "here.fmu")
     assert [p.name for p in tmp_path.iterdir()] == ["edited.fmu"]
 

@@ -35,6 +35,7 @@ GROUPS: Final = (
     ("Outputs", frozenset({"output"})),
     ("Parameters", frozenset({"parameter", "structuralParameter"})),
 )
+INNER: Final = (("Local variables", frozenset({"local", "calculatedParameter"})),)
 
 
 def inspect_command(
@@ -79,7 +80,7 @@ def inspect_command(
 def _parts(model: Model, sha256: str, *, everything: bool) -> Iterator[Table]:
     yield _overview(model, sha256)
     shown = []
-    for title, causalities in GROUPS:
+    for title, causalities in (*GROUPS, *(INNER if everything else ())):
         variables = [v for v in model.variables.values() if v.causality in causalities]
         shown += variables
         if variables:

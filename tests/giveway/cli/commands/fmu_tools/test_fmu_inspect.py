@@ -66,6 +66,8 @@ def test_what_an_fmu_is(inspect, zoo):
         "initial_speed",
     ):
         assert words in out
+    assert "Local variables" not in out
+    assert "state_speed" in inspect(path, everything=True)[1]
 
 
 def test_nothing_is_loaded(inspect, zoo):
