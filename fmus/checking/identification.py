@@ -1,4 +1,4 @@
-"""Identification: step tests yield M and alpha, so that the MPC's model fits the vehicle.
+"""Identification: step tests yield M and alpha, and how each side of a vehicle responds.
 
 The vehicle is treated as the controller sees it: force in, position and speed out. For a vehicle
 driven by an acceleration, a speed or pedals, this includes the inverse map.
@@ -7,7 +7,7 @@ driven by an acceleration, a speed or pedals, this includes the inverse map.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
@@ -15,28 +15,36 @@ from typing import NamedTuple
 import numpy as np
 
 from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
-from fmus.checking.model_fit.fitting import SETTLING, STANDSTILL, Drive, Fit, fit, prepare
+from fmus.checking.model_fit.common_model import CommonModel, fit_common
+from fmus.checking.model_fit.estimation import Estimate, half_widths
+from fmus.checking.model_fit.measurements import (
+    SETTLING,
+    STANDSTILL,
+    Measurements,
+    sensor_lag,
+)
 from fmus.checking.model_fit.prediction import position_errors, speed_errors
-from fmus.checking.model_fit.remarks import fit_remarks, saturation_remarks
-from fmus.checking.model_fit.saturation import ResistanceModel, force_limits
-from fmus.checking.model_fit.sides import Sides, fit_apart, side_remarks
+from fmus.checking.model_fit.remarks import estimate_remarks, resistance_remarks, side_remarks
+from fmus.checking.model_fit.selection import identify_sides
+from fmus.checking.model_fit.side_models import poverty, side_model
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
 from fmus.isolation import processes_reused
 from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
-from fmus.profile.vehicle_profile import FittedModel, SideModel, VehicleProfile
+from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
-LEVELS = (0.1, 0.25, 0.5, 1.0)  # Shares of the largest force in the tests
-SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] speeds at the start of the tests
+LEVELS = (0.125, 0.25, 0.5, 1.0)  # Shares of the largest force in the tests
+SPEEDS = (0.0, 2.0, 5.0, 9.0, 14.0, 20.0)  # [m/s] speeds at the start of the tests
 HARDEST = 8.0  # [m/s2] largest deceleration or acceleration of a test
-LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s] durations of the phases
-NO_FIT = 0.3  # R squared below which there is no model
+LEAD_IN, DRIVE, PAUSE, BRAKE, END = SETTLING + 1.0, 1.8, 1.8, 1.5, 1.0  # [s] durations of phases
+FIRST_FORCE = 200.0  # [N] smallest force that is tried
+STRONGEST = 1e7  # [N] largest force that is tried
+MOVING = 1.0  # [m/s] speed at which a vehicle has driven off
 VALIDATION = (  # shares of the largest force, each held for HELD; none of them is in LEVELS
     0.3, 0.6, -0.2, 0.15, -0.4, 0.45, 0.8, -0.6, 0.0, 0.2, -0.15, 0.7, -0.3, 0.35, -0.8, 0.55,
     0.05, -0.1, 0.65, -0.5, 0.4, -0.05, 0.0, -0.25,
 )  # fmt: skip
 HELD = 0.6  # [s]
-HEAVIEST = 1e6  # [kg] largest M that counts
 
 
 class Mpc(NamedTuple):
@@ -44,7 +52,7 @@ class Mpc(NamedTuple):
 
     step_size: float  # [s] dt
     horizon: int  # [steps] N
-    force_limit: float  # [N] largest force u_max; no test uses more
+    force_limit: float | None = None  # [N] largest force of a test; None for that of a road vehicle
 
 
 @dataclass(frozen=True)
@@ -54,35 +62,28 @@ class Identification:
     Attributes:
         model: Model for the profile.
         intervals: Half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
-        drive_limit: Largest drive force [N] that the vehicle carries out, or None if it was not
-            reached.
-        brake_limit: Largest brake force [N] that arrives, or None if it was not reached.
+        side_intervals: Half widths [kg] of the 95 % intervals of M of driving and of braking.
         largest_force: Largest force of the tests [N].
-        fit: Fitted M and alpha with lag and dead time.
+        common: M and alpha of both sides together.
+        estimate: Estimate of both sides.
         tests: Drives that were fitted.
         validation: Drive that was not fitted.
+        held_out: Measurements of this drive.
         remarks: Remarks for the user, one line each.
-        sides: Results for driving and braking apart.
+        poor: Reason why the model must not be used, one clause; empty if there is none.
     """
 
     model: FittedModel
     intervals: tuple[float, float]
-    drive_limit: float | None
-    brake_limit: float | None
+    side_intervals: tuple[float, float]
     largest_force: float
-    fit: Fit
+    common: CommonModel
+    estimate: Estimate
     tests: tuple[Trace, ...]
     validation: Trace
+    held_out: Measurements
     remarks: tuple[str, ...]
-    sides: Sides
-
-    @property
-    def fitted_drives(self) -> list[Drive]:
-        """The tests as they were fitted."""
-        limits = tuple(
-            np.inf if limit is None else limit for limit in (self.drive_limit, self.brake_limit)
-        )
-        return [prepare(trace, (limits[0], limits[1])) for trace in self.tests]
+    poor: str
 
 
 @processes_reused()
@@ -95,13 +96,13 @@ def identify(
     speeds: Sequence[float] = SPEEDS,
     progress: Callable[[int, int], None] | None = None,
 ) -> Identification:
-    """Find M, alpha, lag and dead time of a vehicle by step tests.
+    """Find M, alpha and the response of each side of a vehicle by step tests.
 
     Args:
         opener: Function that opens the vehicle.
         mpc: MPC for which the model is meant.
         path: Path of the FMU, for messages.
-        profile: Profile of the vehicle, for advice on its lines.
+        profile: Profile of the vehicle: it has the inverse map, and the lines for advice.
         speeds: Speeds from which the tests start [m/s].
         progress: Function that receives the numbers of drives done and of all drives.
 
@@ -116,124 +117,140 @@ def identify(
             progress(next(done), total)
 
     one_more()
-    largest = _largest_force(opener, path, profile, mpc)
+    largest = HARDEST * apparent_mass(opener, path, profile)
+    if mpc.force_limit is not None:
+        largest = min(largest, mpc.force_limit)
     one_more()
     starter = _Starter(opener, 0.5 * largest, max(speeds))
-    tests = _drive_tests(starter, largest, speeds, one_more)
-    limits = force_limits(tests)
-    validation = starter.drive(
-        _validation(0.9 * min(largest, *limits), max(speeds)), float(np.median(speeds))
-    )
+    tests = []
+    for level in LEVELS:
+        for speed in speeds:
+            phases = _test(level * largest, speed, top=1.25 * max(speeds) + 1.0)
+            tests.append(starter.drive(phases, speed))
+            one_more()
+    validation = starter.drive(_validation(0.9 * largest, max(speeds)), float(np.median(speeds)))
     one_more()
-    found = modelled(tests, validation, mpc.horizon, path, profile)
-    return replace(found, largest_force=largest)
+    return modelled(tests, validation, mpc.horizon, path, profile)
 
 
 def modelled(
-    tests: Sequence[Sequence[Trace]],
+    tests: Sequence[Trace],
     validation: Trace,
     horizon: int,
     path: Path,
     profile: VehicleProfile | None = None,
+    *,
+    coarse: bool = False,
 ) -> Identification:
     """Fit the model to drives that have been recorded.
 
     Args:
-        tests: Drives by level of force, from weak to strong.
+        tests: Drives with forces of several levels.
         validation: Drive by which the model is judged.
         horizon: Horizon of the MPC [steps].
         path: Path of the FMU, for messages.
-        profile: Profile of the vehicle, for advice on its lines.
+        profile: Profile of the vehicle: it has the inverse map, and the lines for advice.
+        coarse: True for a quick fit with lag, dead time, and limits of force and rate only.
 
     Raises:
         FmuOutputError: the vehicle does not respond to forces like a vehicle.
     """
-    limits = force_limits(tests)
-    traces = tuple(trace for group in tests for trace in group)
-    drives = [prepare(trace, limits) for trace in traces]
-    found = fit(drives)
-    if found is None:
+    sensor, h = sensor_lag(tests), validation.step_size
+    mapped = profile and (profile.inputs.acceleration or profile.inputs.speed_setpoint)
+    map_friction = profile.inverse_map.friction if profile and mapped else 0.0
+    # A sensor that is half a step ahead: the vehicle does forward Euler steps.
+    euler = sensor is not None and abs(sensor + 0.5 * h) < 1e-3 * h
+    measured = Measurements.of(tests, map_friction=map_friction, euler=euler)
+    held_out = Measurements.of([validation], map_friction=map_friction, euler=euler)
+    estimate = identify_sides(measured, full=_full_forces(measured, profile), coarse=coarse)
+    late = sensor if sensor is not None and sensor > 0.5 * h else 0.0
+    sides = [side_model(estimate, side, late) for side in (0, 1)]
+    common = fit_common(tests, estimate, map_friction)
+    if common is None or sides == [None, None]:
         raise FmuOutputError(
             f"{path}: it does not respond to forces like a vehicle; expected more speed with more "
-            "force"
+            "force; 'giveway fmu check' shows what it does instead"
         )
-    sides = fit_apart(drives, found.delay)
-    model = _rated(found, validation, limits, horizon).model_copy(
-        update={
-            name: _side_model(side, limit)
-            for name, side, limit in zip(
-                ("drive", "brake"), (sides.drive, sides.brake), limits, strict=True
-            )
-        }
+    known = [side for side in sides if side is not None]
+    ahead = position_errors(validation, common.mass, common.friction, horizon)
+    one_step = speed_errors(validation, common.mass, common.friction)
+    model = FittedModel(
+        mass=common.mass,
+        friction=common.friction,
+        lag=float(np.mean([side.lag for side in known])),
+        delay=float(np.mean([side.delay for side in known])),
+        sensor_lag=late,
+        r_squared=estimate.explained(held_out),
+        speed_error=float(np.sqrt(np.mean(one_step**2))) if one_step.size else 0.0,
+        position_error=float(np.quantile(ahead, 0.95)) if ahead.size else 0.0,
+        horizon=horizon * h,
+        time_step=h,
+        drive=sides[0],
+        brake=sides[1],
     )
-    if model.r_squared < NO_FIT:
-        raise FmuOutputError(
-            f"{path}: no M and alpha describe it (R² = {model.r_squared:.2f}): its speed does not "
-            "follow M v' + alpha v = u; 'giveway fmu check' shows what it does instead"
-        )
     return Identification(
         model=model,
-        intervals=found.intervals,
-        drive_limit=_finite(limits[0]),
-        brake_limit=_finite(limits[1]),
-        largest_force=max(float(np.abs(trace.force).max()) for trace in traces),
-        fit=found,
-        tests=traces,
+        intervals=common.intervals,
+        side_intervals=half_widths(estimate),
+        largest_force=measured.largest,
+        common=common,
+        estimate=estimate,
+        tests=tuple(tests),
         validation=validation,
+        held_out=held_out,
         remarks=(
-            *saturation_remarks(limits),
-            *fit_remarks(found, model, traces, limits),
-            *side_remarks(sides, validation.step_size, profile),
+            *estimate_remarks(estimate, model, positions=sensor is not None),
+            *resistance_remarks(estimate, common),
+            *side_remarks(model, profile),
         ),
-        sides=sides,
+        poor="; ".join(poverty(estimate)),
     )
 
 
-def _drive_tests(
-    starter: _Starter, largest: float, speeds: Sequence[float], one_more: Callable[[], None]
-) -> list[list[Trace]]:
-    """Drive the tests: a list of traces per level of force, from weak to strong, one per speed."""
-    tests = []
-    for level in LEVELS:
-        group = []
-        for speed in speeds:
-            phases = _test(level * largest, speed, top=1.25 * max(speeds) + 1.0)
-            group.append(starter.drive(phases, speed))
-            one_more()
-        tests.append(group)
-    return tests
+def _full_forces(measured: Measurements, profile: VehicleProfile | None) -> tuple[float, float]:
+    """Return the forces [N] of fully pressed pedals, or the largest ones of the tests."""
+    if profile is not None and profile.inputs.throttle and profile.inputs.brake:
+        return profile.inputs.throttle.full_force, profile.inputs.brake.full_force
+    drive, brake = (float(command.max()) for command in measured.commands)
+    return drive, brake
 
 
-def _finite(limit: float) -> float | None:
-    return float(limit) if np.isfinite(limit) else None
+def apparent_mass(opener: Opener, path: Path, profile: VehicleProfile | None = None) -> float:
+    """Return the force over the acceleration [kg] of a vehicle that drives off.
 
+    Args:
+        opener: Function that opens the vehicle.
+        path: Path of the FMU, for messages.
+        profile: Profile of the vehicle, for advice on its lines.
 
-def _largest_force(opener: Opener, path: Path, profile: VehicleProfile | None, mpc: Mpc) -> float:
-    """Return the force [N] of the hardest tests, within the limit and a road vehicle's grip."""
-    share = 0.05
-    while True:
-        force = share * mpc.force_limit
-        speed = drive(opener, [Phase(force, 2.0)]).speed
-        half = speed.size // 2
-        gained = float(speed[-1] - speed[half])
-        if abs(speed[-1] - speed[0]) > 0.02 and abs(gained) > 1e-3:
-            break
-        if share >= 1.0:
-            raise FmuOutputError(
-                f"{path}: 2 s of {force:g} N move it by {speed[-1] - speed[0]:.2g} m/s; expected a "
-                "vehicle that drives off; see the variable under [inputs] of the profile, or raise "
-                "--force-limit"
-            )
-        share = min(2.0 * share, 1.0)
-    if gained < 0.0:
+    Raises:
+        FmuOutputError: no force drives it forwards.
+    """
+    forces = FIRST_FORCE * 2.0 ** np.arange(round(np.log2(STRONGEST / FIRST_FORCE)) + 1)
+    phases = [Phase(float(force), 1.0, below=MOVING, above=-MOVING) for force in forces]
+    trace = drive(opener, [Phase(0.0, 1.0), *phases])
+    force, gained = float(trace.force[-1]), float(trace.speed[-1] - trace.speed[0])
+    if gained <= -MOVING:
         axes = [role for role, axis in profile.inputs if isinstance(axis, Axis)] if profile else []
         turned = gain_line(profile, "inputs", axes[0] if axes else "force", -1.0)
         raise FmuOutputError(
-            f"{path}: {force:g} N forwards drive it backwards ({speed[-1]:.2g} m/s after 2 s); "
-            f"turn the sign with {turned} (or in [outputs.speed]) of the profile"
+            f"{path}: {force:g} N forwards drive it backwards ({trace.speed[-1]:.2g} m/s); turn "
+            f"the sign with {turned} (or in [outputs.speed]) of the profile"
         )
-    apparent_mass = force * (speed.size - 1 - half) * mpc.step_size / gained
-    return min(mpc.force_limit, HARDEST * apparent_mass)
+    if gained < 0.5 * MOVING:
+        raise FmuOutputError(
+            f"{path}: forces of up to {force:.4g} N, each for 1 s, change its speed by "
+            f"{gained:.2g} m/s; expected a vehicle that drives off; see the variable under "
+            "[inputs] of the profile, or 'giveway fmu check'"
+        )
+    first = int(np.flatnonzero(trace.force == force)[0])
+    seconds = (trace.force.size - first) * trace.step_size
+    rough = force * seconds / max(float(trace.speed[-1] - trace.speed[first]), 1e-3)
+    again = drive(opener, [Phase(0.0, 1.0), Phase(2.0 * rough, 2.0), Phase(0.0, 2.0)])
+    change = np.diff(again.speed) / again.step_size
+    pushed = int(np.flatnonzero(again.force)[-1])
+    gain = float(change[pushed] - change[-1])  # [m/s2] without the resistance
+    return min(rough, 2.0 * rough / gain) if gain > 0.0 else rough
 
 
 @dataclass
@@ -261,10 +278,10 @@ def _test(force: float, speed: float, top: float) -> list[Phase]:
     """Return the phases of a test that drives and brakes with one force, around one speed."""
     return [
         Phase(0.0, LEAD_IN),
-        Phase(force, STEP, below=top),
+        Phase(force, DRIVE, below=top),
         Phase(0.0, PAUSE),
-        Phase(-force, STEP, above=max(0.4 * speed, 0.5)),
-        Phase(0.0, PAUSE, above=STANDSTILL),
+        Phase(-force, BRAKE, above=max(0.4 * speed, 0.5)),
+        Phase(0.0, END, above=STANDSTILL),
     ]
 
 
@@ -276,36 +293,3 @@ def _validation(force: float, fastest: float) -> list[Phase]:
         for share in VALIDATION
     ]  # fmt: skip
     return [Phase(0.0, LEAD_IN), *changes, Phase(-0.5 * force, 5.0, above=STANDSTILL)]
-
-
-def _rated(found: Fit, validation: Trace, limits: tuple[float, float], horizon: int) -> FittedModel:
-    """Return the model with its errors in the drive that was held out."""
-    held_out = prepare(validation, limits)
-    ahead = position_errors(validation, found.mass, found.friction, horizon)
-    one_step = speed_errors(validation, found.mass, found.friction)
-    return FittedModel(
-        mass=found.mass,
-        friction=found.friction,
-        lag=found.lag,
-        delay=found.delay,
-        r_squared=_r_squared(found, [held_out]),
-        speed_error=float(np.sqrt(np.mean(one_step**2))) if one_step.size else 0.0,
-        position_error=float(np.quantile(ahead, 0.95)) if ahead.size else 0.0,
-        horizon=horizon * validation.step_size,
-        time_step=validation.step_size,
-    )
-
-
-def _side_model(side: ResistanceModel | None, limit: float) -> SideModel | None:
-    """Return a side's table of the profile; its limit is None if it is infinite."""
-    if side is None or side.mass > HEAVIEST:
-        return None
-    most = limit / side.mass if np.isfinite(limit) else None
-    return SideModel(mass=side.mass, lag=side.lag, delay=side.delay, limit=most)
-
-
-def _r_squared(found: Fit, drives: Sequence[Drive]) -> float:
-    measured = np.concatenate([drive.acceleration[drive.used] for drive in drives])
-    fitted = np.concatenate([found.acceleration(drive)[drive.used] for drive in drives])
-    spread = float(((measured - measured.mean()) ** 2).sum()) if measured.size else 0.0
-    return 1.0 - float(((measured - fitted) ** 2).sum()) / spread if spread > 0.0 else 0.0

@@ -196,10 +196,13 @@ class StepTests(NamedTuple):
     ] = None
     step: ControlStep = 0.05
     horizon: Annotated[int, typer.Option(help="Of the MPC in steps.", min=2, max=200)] = 15
-    force_limit: ForceLimit = 8000.0
+    force_limit: Annotated[
+        float | None,
+        typer.Option(help="Largest force in N (default: 8 m/s² of the mass).", min=1.0, max=1e7),
+    ] = None
     speeds: Annotated[
         str, typer.Option(help="Speeds in m/s that the tests start from, comma-separated.")
-    ] = "0,2,4,8,12"
+    ] = "0,2,5,9,14,20"
     picture: Annotated[
         Path | None,
         typer.Option(

@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fmus.checking import CheckReport, Identification, Trace
-from fmus.checking.model_fit.actuator import mean_force
 from fmus.checking.model_fit.prediction import position_errors, simulate
 from giveway.figures.style import (
     BLACK,
@@ -127,17 +126,23 @@ def identification_figure(found: Identification, *, title: str = "") -> Figure:
 
 def _draw_validation(panels: tuple[Axes, Axes, Axes], found: Identification) -> None:
     force, speed, acceleration = panels
-    trace, model, h = found.validation, found.fit, found.validation.step_size
-    acting = mean_force(trace.force, h, model.lag, model.delay)
+    trace, out, h = found.validation, found.held_out, found.validation.step_size
+    sides = enumerate(found.estimate.responses)
+    acting = sum(out.acting_everywhere(side, response)[0] for side, response in sides)
     _draw_force(force, trace)
     force.plot(trace.time[1:], acting / 1000.0, **MODEL)
-    _, fitted = simulate(acting, h, model.mass, model.friction, float(trace.speed[0]))
-    speed.plot(trace.time, trace.speed, label="measured", **MEASURED)
-    speed.plot(trace.time, fitted, label="fitted, from the start on", **MODEL)
-    speed.legend(loc="best")
+    predicted = np.full(trace.force.size, np.nan)
+    predicted[out.used[0]] = found.estimate.predicted(out)
     acceleration.plot(trace.time[1:], np.diff(trace.speed) / h, **MEASURED)
-    one_step = (acting - model.friction * trace.speed[:-1]) / model.mass
-    acceleration.plot(trace.time[1:], one_step, **MODEL)
+    acceleration.plot(trace.time[1:], predicted, **MODEL)
+    # from each standstill, and from the first step that counts, on
+    fitted = trace.speed[:-1] + h * predicted
+    for k in range(1, fitted.size):
+        if np.isfinite(fitted[k] + fitted[k - 1]):
+            fitted[k] = fitted[k - 1] + h * predicted[k]
+    speed.plot(trace.time, trace.speed, label="measured", **MEASURED)
+    speed.plot(trace.time[1:], fitted, label="fitted, from the start on", **MODEL)
+    speed.legend(loc="best")
     force.set_title("Held out: a drive that was not fitted")
     for axes, label in zip(panels, ROWS[:3], strict=True):
         axes.set_ylabel(label)
@@ -145,13 +150,15 @@ def _draw_validation(panels: tuple[Axes, Axes, Axes], found: Identification) -> 
 
 
 def _draw_tests(axes: Axes, found: Identification) -> None:
-    drives = found.fitted_drives
-    measured = np.concatenate([drive.acceleration[drive.used] for drive in drives])
-    fitted = np.concatenate([found.fit.acceleration(drive)[drive.used] for drive in drives])
+    measured = found.estimate.measured.acceleration
+    fitted = measured - found.estimate.linear.residual
     ends = [float(measured.min()), float(measured.max())]
     axes.plot(ends, ends, **MODEL)
-    axes.plot(fitted, measured, ".", color=BLUE, markersize=3, alpha=0.5, zorder=3)
-    title = f"Step tests, R² = {found.fit.r_squared:.4f}"
+    followed = found.estimate.linear.weights > 0.5
+    axes.plot(fitted[followed], measured[followed], ".", color=BLUE, markersize=3, alpha=0.5)
+    axes.plot(fitted[~followed], measured[~followed], ".", color=VERMILION, markersize=3)
+    share = 100.0 * float(followed.mean())
+    title = f"Step tests: {share:.0f} % of the steps follow"
     axes.set(title=title, xlabel="Fitted acceleration [m/s²]", ylabel="Measured [m/s²]")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,6 +33,7 @@ class Car:
     sign: float = 1.0
     brake_gain: float = 1.0  # of the brake forces that arrive
     brake_lag: float | None = None  # [s]; None: that of the drive
+    seed: int = 1  # of the noise
     step_size: float = 0.05
     warnings: list[str] = field(default_factory=list)
     path: Path = Path("car.fmu")
@@ -40,7 +42,7 @@ class Car:
         self.position, self.speed, self.acceleration = position, speed, 0.0
         self._true, self._force = speed, 0.0
         self._late = deque([0.0] * round(self.delay / FINE))
-        self._random = np.random.default_rng(1)
+        self._random = np.random.default_rng(self.seed)
 
     def step(self, force: float) -> None:
         force = min(max(self.sign * force, -self.brake_limit), self.drive_limit)
@@ -73,5 +75,10 @@ class Car:
 
 @pytest.fixture
 def car() -> Callable[..., Callable[[float | None], Car]]:
-    """Makes the opener of cars with the parameters given."""
-    return lambda **parameters: lambda _fmu_step: Car(**parameters)
+    """Makes the opener of cars with the parameters given; each car has noise of its own."""
+
+    def opener(**parameters: float) -> Callable[[float | None], Car]:
+        seeds = count(1)
+        return lambda _fmu_step: Car(**({"seed": next(seeds)} | parameters))
+
+    return opener

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
@@ -21,6 +22,7 @@ from fmus.checking.model_fit.side_response import Array, SideResponse
 FLOOR = 0.01  # [m/s2] standard deviation below which residuals need no explanation
 STRAY = 0.05  # share of residuals that may be anything
 RANGE = 20.0  # [m/s2] range of these
+FEW = 2e-3  # share of stray residuals that needs no explanation
 ANNEALED = (0.3, 0.1, 0.03, FLOOR)  # [m/s2] floors of a search, one after the other
 LEAST_INTERVAL = 2e-3  # smallest half width of an interval, as a share: FMUs have steps, too
 _SCALES = {"lag": 0.1, "release": 0.1, "delay": 0.1, "second": 0.01, "exponent": 0.2}
@@ -28,6 +30,8 @@ _BOUNDS = {
     "lag": (0.0, 3.0), "release": (0.0, 3.0), "delay": (0.0, 2.0), "second": (0.0, 2.0),
     "exponent": (0.3, 4.0),
 }  # fmt: skip
+STEPS = 15  # largest number of steps of a search
+ENOUGH = 0.05  # gain of the cost below which a search ends
 _DIFFERENCE = 0.02  # step of the derivatives, as a share of a parameter's scale
 
 
@@ -147,15 +151,74 @@ class Estimate:
         """Return the cost with another response of one side, roughly."""
         return solve(self.measured, self.columns(side, response), rounds=8).cost
 
+    def predicted(self, measured: Measurements) -> Array:
+        """Return the accelerations (m,) [m/s2] that the estimate predicts in other drives."""
+        scale = self.measured.largest / measured.largest
+        columns = [measured.acting(side, response) / scale
+                   for side, response in enumerate(self.responses)]  # fmt: skip
+        rows = np.column_stack([*columns, *measured.resistances()])
+        return np.asarray(rows @ self.linear.coefficients)
+
+    def explained(self, measured: Measurements) -> float:
+        """Return the share of the variation of the accelerations that is explained."""
+        left = measured.acceleration - self.predicted(measured)
+        spread = float(measured.acceleration.var()) if left.size else 0.0
+        return 1.0 - float(np.mean(left**2)) / spread if spread > 0.0 else 0.0
+
     def covers(self) -> bool:
         """Return whether no residual needs an explanation."""
-        return self.linear.deviation <= FLOOR and bool((1.0 - self.linear.weights).sum() < 1.0)
+        return self.linear.deviation <= FLOOR and bool((1.0 - self.linear.weights).mean() < FEW)
+
+
+@dataclass(frozen=True)
+class _Search:
+    """The named parameters of one side's response as a point, in units of their scales."""
+
+    estimate: Estimate
+    side: int
+    response: SideResponse
+    names: tuple[str, ...]
+
+    @property
+    def scales(self) -> Array:
+        """The scales (p,) of the parameters."""
+        rough = [max(0.1 * float(getattr(self.response, name)), 1e-9) for name in self.names]
+        return np.array(
+            [_SCALES.get(name, size) for name, size in zip(self.names, rough, strict=True)]
+        )
+
+    def point(self, response: SideResponse) -> Array:
+        """Return the point (p,) of a response."""
+        return np.array([getattr(response, name) for name in self.names]) / self.scales
+
+    def made(self, point: Array) -> SideResponse:
+        """Return the response at a point, within the parameters' bounds."""
+        values: dict[str, Any] = {
+            name: float(np.clip(value, *_BOUNDS.get(name, (1e-3, np.inf))))
+            for name, value in zip(self.names, point * self.scales, strict=True)
+        }
+        return replace(self.response, **values)
+
+    def solve(self, response: SideResponse, floor: float, weights: Array | None) -> Linear:
+        """Solve the linear part with another response."""
+        columns = self.estimate.columns(self.side, response)
+        return solve(self.estimate.measured, columns, floor=floor, weights=weights)
+
+    def slopes(self, point: Array, linear: Linear) -> Array:
+        """Return the derivatives (m, p) of the predicted accelerations."""
+        J = np.empty((linear.residual.size, point.size))
+        gain = linear.coefficients[self.side] / _DIFFERENCE
+        for i in range(point.size):
+            moved = point.copy()
+            moved[i] += _DIFFERENCE
+            column = self.estimate.columns(self.side, self.made(moved))[self.side]
+            J[:, i] = (column - linear.rows[:, self.side]) * gain
+        return J
 
 
 def refine(
-    estimate: Estimate, side: int, response: SideResponse, names: tuple[str, ...],
-    floors: Sequence[float] = ANNEALED,
-) -> Estimate:  # fmt: skip
+    estimate: Estimate, side: int, response: SideResponse, names: tuple[str, ...]
+) -> Estimate:
     """Fit the named parameters of one side's response, from the given one on.
 
     Args:
@@ -163,63 +226,31 @@ def refine(
         side: Side: 0 is driving, 1 is braking.
         response: Response to begin with.
         names: Names of its parameters that are fitted.
-        floors: Floors of the residuals' deviation [m/s2], one after the other: far from the
-            solution, residuals are large without being stray.
     """
-    scales = np.array([_scale(response, name) for name in names])
-
-    def made(point: Array) -> SideResponse:
-        return replace(response, **_values(names, point * scales))
-
-    point = np.array([getattr(response, name) for name in names]) / scales
-    linear: Linear | None = None
-    for floor in floors if names else floors[-1:]:
-        linear = solve(estimate.measured, estimate.columns(side, made(point)), floor=floor,
-                       weights=None if linear is None else linear.weights)  # fmt: skip
-        damping = 1e-2
-        for _ in range(15):
-            if not names:
-                break
-            J = _slopes(estimate, side, made, point, linear)
-            better = None
-            while better is None and damping < 1e4:
-                tried = np.array([getattr(made(point + _step(linear, J, damping)), name)
-                                  for name in names]) / scales  # fmt: skip
-                found = solve(estimate.measured, estimate.columns(side, made(tried)),
-                              weights=linear.weights, floor=floor)  # fmt: skip
+    search = _Search(estimate, side, response, names)
+    if not names:
+        return estimate.with_side(side, response, names, search.solve(response, FLOOR, None))
+    weights: Array | None = None
+    # Far from the solution residuals are large without being stray: the floor sinks.
+    for floor in ANNEALED:
+        linear, damping = search.solve(response, floor, weights), 1e-2
+        for _ in range(STEPS):
+            J, found = search.slopes(search.point(response), linear), linear
+            while damping < 1e4:
+                step = _step(linear, J, damping)
+                tried = search.made(search.point(response) + step)
+                found = search.solve(tried, floor, linear.weights)
                 if found.cost < linear.cost:
-                    better = found
-                else:
-                    damping *= 10.0
-            if better is None:
+                    break
+                damping *= 10.0
+            gained = linear.cost - found.cost
+            if gained <= 0.0:
                 break
-            gained, linear, point = linear.cost - better.cost, better, tried
-            damping = max(0.1 * damping, 1e-6)
-            if gained < 0.05:
+            response, linear, damping = tried, found, max(0.1 * damping, 1e-6)
+            if gained < ENOUGH:
                 break
-    assert linear is not None
-    return estimate.with_side(side, made(point), names, linear)
-
-
-def _scale(response: SideResponse, name: str) -> float:
-    return _SCALES.get(name) or max(0.1 * float(getattr(response, name)), 1e-9)
-
-
-def _values(names: Sequence[str], values: Array) -> dict[str, float]:
-    return {
-        name: float(np.clip(value, *_BOUNDS.get(name, (1e-3, np.inf))))
-        for name, value in zip(names, values, strict=True)
-    }
-
-
-def _slopes(estimate, side, made, point, linear):  # type: ignore[no-untyped-def]
-    J = np.empty((linear.residual.size, point.size))
-    for i in range(point.size):
-        moved = point.copy()
-        moved[i] += _DIFFERENCE
-        column = estimate.columns(side, made(moved))[side]
-        J[:, i] = (column - linear.rows[:, side]) * linear.coefficients[side] / _DIFFERENCE
-    return J
+        weights = linear.weights
+    return estimate.with_side(side, response, names, linear)
 
 
 def _step(linear: Linear, J: Array, damping: float) -> Array:
@@ -243,17 +274,9 @@ def half_widths(estimate: Estimate) -> tuple[float, float]:
     """
     linear, measured = estimate.linear, estimate.measured
     blocks = [linear.rows]
-    for side, (response, names) in enumerate(
-        zip(estimate.responses, estimate.names, strict=True)
-    ):
-        if names:
-            scales = np.array([_scale(response, name) for name in names])
-            point = np.array([getattr(response, name) for name in names]) / scales
-
-            def made(at, response=response, names=names, scales=scales):  # type: ignore[no-untyped-def]
-                return replace(response, **_values(names, at * scales))
-
-            blocks.append(_slopes(estimate, side, made, point, linear))
+    for side, response in enumerate(estimate.responses):
+        search = _Search(estimate, side, response, estimate.names[side])
+        blocks.append(search.slopes(search.point(response), linear))
     A = np.column_stack(blocks)
     A = A / np.maximum(np.abs(A).max(axis=0), 1e-12)
     weighted = A * linear.weights[:, None]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +15,6 @@ STANDSTILL = 0.05  # [m/s] speed below which steps are not fitted: brakes may ho
 SETTLING = 1.0  # [s] first part of a drive that is not fitted: earlier forces are unknown
 ALIKE = 0.9  # share of the positions' disagreement with the speeds that a sensor's lag explains
 INTEGRATED = 1e-6  # [m/s] disagreement below which the position is the speeds' integral
-
-Command = Callable[[Trace], Array]
-"""Function that returns the force (n,) [N] that the actuators of a drive are told."""
-
-
-def plain_command(trace: Trace) -> Array:
-    """Return the controller's force (n,) [N]: it is what the actuators are told."""
-    return trace.force
 
 
 @dataclass(frozen=True)
@@ -47,13 +39,13 @@ class Measurements:
 
     @classmethod
     def of(
-        cls, traces: Sequence[Trace], *, command: Command = plain_command, euler: bool = False
+        cls, traces: Sequence[Trace], *, map_friction: float = 0.0, euler: bool = False
     ) -> Measurements:
         """Collect traces.
 
         Args:
             traces: Traces of drives.
-            command: Function that returns the commands of a trace.
+            map_friction: Friction [N.s/m] that an inverse map subtracts from the force.
             euler: True if the vehicle does forward Euler steps: its resistance is that of the
                 speed at the beginning of a step, otherwise that of the mean speed.
         """
@@ -63,7 +55,7 @@ class Measurements:
         for row, trace in enumerate(traces):
             here = (row, slice(trace.force.size))
             before, after = trace.speed[:-1], trace.speed[1:]
-            commanded[here] = command(trace)
+            commanded[here] = trace.force - map_friction * before
             speed[here] = before if euler else 0.5 * (before + after)
             change[here] = (after - before) / trace.step_size
             settled = np.arange(before.size) * trace.step_size >= SETTLING - 1e-9
@@ -84,8 +76,12 @@ class Measurements:
 
     def acting(self, side: int, response: SideResponse) -> Array:
         """Return the force (m,) that acts over the largest command; braking is negative."""
-        force = response.force(self.commands[side], self.speed, self.step)[self.used]
-        return np.asarray(force / (self.largest if side == 0 else -self.largest))
+        return self.acting_everywhere(side, response)[self.used] / self.largest
+
+    def acting_everywhere(self, side: int, response: SideResponse) -> Array:
+        """Return the force (d, n) [N] that acts in each step; braking is negative."""
+        force = response.force(self.commands[side], self.speed, self.step)
+        return force if side == 0 else -force
 
     def resistances(self) -> list[Array]:
         """Return the terms (m,) of the resistance: constant, linear and quadratic."""

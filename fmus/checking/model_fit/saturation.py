@@ -14,9 +14,7 @@ from fmus.checking.model_fit.fitting import (
     STANDSTILL,
     Drive,
     Fit,
-    fit,
     least_squares,
-    prepare,
     resistance_rows,
 )
 
@@ -60,39 +58,6 @@ class ResistanceModel:
         """Return the force [N] that must act for this motion."""
         drag = self.friction * speed + self.constant + self.quadratic * speed * np.abs(speed)
         return self.mass * acceleration + drag
-
-
-def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
-    """Return the largest drive and brake force that arrive [N]; infinite if not reached.
-
-    M and alpha of the weaker tests predict the next level of force.
-
-    Args:
-        tests: Tests by level of force, from weak to strong.
-    """
-    limits = [np.inf, np.inf]
-    for weaker, group in zip(range(1, len(tests)), tests[1:], strict=True):
-        known = [prepare(trace, (limits[0], limits[1])) for g in tests[:weaker] for trace in g]
-        model = fit(known)
-        for side, sign in ((0, 1.0), (1, -1.0)):
-            if model is not None and not np.isfinite(limits[side]):
-                resisted = ResistanceModel.of(model, known)
-                limits[side] = min(
-                    _limit(trace, sign, resisted, before, strongest)
-                    for trace, before, strongest in zip(
-                        group, tests[weaker - 1], tests[-1], strict=True
-                    )
-                )
-    return limits[0], limits[1]
-
-
-def _limit(
-    trace: Trace, sign: float, model: ResistanceModel, weaker: Trace, strongest: Trace
-) -> float:
-    """Return the limit [N] that a test shows, unless far more arrives in the strongest test."""
-    limit = saturation([trace], sign, model, [weaker])
-    most = max((arrives for _, arrives in arriving(strongest, sign, model)), default=0.0)
-    return limit if most <= BEYOND * limit else np.inf
 
 
 def saturation(

@@ -13,6 +13,7 @@ from fmus.checking.model_fit.side_response import SideResponse
 
 CLEARLY = 10.0  # difference of the criterion that counts as evidence (Raftery 1995: very strong)
 ROUNDS = 4  # largest number of structures that are added to a side
+PROMISING = 6  # number of structures that are fitted in a round, after a rough comparison
 LAGS = (0.02, 0.1, 0.3, 0.6, 1.0)  # [s] from which a search begins
 DELAYS = (0.0, 0.05, 0.2, 0.5)  # [s] likewise
 SHARES = (0.12, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 0.95)  # limits over the largest command
@@ -24,12 +25,15 @@ DEFAULT = SideResponse()
 Candidates = Iterator[tuple[list[SideResponse], tuple[str, ...]]]
 
 
-def identify_sides(measured: Measurements, *, largest_full: tuple[float, float]) -> Estimate:
+def identify_sides(
+    measured: Measurements, *, full: tuple[float, float], coarse: bool = False
+) -> Estimate:
     """Return the simplest estimate that explains the measurements.
 
     Args:
         measured: Measurements.
-        largest_full: Forces [N] of fully pressed pedals, or the largest ones of the tests.
+        full: Forces [N] of fully pressed pedals, or the largest ones of the tests.
+        coarse: True to look only for lag, dead time, and limits of force and rate.
     """
     best = Estimate.of(measured)
     for side in (0, 1, 0):
@@ -42,7 +46,8 @@ def identify_sides(measured: Measurements, *, largest_full: tuple[float, float])
         before = best
         for side in (0, 1):
             if not best.covers():
-                best = _grown(best, side, largest_full[side])
+                structures = _essential if coarse else _candidates
+                best = _grown(best, side, structures(best, side, full[side]))
         if best is before:
             break
     return _pruned(best)
@@ -58,13 +63,12 @@ def _criterion(estimate: Estimate) -> float:
     return estimate.linear.cost + float(penalty) * estimate.size
 
 
-def _grown(estimate: Estimate, side: int, full: float) -> Estimate:
+def _grown(estimate: Estimate, side: int, candidates: Candidates) -> Estimate:
     """Return the estimate with one more structure on a side, or the same if none is better."""
     tried = [
-        refine(estimate, side, _best(estimate, side, starts), names)
-        for starts, names in _candidates(estimate, side, full)
+        refine(estimate, side, _best(estimate, side, starts), names) for starts, names in candidates
     ]
-    found = min(tried, key=_criterion)
+    found = min(tried, key=_criterion, default=estimate)
     if _criterion(found) > _criterion(estimate) - CLEARLY:
         return estimate
     other = 1 - side
@@ -73,14 +77,24 @@ def _grown(estimate: Estimate, side: int, full: float) -> Estimate:
     )
 
 
-def _candidates(estimate: Estimate, side: int, full: float) -> Candidates:
-    """Generate the structures that a side may have in addition, each with values to begin with."""
+def _essential(estimate: Estimate, side: int, _full: float) -> Candidates:
+    """Generate the limits of force and rate that a side may have in addition."""
     now, names = estimate.responses[side], estimate.names[side]
     top = float(estimate.measured.commands[side].max())
+    if "limit" not in names:
+        yield [replace(now, limit=part * top) for part in SHARES], (*names, "limit")
+    if "rate" not in names:
+        prompt = replace(now, lag=0.0, second=0.0, delay=0.0, release=None)
+        rest = tuple(name for name in names if name not in ("lag", "second", "delay", "release"))
+        yield [replace(prompt, rate=part * top) for part in RATES], (*rest, "rate")
 
-    def others(*gone: str) -> tuple[str, ...]:
-        return tuple(name for name in names if name not in gone)
 
+def _candidates(estimate: Estimate, side: int, full: float) -> Candidates:
+    """Generate the structures that a side may have in addition, each with values to begin with."""
+    yield from _essential(estimate, side, full)
+    now, names = estimate.responses[side], estimate.names[side]
+    top = float(estimate.measured.commands[side].max())
+    rest = tuple(name for name in names if name not in ("lag", "delay"))
     if "second" not in names and now.release is None:
         turns = 1.0 / (2.0 * np.pi * np.array(FREQUENCIES))
         shaken = [
@@ -91,28 +105,26 @@ def _candidates(estimate: Estimate, side: int, full: float) -> Candidates:
         total = now.lag + now.delay
         twice = [replace(now, lag=total, second=total**2 * part, delay=0.0)
                  for part in (0.05, 0.12, 0.2, 0.25)]  # fmt: skip
-        yield shaken, (*others("lag", "delay"), "lag", "second")
-        yield twice, (*others("lag", "delay"), "lag", "second")
+        yield shaken, (*rest, "lag", "second")
+        yield twice, (*rest, "lag", "second")
     if "release" not in names and "second" not in names:
         yield [replace(now, release=now.lag * part) for part in (0.3, 0.7, 1.5, 3.0)], (
             *names, "release")  # fmt: skip
-    for late in (False, True):
-        if "limit" not in names:
-            limits = [replace(now, limit=part * top, late_limits=late) for part in SHARES]
-            yield limits, (*names, "limit")
-        if "power" not in names and side == 0:
-            kinds = SHARES[1::2] if "limit" not in names else (now.limit / top,)
+    if "limit" not in names:
+        late = [replace(now, limit=part * top, late_limits=True) for part in SHARES]
+        yield late, (*names, "limit")
+    if "power" not in names and side == 0:
+        limits = (now.limit / top,) if "limit" in names else SHARES[1::2]
+        unlimited = tuple(name for name in names if name != "limit")
+        for behind in (False, True):
             powers = [
-                replace(now, limit=part * top, power=part * top * speed, late_limits=late)
-                for part in kinds
-                for speed in SPEEDS
+                replace(now, limit=part * top, power=part * top * v, late_limits=behind)
+                for part in limits
+                for v in SPEEDS
             ]
-            yield powers, (*others("limit"), "limit", "power")
+            yield powers, (*unlimited, "limit", "power")
     if "rate" not in names:
-        rates = [replace(now, rate=part * top) for part in RATES]
-        yield rates, (*names, "rate")
-        prompt = [replace(start, lag=0.0, second=0.0, delay=0.0, release=None) for start in rates]
-        yield prompt, (*others("lag", "second", "delay", "release"), "rate")
+        yield [replace(now, rate=part * top) for part in RATES], (*names, "rate")
     if "exponent" not in names:
         curved = [replace(now, exponent=part, full=full) for part in (0.7, 1.4, 2.0)]
         yield curved, (*names, "exponent")

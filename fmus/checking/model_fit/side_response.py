@@ -102,13 +102,15 @@ def _convolved(command: Array, kernel: Array) -> Array:
 
 def _limited_rate(target: Array, most: float) -> Array:
     """Return the mean (d, n) of each step of a force that follows by at most ``most`` per step."""
-    reached, means = np.zeros(target.shape[0]), np.empty_like(target)
-    for k in range(target.shape[1]):
-        gap = target[:, k] - reached
-        share = np.minimum(np.abs(gap) / most, 1.0)  # of the step until the target is reached
-        change = np.clip(gap, -most, most)
-        means[:, k] = reached + change * (1.0 - 0.5 * share)
-        reached = reached + change
+    reached, means = np.zeros(target.shape[0]), target.copy()
+    for k, wanted in enumerate(target.T):
+        gap = wanted - reached
+        size = np.abs(gap)
+        if size.any():
+            change = gap * np.minimum(1.0, most / np.maximum(size, 1e-300))
+            # The share of the step until the target is reached is at most 1.
+            means[:, k] = reached + change * (1.0 - 0.5 * np.minimum(size / most, 1.0))
+            reached = reached + change
     return means
 
 

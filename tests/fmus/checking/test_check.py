@@ -204,7 +204,7 @@ def test_noise_is_not_reproducible(car):
     noisy = iter(range(10))
 
     def opener(_step):
-        made = car(noise=0.01)(None)
+        made = car(noise=0.01, seed=1)(None)
         seed = next(noisy)
         start = made.start
 
@@ -216,7 +216,7 @@ def test_noise_is_not_reproducible(car):
         return made
 
     assert finding(of(opener), "reproducible").verdict == "warn"
-    assert finding(of(car(noise=0.01)), "reproducible").verdict == "pass"
+    assert finding(of(car(noise=0.01, seed=1)), "reproducible").verdict == "pass"
 
 
 def test_a_coarse_solver_fails_with_the_step_that_mends_it(zoo):

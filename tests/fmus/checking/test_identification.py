@@ -75,21 +75,21 @@ def test_the_intervals_hold_the_truth_for_a_noisy_car(car):
 
 def test_saturation_is_reported_and_kept_out_of_the_fit(car):
     found = identified(car(drive_limit=3000.0, brake_limit=5000.0, lag=0.1))
-    assert found.drive_limit == pytest.approx(3000.0, rel=0.02)
-    assert found.brake_limit == pytest.approx(5000.0, rel=0.02)
+    assert found.model.drive.limit * 1000.0 == pytest.approx(3000.0, rel=0.02)
+    assert found.model.brake.limit * 1000.0 == pytest.approx(5000.0, rel=0.02)
     assert found.model.mass == pytest.approx(1000.0, rel=0.005)
-    assert any("run with --vehicle-force-limit" in remark for remark in found.remarks)
+    assert any("3000 N of drive force arrive" in remark for remark in found.remarks)
 
 
 def test_a_car_without_limits_has_none(car):
-    found = identified(car(drag=1.0))
-    assert found.drive_limit is None
-    assert found.brake_limit is None
+    found = identified(car(drag=1.0)).model
+    assert found.drive.limit is found.drive.power_from is found.drive.rate is None
+    assert found.brake.limit is found.brake.rate is None
 
 
 def test_resistance_that_is_not_linear_is_said_with_its_terms(car):
     quadratic, constant = identified(car(drag=3.0)), identified(car(constant=180.0))
-    assert quadratic.model.r_squared < 1.0 - 1e-5
+    assert quadratic.model.r_squared > 0.9999
     (factor,) = re.findall(r"([\d.]+) N.s²/m² v²", " ".join(quadratic.remarks))
     assert float(factor) == pytest.approx(3.0, rel=0.1)
     (force,) = re.findall(r"([\d.]+) N \+", " ".join(constant.remarks))
@@ -126,7 +126,7 @@ def test_a_car_that_cannot_start_at_a_speed_is_driven_up_to_it(zoo):
     ("parameters", "words"),
     [
         ({"sign": -1.0, "friction": 0.0}, "does not drive off|backwards|expected a vehicle"),
-        ({"drive_limit": 0.0, "brake_limit": 0.0}, "move it by 0 m/s"),
+        ({"drive_limit": 0.0, "brake_limit": 0.0}, "change its speed by 0 m/s"),
     ],
 )
 def test_what_is_no_vehicle_is_refused_in_one_line(car, parameters, words):
@@ -162,7 +162,7 @@ def pedals(throttle=4000.0, brake=8000.0):
 @pytest.mark.parametrize(("lag", "brake_lag"), [(0.4, 0.1), (0.05, 0.3)])
 def test_drive_and_brake_have_a_lag_each(car, lag, brake_lag):
     found = identified(car(lag=lag, brake_lag=brake_lag))
-    for side, true in ((found.sides.drive, lag), (found.sides.brake, brake_lag)):
+    for side, true in ((found.model.drive, lag), (found.model.brake, brake_lag)):
         assert side.lag + side.delay == pytest.approx(true, rel=0.15, abs=0.02)
         assert side.mass == pytest.approx(1000.0, rel=0.03)
     (remark,) = remarks_of(found, "and brakes")
@@ -171,8 +171,8 @@ def test_drive_and_brake_have_a_lag_each(car, lag, brake_lag):
 
 def test_a_brake_pedal_weaker_than_declared_is_told_the_line(car):
     found = identified(car(brake_gain=0.5), profile=pedals())
-    assert found.sides.drive.mass == pytest.approx(1000.0, rel=0.02)
-    assert found.sides.brake.mass == pytest.approx(2000.0, rel=0.03)
+    assert found.model.drive.mass == pytest.approx(1000.0, rel=0.02)
+    assert found.model.brake.mass == pytest.approx(2000.0, rel=0.03)
     (remark,) = remarks_of(found, "brakes like")
     strength, other = map(float, re.findall(r"full_force = ([\d.]+)", remark))
     assert strength == pytest.approx(4000.0, rel=0.05)

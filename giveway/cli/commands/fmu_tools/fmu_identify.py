@@ -10,7 +10,14 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from fmus import FmuError
-from fmus.checking import Identification, Mpc, identify, opener_of, require_converged
+from fmus.checking import (
+    Identification,
+    Mpc,
+    identify,
+    opener_of,
+    require_converged,
+    without_guards,
+)
 from fmus.checking.profile_file import profile_text, with_model
 from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -36,14 +43,15 @@ def identify_command(
 
     Raises:
         ConfigError: a file, a value or the profile cannot be used.
-        VehicleError: the FMU failed, or does not respond like a vehicle.
+        VehicleError: the FMU failed, does not respond like a vehicle, or the fit is poor.
         ResultsError: a file cannot be written.
     """
     require_fmu(path)
     out, step, horizon, force_limit, _, picture, force = tests
     require_number("--step", step, 0.0, 1.0, "s")
     require_number("--horizon", horizon, 1, 200, "steps")
-    require_number("--force-limit", force_limit, 0.0, 1e6, "N")
+    if force_limit is not None:
+        require_number("--force-limit", force_limit, 0.0, 1e7, "N")
     for speed in speeds or (-1.0,):
         require_number("--speeds", speed, -1e-300, 70.0, "m/s")
     if profile is None and out is not None and out.exists():
@@ -60,7 +68,7 @@ def identify_command(
     console.print(_summary(path, found))
     for remark in found.remarks:
         console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False, soft_wrap=True)
-    if out is not None:
+    if out is not None and not found.poor:
         text = with_model(_text(path, profile, chosen), found.model)
         with writing(out, "name another with -o"):
             out.write_text(text, encoding="utf-8")
@@ -70,6 +78,11 @@ def identify_command(
 
         save_picture(identification_figure(found, title=_title(path, found)), picture)
         print_place(console, "Picture", picture)
+    if found.poor:
+        raise VehicleError(
+            f"{path}: the fit is poor: {found.poor}; no model is written. The picture and 'giveway "
+            "fmu check' show what it does instead"
+        )
 
 
 def _same(out: Path, profile: Path | None) -> bool:
@@ -84,11 +97,12 @@ def _identified(
     mpc: Mpc,
     speeds: Sequence[float],
 ) -> Identification:
-    opener = opener_of(path, step_size=mpc.step_size, profile=profile)
+    # A filtered speed would end hard drives: the guards' judgement is that of 'check'.
+    opener = opener_of(path, step_size=mpc.step_size, profile=without_guards(profile))
     columns = (TextColumn("Step tests"), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, console=console, transient=True) as progress:
         task = progress.add_task("")
-        require_converged(opener, fmu_step, path=path, force=0.5 * mpc.force_limit)
+        require_converged(opener, fmu_step, path=path, force=0.5 * (mpc.force_limit or 8000.0))
         return identify(
             opener,
             mpc,
@@ -111,24 +125,32 @@ def _summary(path: Path, found: Identification) -> Table:
         box=None,
         pad_edge=False,
     )
-    for label, value, unit in (
+    rows = [
         ("M", f"{model.mass:.6g}", f"kg ± {_small(mass)} (95 %)"),
         ("alpha", f"{model.friction:.6g}", f"N.s/m ± {_small(friction)} (95 %)"),
-        ("Actuator lag", f"{model.lag:.3g}", "s"),
-        ("Dead time", f"{model.delay:.3g}", "s"),
-        *(
-            (f"{name} alone", f"{side.mass:.4g}", f"kg, {side.lag:.2g} s lag, {side.delay:.2g} s")
-            for name, side in (("Drive", found.sides.drive), ("Brake", found.sides.brake))
-            if side is not None
-        ),
+    ]
+    sides = (("Drive", model.drive), ("Brake", model.brake))
+    for (name, side), half in zip(sides, found.side_intervals, strict=True):
+        if side is None:
+            rows.append((name, "?", "not determined by the tests"))
+            continue
+        rows += [
+            (f"{name}: M", f"{side.mass:.5g}", f"kg ± {_small(half)} (95 %)"),
+            ("  lag, dead time", f"{side.lag:.2g}, {side.delay:.2g}", "s"),
+            ("  largest force over M", _seen(side.limit), "m/s²"),
+            ("  fastest change of it", _seen(side.rate), "m/s³"),
+        ]
+        if side.power_from is not None:
+            rows.append(("  constant power from", f"{side.power_from:.3g}", "m/s"))
+    rows += [
+        ("Lag of the speed output", f"{model.sensor_lag:.2g}", "s"),
         ("Largest force of the tests", f"{found.largest_force:.0f}", "N"),
-        ("Drive force that arrives", _limit(found.drive_limit), "N"),
-        ("Brake force that arrives", _limit(found.brake_limit), "N"),
         ("R² in a drive not fitted", f"{model.r_squared:.4f}", ""),
         ("Speed error, one step", _small(model.speed_error), "m/s RMS"),
         (f"Position error, {model.horizon:g} s", _small(model.position_error), "m (95 %)"),
-    ):
-        table.add_row(label, value, unit)
+    ]
+    for row in rows:
+        table.add_row(*row)
     return table
 
 
@@ -137,15 +159,14 @@ def _small(value: float) -> str:
     return f"{value:.2g}" if value > 1e-9 else "0"
 
 
-def _limit(limit: float | None) -> str:
-    return "all" if limit is None else f"{limit:.0f}"
+def _seen(limit: float | None) -> str:
+    return "none seen" if limit is None else f"{limit:.3g}"
 
 
 def _title(path: Path, found: Identification) -> str:
     model = found.model
     return (
-        f"{printable(path.name, 60)}: M = {model.mass:.5g} kg, alpha = {model.friction:.4g} N s/m, "
-        f"lag {model.lag:.2g} s, dead time {model.delay:.2g} s"
+        f"{printable(path.name, 60)}: M = {model.mass:.5g} kg, alpha = {model.friction:.4g} N s/m"
     )
 
 

@@ -1,0 +1,81 @@
+"""M and alpha of the paper's model, for both sides together.
+
+The model is the MPC's own one-step prediction, M (v+ - v) / dt + alpha v = F (Yang & Özgüner 2019,
+eq. (3)), where F is the mean over the step of the force that acts behind each side's response.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fmus.checking.manoeuvres import Trace
+from fmus.checking.model_fit.estimation import Estimate
+from fmus.checking.model_fit.measurements import Measurements
+from fmus.checking.model_fit.side_response import Array
+
+NORMAL_95 = 1.96  # half width of the interval of 95 %, in standard errors
+
+
+@dataclass(frozen=True)
+class CommonModel:
+    """M v' + alpha v = F.
+
+    Attributes:
+        mass: M [kg].
+        friction: alpha [N.s/m].
+        intervals: Half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
+        residual: Root mean square [m/s2] of the accelerations that are not explained.
+    """
+
+    mass: float
+    friction: float
+    intervals: tuple[float, float]
+    residual: float
+
+
+def fit_common(
+    traces: Sequence[Trace], estimate: Estimate, map_friction: float
+) -> CommonModel | None:
+    """Fit M and alpha by least squares, or return None if forces do not move the vehicle.
+
+    Args:
+        traces: Traces of the tests.
+        estimate: Estimate of both sides, from the same traces.
+        map_friction: Friction [N.s/m] that an inverse map subtracts from the force.
+    """
+    measured = Measurements.of(traces, map_friction=map_friction, euler=True)
+    acting = sum(measured.acting(side, response) * measured.largest
+                 for side, response in enumerate(estimate.responses))  # fmt: skip
+    v, y = measured.speed[measured.used], measured.acceleration
+    X = np.column_stack((acting + map_friction * v, -v))
+    # Noise in v is also in v': the mean speed of the step, an instrument, is free of this.
+    Z = np.column_stack((X[:, 0], -v - 0.5 * measured.step * y)) * estimate.linear.weights[:, None]
+    solution = np.linalg.solve(Z.T @ X, Z.T @ y)
+    if solution[1] < 0.0:  # a negative friction would drive: fit without friction
+        solution = np.array([Z[:, 0] @ y / (Z[:, 0] @ X[:, 0]), 0.0])
+    if solution[0] <= 0.0:
+        return None
+    mass, friction = 1.0 / solution[0], solution[1] / solution[0]
+    left = y - X @ solution
+    slopes = np.array([[-(mass**2), 0.0], [-friction * mass, mass]])
+    covariance = slopes @ _covariance(X, Z, left, measured.drive) @ slopes.T
+    half_mass, half_friction = NORMAL_95 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    return CommonModel(
+        float(mass), float(friction), (float(half_mass), float(half_friction)),
+        float(np.sqrt(estimate.linear.weights @ left**2 / estimate.linear.weights.sum())),
+    )  # fmt: skip
+
+
+def _covariance(X: Array, Z: Array, left: Array, group: NDArray[np.int_]) -> Array:
+    """Return the covariance (2, 2) of the solution, with errors that are correlated in a drive.
+
+    It is that of clusters (Liang & Zeger 1986).
+    """
+    bread = np.linalg.inv(Z.T @ X)
+    scores = np.array([Z[group == g].T @ left[group == g] for g in np.unique(group)])
+    meat = scores.T @ scores * len(scores) / max(len(scores) - 1, 1)
+    return np.asarray(bread @ meat @ bread.T)
