@@ -36,7 +36,7 @@ from giveway.cli.screen.printing import print_place, writing
 from giveway.errors import VehicleError, retold
 from giveway.reports.passport_page import Section, passport_page
 
-FORCE_LIMIT = 8000.0  # [N] largest force of the tests, as in check and identify
+FORCE_LIMIT = 8000.0  # [N] largest force of the tests, as in check
 STEP, HORIZON = 0.05, 15  # [s] control step, and steps of the MPC's horizon
 DRIVEN = ((0.0, 1.0), (0.5, 3.0), (0.0, 2.0), (-0.5, 4.0))  # shares of the force, durations [s]
 
@@ -112,9 +112,9 @@ def _checked(
 
 
 def _identified(path: Path, profile: VehicleProfile) -> tuple[Identification | None, str]:
-    opener = opener_of(path, step_size=STEP, profile=profile)
+    opener = opener_of(path, step_size=STEP, profile=without_guards(profile))
     try:
-        mpc = Mpc(STEP, HORIZON, FORCE_LIMIT)
+        mpc = Mpc(STEP, HORIZON)
         return identify(opener, mpc, path=path, profile=profile), ""
     except FmuError as error:
         return None, plain(error)
@@ -165,8 +165,9 @@ def _model(found: Identification) -> dict[str, Any]:
         "mass_interval": mass,
         "friction_interval": friction,
         "largest_force": found.largest_force,
-        "drive_force_limit": found.drive_limit,
-        "brake_force_limit": found.brake_limit,
+        "drive_mass_interval": found.side_intervals[0],
+        "brake_mass_interval": found.side_intervals[1],
+        "poor": found.poor,
         "remarks": list(found.remarks),
     }
 
