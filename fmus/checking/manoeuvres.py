@@ -22,7 +22,7 @@ profile says. The vehicle's own step, for which a force is held, does not change
 """
 
 
-UNGUARDED = Limits(speed=1e9, position_jump=1e9)
+UNGUARDED = Limits(speed=1e9, position_jump=1e9, acceleration=1e12)
 
 
 def without_guards(profile: VehicleProfile) -> VehicleProfile:

@@ -5,6 +5,13 @@ from math import isfinite
 from fmus.profile.vehicle_profile import Limits
 
 DRIVEN = 200.0  # [N] force to which every car reacts
+# Share of [limits] acceleration from which a warning is given. Tyres on dry asphalt brake a car
+# with up to 12 m/s2 (friction coefficient 1.2): 0.3 * 50 m/s2 = 15 m/s2 is more than theirs. The
+# limit itself, 50 m/s2 = 5 g, is the braking of a Formula 1 car with its downforce.
+UNUSUAL = 0.3
+JERKY = 0.5  # [m/s] change of speed in a step that quantised or noisy outputs may have
+STOPPING = 2.0  # [m/s] speed from which brakes with dry friction may stop a vehicle within a step
+STILL = 0.05  # [m/s] speed of a vehicle that stands
 
 
 class Guard:
@@ -53,6 +60,36 @@ class Guard:
             f"{self._names['position']} = {position:.6g} m at {at:.10g} s, {jump:+.6g} m from "
             f"where the speed leads; expected within {self._limits.position_jump:g} m; check the "
             "units of position and speed, or raise position_jump in [limits]"
+        )
+
+    def sudden(
+        self, before: float, speed: float, force: float, step: float, at: float
+    ) -> tuple[str, str]:
+        """Return a fault and a warning about a change of speed that no car has; both may be empty.
+
+        A vehicle that is braked may come to a standstill within a step.
+
+        Args:
+            before: Speed at the begin of the step [m/s].
+            speed: Speed at its end [m/s].
+            force: Force held over the step [N].
+            step: Duration of the step [s].
+            at: Time at its end [s].
+        """
+        rate, limit = abs(speed - before) / step, self._limits.acceleration
+        stops = force < 0.0 and abs(speed) <= STILL and abs(before) <= STOPPING
+        if rate <= UNUSUAL * limit or abs(speed - before) <= JERKY or stops:
+            return "", ""
+        text = (
+            f"{self._names['speed']} = {speed:.6g} m/s at {at:.10g} s, {before:.6g} m/s {step:g} s "
+            f"before: {rate:.4g} m/s2"
+        )
+        if rate <= limit:
+            return "", self.once("sudden", f"{text}: more than any road vehicle's tyres can")
+        return (
+            f"{text}; expected at most {limit:g} m/s2; check its unit and the FMU's parameters, or "
+            "raise acceleration in [limits]",
+            "",
         )
 
     def disagreement(self, moved: float, way: float, duration: float, at: float) -> str:

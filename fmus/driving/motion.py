@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite, isnan, nan
 
 from fmus.driving.agreement import Agreement
-from fmus.driving.guards import DRIVEN, Guard
+from fmus.driving.guards import DRIVEN, UNUSUAL, Guard
 from fmus.errors import FmuOutputError
 from fmus.profile.preparation import Prepared
 from fmus.profile.wiring import Wiring
@@ -40,6 +40,7 @@ class Motion:
         self._bounds = prepared.bounds
         limits = prepared.profile.limits
         self._limit, self._jump = limits.speed, limits.position_jump
+        self._sudden = UNUSUAL * limits.acceleration
         self._guard = Guard(limits, self.names)
         self._trusted = prepared.ours
         self._last_effective = 0.0  # [N] force under which the speed last changed
@@ -117,6 +118,11 @@ class Motion:
         speed, position = self.speed, self.position
         way, slack = 0.5 * duration * (before + speed), 0.5 * duration * abs(speed - before)
         self._judge(position - (here + way), slack, time)
+        if abs(speed - before) > self._sudden * duration:
+            fault, warning = self._guard.sudden(before, speed, force, duration, time)
+            if fault:
+                raise FmuOutputError(f"{self._path}: {fault}")
+            self._note(warning)
         faster = abs(speed - before) > _STILL
         if faster or isnan(self._last_effective):
             self._last_effective = force

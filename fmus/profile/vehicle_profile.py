@@ -100,6 +100,8 @@ class Limits(Table):
     speed: float = Field(100.0, gt=0, le=1e9)  # [m/s] largest absolute value
     # [m] largest difference between position and integrated speed
     position_jump: float = Field(1.0, gt=0, le=1e9)
+    # [m/s2] largest mean acceleration or deceleration over a step; 0.3 times as much is a warning
+    acceleration: float = Field(50.0, gt=0, le=1e12)
     # [s] time without any change while driven, after which a warning is given
     frozen_time: float = Field(2.0, gt=0, le=1e6)
 

@@ -139,7 +139,7 @@ def _require_sound(
         return
     try:
         result = convergence(
-            opener_of(path, step_size=time_step, profile=profile),
+            opener_of(path, step_size=time_step, profile=_without_bound(profile)),
             prepare(path, step_size=time_step, profile=profile).step_plan.step,
             force=force,
             start_speed=speed,
@@ -157,6 +157,12 @@ def _require_sound(
             f"write {gain_line(profile, 'inputs', role, -1.0, '')}, or in [outputs.speed]"
         )
     _sound.add(key)
+
+
+def _without_bound(profile: VehicleProfile) -> VehicleProfile:
+    """Return the profile without a bound of the acceleration, which diverging solvers exceed."""
+    limits = profile.limits.model_copy(update={"acceleration": 1e12})
+    return profile.model_copy(update={"limits": limits})
 
 
 def model_margin(config: EgoRunConfig, time_step: float) -> float:

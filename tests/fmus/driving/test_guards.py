@@ -85,7 +85,7 @@ def test_the_limits_are_the_profiles(zoo, open_car, limits, said):
 
 def test_a_hard_stop_within_a_step_is_no_jump(zoo, open_car):
     """A trapezoid is off by up to half the speed's change times the step."""
-    car = open_car(zoo.car(values={"mass": 100.0}), limits={"position_jump": 1e-9})
+    car = open_car(zoo.car(values={"mass": 1000.0}), limits={"position_jump": 1e-9})
     car.start(speed=30.0)
     drive(car, force=-20_000.0, steps=2)
 
@@ -182,6 +182,42 @@ def test_the_overshoot_of_a_stop_is_no_reversing(zoo, open_car):
     drive(car, force=-800.0)
     assert -0.05 < car.speed <= 0.0
     assert car.warnings == []
+
+
+# ---- speeds that no car has ----
+
+
+def test_a_speed_that_changes_as_no_car_is_a_warning_once(zoo, open_car):
+    car = open_car(zoo.car(values={"mass": 100.0, "friction": 0.0}))
+    car.start(speed=4.0)
+    drive(car, force=1400.0, steps=5)
+    assert car.warnings == []
+    drive(car, force=2000.0, steps=5)
+    (warning,) = car.warnings
+    assert re.search(r"speed = 8\.5 m/s at 0\.3 s, 7\.5 m/s 0\.05 s before: 20 m/s2: more", warning)
+
+
+@pytest.mark.parametrize("force", [6000.0, -6000.0])
+def test_a_speed_that_jumps_ends_it(zoo, open_car, force):
+    path = zoo.car(values={"mass": 100.0, "friction": 0.0})
+    car = open_car(path)
+    car.start(speed=4.0)
+    with pytest.raises(FmuOutputError, match=r"60 m/s2; expected at most 50 m/s2"):
+        car.step(force)
+    wider = open_car(path, limits={"acceleration": 70.0})
+    wider.start(speed=4.0)
+    wider.step(force)
+
+
+def test_brakes_may_stop_it_within_a_step_and_noise_may_shake_it(zoo, open_car):
+    car = open_car(zoo.car(values={"mass": 100.0, "holds": 1.0}))
+    car.start(speed=1.8)
+    drive(car, force=-9000.0, steps=5)
+    assert (car.speed, car.warnings) == (0.0, [])
+    fast = open_car(zoo.car(values={"mass": 100.0, "friction": 0.0}), step=0.005)
+    fast.start(speed=4.0)
+    drive(fast, force=6000.0, steps=2)
+    assert fast.warnings == []
 
 
 # ---- the ranges that the FMU declares for its inputs ----

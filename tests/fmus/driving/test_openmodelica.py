@@ -36,6 +36,7 @@ def profile(**fmu):
         {
             "fmu": fmu,
             "inputs": {"force": {"variable": "f"}},
+            "limits": {"acceleration": 1e4},  # a mass of 1 kg on a spring
             "outputs": {"speed": {"variable": "mass.v"}, "position": {"variable": "mass.s"}},
         },
         "the test's profile",
