@@ -52,8 +52,8 @@ def beside_fmpy(prepared: Prepared, forces: Sequence[float]) -> Beside:
     """
     wiring = prepared.wiring
     used = [*wiring.read[: len(wiring.outputs)], *(wire.channel for wire in wiring.inputs)]
-    if any(not channel.variable.scalar for channel in used):
-        return Beside(problem="FMPy takes no single elements of arrays")
+    if any(len(c.parts) > 1 or not c.variable.scalar for c in used):
+        return Beside(problem="FMPy takes no single elements of arrays, and no shares or means")
     with tempfile.TemporaryDirectory(prefix="beside-fmpy-", ignore_cleanup_errors=True) as scratch:
         folder = Path(scratch)
         (folder / "order").write_bytes(pickle.dumps((prepared, prepared.path.resolve(), forces)))

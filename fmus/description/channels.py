@@ -34,7 +34,7 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
             )
         raise FmuVariableError(
             f"{here} variable '{name}' is an array of {variable.size}; name one element, "
-            f"'{name}[1]' to '{name}[{variable.size}]'"
+            f"'{name}[1]' to '{name}[{variable.size}]', or all: variables = [\"{name}\"]"
         )
     element = _ELEMENT.fullmatch(name)
     if element is not None and element["name"] in variables:
@@ -43,6 +43,19 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
     close = get_close_matches(name, variables, n=1)
     hint = f"did you mean '{close[0]}'?" if close else f"it has {known_names(variables)}"
     raise FmuVariableError(f"{here} no variable '{name}' in the FMU; {hint}")
+
+
+def find_channels(model: Model, place: str, name: str) -> list[Channel]:
+    """Return the variable or element that is called ``name``, or all elements of an array.
+
+    Raises:
+        FmuVariableError: there is no such variable.
+    """
+    array = model.variables.get(name)
+    if array is None or array.size < 2:
+        return [find_channel(model, place, name)]
+    _single(f"{model.path}: {place}", array)
+    return [Channel(array, element) for element in range(array.size)]
 
 
 def _single(here: str, variable: Variable) -> Variable:

@@ -1,5 +1,7 @@
 """The description of an FMU: its interfaces, its variables, their units."""
 
+from __future__ import annotations
+
 import enum
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -117,6 +119,33 @@ class Channel:
             if self.variable.shape
             else self.variable.name
         )
+
+    @property
+    def parts(self) -> tuple[tuple[Channel, float], ...]:
+        """The single channels, each with its factor."""
+        return ((self, 1.0),)
+
+
+@dataclass(frozen=True)
+class JointChannel(Channel):
+    """One number for several variables: each is set to its share, or their mean is read.
+
+    ``variable`` and ``element`` are those of the first of them.
+    """
+
+    joined: tuple[tuple[Channel, float], ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Names of all of them, or the name of an array of which they are all elements."""
+        if len(self.joined) == self.variable.size > 1:
+            return self.variable.name
+        return ", ".join(channel.name for channel, _factor in self.joined)
+
+    @property
+    def parts(self) -> tuple[tuple[Channel, float], ...]:
+        """The single channels, each with its factor."""
+        return self.joined
 
 
 @dataclass(frozen=True)

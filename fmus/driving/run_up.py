@@ -58,7 +58,8 @@ def run_up(vehicle: Drivable, speed: float) -> float:
 def _idle(vehicle: Drivable) -> str:
     """Return the inputs that the profile does not use, as the end of a message."""
     prepared = vehicle.prepared
-    driven = {wire.channel.variable.name for wire in prepared.wiring.inputs}
+    wires = prepared.wiring.inputs
+    driven = {channel.variable.name for wire in wires for channel, _ in wire.channel.parts}
     idle = [
         f"{v.name} = {v.start or '?'}"
         for v in prepared.model.variables.values()

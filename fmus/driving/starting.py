@@ -47,10 +47,11 @@ def reach(vehicle: Drivable, speed: float) -> float | None:
     wiring = vehicle.prepared.wiring
     name = names_of(wiring)["speed"]
     if wiring.initial_speed is not None:
+        radius = " and the radius" if vehicle.prepared.profile.outputs.speed.radius else ""
         raise FmuStartError(
             f"{vehicle.path}: {wiring.initial_speed.channel.name} was set to start at {speed:g} "
-            f"m/s, but {name} = {vehicle.speed:.6g} m/s; check the units of both, or leave out "
-            "[initial.speed]"
+            f"m/s, but {name} = {vehicle.speed:.6g} m/s; check the units of both{radius}, or leave "
+            "out [initial.speed]"
         )
     if not vehicle.prepared.profile.initial.run_up or speed < 0.0:
         raise FmuStartError(

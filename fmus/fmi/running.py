@@ -61,7 +61,8 @@ class Instance(ABC):
         self.stop()
         self.messages.take()
         ready = settings(self.calls, values)
-        of_inputs = {c.variable.name for c in values if c.variable.causality == "input"}
+        single = (part.variable for channel in values for part, _factor in channel.parts)
+        of_inputs = {variable.name for variable in single if variable.causality == "input"}
         self._before_start = [one for one in ready if one.name not in of_inputs]
         self._at_start = [one for one in ready if one.name in of_inputs]
         try:

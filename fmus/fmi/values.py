@@ -23,7 +23,12 @@ def settings(calls: Calls, values: Mapping[Channel, Value]) -> list[Setting]:
     """
     wholes: dict[str, list[Any]] = {}
     variables: dict[str, Variable] = {}
-    for channel, value in values.items():
+    single = (
+        (part, value if factor == 1.0 or not isinstance(value, int | float) else value * factor)
+        for channel, value in values.items()
+        for part, factor in channel.parts
+    )
+    for channel, value in single:
         variable = variables.setdefault(channel.variable.name, channel.variable)
         if isinstance(value, list):
             if len(value) != variable.size:
@@ -135,7 +140,9 @@ class Transfer:
             self.view[index] = float(start_list(channel.variable)[channel.element])
         if not channels:
             return
-        plain = all(c.variable.scalar and not c.variable.negated for c in channels)
+        plain = all(
+            c.parts[0][0] is c and c.variable.scalar and not c.variable.negated for c in channels
+        )
         if plain and len(set(types)) == 1 and types[0].type is c_double:
             self.function = calls.function(calls.name(verb, types[0].suffix))
             references = [channel.variable.reference for channel in channels]
@@ -171,7 +178,8 @@ class _Group:
     def __init__(
         self, calls: Calls, verb: str, ctype: CType, channels: Sequence[tuple[int, Channel]]
     ) -> None:
-        variables = list(dict.fromkeys(channel.variable for _, channel in channels))
+        parts = [part for _, channel in channels for part, _factor in channel.parts]
+        variables = list(dict.fromkeys(part.variable for part in parts))
         first: dict[str, int] = {}
         elements: list[Any] = []
         for variable in variables:
@@ -181,9 +189,16 @@ class _Group:
         convert = _converter(ctype)
         self._values: Any = (ctype.type * len(elements))(*map(convert, elements))
         self._places = [
-            (i, first[c.variable.name] + c.element, c.variable if c.variable.negated else None)
-            for i, c in channels
+            (
+                i,
+                first[c.variable.name] + c.element,
+                c.variable if c.variable.negated else None,
+                factor,
+            )
+            for i, channel in channels
+            for c, factor in channel.parts
         ]
+        self._joint = [i for i, channel in channels if channel.parts[0][0] is not channel]
         self._convert = convert
         references = [variable.reference for variable in variables]
         self.function = calls.function(calls.name(verb, ctype.suffix))
@@ -194,15 +209,18 @@ class _Group:
 
     def fill(self, view: memoryview[float]) -> None:
         values, convert = self._values, self._convert
-        for index, place, negated in self._places:
-            value = view[index]
+        for index, place, negated, factor in self._places:
+            value = view[index] * factor
             values[place] = convert(_negated(negated, value) if negated else value)
 
     def empty(self, view: memoryview[float]) -> None:
         values = self._values
-        for index, place, negated in self._places:
+        for index in self._joint:
+            view[index] = 0.0
+        for index, place, negated, factor in self._places:
             value = values[place]
-            view[index] = _negated(negated, value) if negated else value
+            value = _negated(negated, value) if negated else value
+            view[index] = view[index] + factor * value if index in self._joint else value
 
 
 def _converter(ctype: CType) -> Callable[[float], Any]:

@@ -5,8 +5,15 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Final, Literal
 
-from fmus.profile.tables import Axis
-from fmus.profile.vehicle_profile import Fmu, Initial, Inputs, Limits, Outputs, VehicleProfile
+from fmus.profile.vehicle_profile import (
+    Fmu,
+    Initial,
+    Inputs,
+    Limits,
+    Outputs,
+    VehicleAxis,
+    VehicleProfile,
+)
 
 FmiVersion = Literal["2.0", "3.0"]
 
@@ -15,13 +22,15 @@ FILES: Final[dict[FmiVersion, str]] = {"2.0": f"{MODEL}.fmi2.fmu", "3.0": f"{MOD
 
 BUNDLED_PROFILE: Final = VehicleProfile(
     fmu=Fmu(self_check=False),
-    inputs=Inputs(force=Axis(variable="force"), block_reverse=False),  # its brakes hold the vehicle
+    inputs=Inputs(
+        force=VehicleAxis(variable="force"), block_reverse=False
+    ),  # its brakes hold the vehicle
     outputs=Outputs(
-        speed=Axis(variable="speed"),
-        position=Axis(variable="position"),
-        acceleration=Axis(variable="acceleration"),
+        speed=VehicleAxis(variable="speed"),
+        position=VehicleAxis(variable="position"),
+        acceleration=VehicleAxis(variable="acceleration"),
     ),
-    initial=Initial(position=Axis(variable="s0"), speed=Axis(variable="v0")),
+    initial=Initial(position=VehicleAxis(variable="s0"), speed=VehicleAxis(variable="v0")),
     limits=Limits(speed=1e9, position_jump=1e9),  # it computes any motion
 )
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 from fmus.description.model import Model
 from fmus.text import printable
 
-Text = bool | int | float | str
+Text = bool | int | float | str | tuple[str, ...]
 
 SHOWN: Final = 20  # parameters in the file
 BARE: Final = re.compile(r"[A-Za-z0-9_-]+")
@@ -120,6 +120,8 @@ def toml_key(name: str) -> str:
 
 def toml_value(value: Text) -> str:
     """Return a value as TOML writes it."""
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(toml_value, value))}]"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -19,10 +19,12 @@ from fmus.profile.questions import (
     contradiction,
     idle_brake,
     numbers,
+    open_line,
     signed_question,
     unit_question,
 )
 from fmus.profile.vehicle_profile import VehicleProfile, make_profile
+from fmus.profile.wheels import radius_line, variables_line, wheel_group
 from fmus.text import listed, printable
 
 LONGEST_STEP: Final = 10.0  # Longest step [s] that a profile may have
@@ -93,14 +95,16 @@ def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[
         return [_no_input(model, ranked, inputs)], set()
     way = ways[0]
     rivals = [other for other in ways[1:] if _merit(ranked, other) == _merit(ranked, way)]
-    entries = [_axis("inputs", role, ranked[role]) for role in way]
+    entries = [_axis(model, "inputs", role, ranked[role]) for role in way]
     other = idle_brake(ranked, way)
     if other:
         entries = [_open(entry, entry.doubt or other) for entry in entries]
     if rivals:
         doubt = _choice(ranked, (way, *rivals))
         entries = [_open(entry, doubt) for entry in entries]
-        entries += [_axis("inputs", role, ranked[role], alternative=True) for role in rivals[0]]
+        entries += [
+            _axis(model, "inputs", role, ranked[role], alternative=True) for role in rivals[0]
+        ]
     return entries, {ranked[role][0].channel.variable.name for role in way}
 
 
@@ -161,8 +165,8 @@ def _no_input(model: Model, ranked: dict[str, list[Guess]], inputs: Sequence[Var
     names = numbers(inputs)
     hint = axis_question(model, inputs)
     if hint is not None:
-        name, line, doubt = hint
-        return Entry("inputs.force", (Line("variable", name, sure=False), line), "", doubt, False)
+        lines, doubt = hint
+        return Entry("inputs.force", lines, "", doubt, False)
     has = f"its inputs are {listed(names)}" if names else "it has no numeric input"
     doubt = f'no input that drives a vehicle; {has}; add [inputs.force] variable = "..."'
     lines = (
@@ -185,14 +189,16 @@ def _outputs(model: Model) -> list[Entry]:
     entries = []
     speed = guesses(model, "speed", outputs)
     if speed and speed[0].fits is not False:
-        entries.append(_axis("outputs", "speed", speed))
+        entries.append(_axis(model, "outputs", "speed", speed))
+    elif turning := _of_wheels(model, outputs, "speed", speed):
+        entries.append(turning)
     elif hidden := [g for g in guesses(model, "speed", inner) if g.name_score >= 9]:
-        entry = _axis("outputs", "speed", hidden)
+        entry = _axis(model, "outputs", "speed", hidden)
         name = printable(hidden[0].channel.name, 60)
         doubt = f"no output is a speed; is it the local variable '{name}'? Then write variable = "
         entries.append(_open(entry, f"{doubt}{toml_value(hidden[0].channel.name)}"))
     elif speed:
-        entries.append(_axis("outputs", "speed", speed))
+        entries.append(_axis(model, "outputs", "speed", speed))
     else:
         names = numbers(outputs)
         doubt = f"no output is a speed; its outputs are {listed(names) or 'none'}"
@@ -200,12 +206,28 @@ def _outputs(model: Model) -> list[Entry]:
         entries.append(Entry("outputs.speed", lines, "", doubt, sure=False))
     position = [g for g in guesses(model, "position", outputs) if g.fits is not False]
     if position:
-        entries.append(_axis("outputs", "position", position))
+        entries.append(_axis(model, "outputs", "position", position))
+    elif entries[0].sure and (turned := _of_wheels(model, outputs, "position", [])):
+        entries.append(turned)
     acceleration = guesses(model, "measured_acceleration", outputs)
     # it is optional, and not worth a question
     if unambiguous(acceleration) and acceleration[0].fits:
-        entries.append(_axis("outputs", "acceleration", acceleration))
+        entries.append(_axis(model, "outputs", "acceleration", acceleration))
     return entries
+
+
+def _of_wheels(
+    model: Model, outputs: Sequence[Variable], role: str, contradictory: Sequence[Guess]
+) -> Entry | None:
+    """Return the table of a motion that is read from the wheels, or None without them."""
+    wanted = ROLES[role].dimension
+    group = wheel_group(model, outputs, wanted, named=True)
+    alone = [guess.channel.variable for guess in contradictory]
+    group = group or wheel_group(model, alone, wanted, named=False)
+    if not group:
+        return None
+    radius, question = radius_line(model, group[0].name)
+    return Entry(f"outputs.{role}", (variables_line(group), radius), "", question)
 
 
 # ---- the start ----
@@ -225,14 +247,16 @@ def _initial(model: Model) -> list[Entry]:
         if not ranked:  # the output itself may have a start value
             ranked = [g for g in guesses(model, quantity, states) if g.fits]
         if unambiguous(ranked) and ranked[0].name_score >= 9:
-            entries.append(_axis("initial", quantity, ranked))
+            entries.append(_axis(model, "initial", quantity, ranked))
     return entries
 
 
 # ---- words ----
 
 
-def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = False) -> Entry:
+def _axis(
+    model: Model, table: str, role: str, ranked: list[Guess], *, alternative: bool = False
+) -> Entry:
     """Return the table of a role, written for its best guess, which comes first."""
     best = ranked[0]
     variable, name = best.channel.variable, channel_name(best.channel)
@@ -246,7 +270,9 @@ def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = Fal
         names = listed([f"'{printable(g.channel.name, 40)}'" for g in ties])
         doubt = f"which of {names}? write variable = {toml_value(name)} or another"
     elif variable.size > 1:
+        every = f'variables = ["{printable(variable.name, 60)}"]'
         doubt = f"'{printable(variable.name, 60)}' is an array of {variable.size}; which element?"
+        doubt += f" Or all: {every}"
         sure = False
     if variable.negated:
         minus = f"'{printable(name, 60)}' is minus another variable: is it positive forwards?"
@@ -257,7 +283,7 @@ def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = Fal
         lines.append(line)
         doubt = doubt or question
     elif best.fits is False:
-        line, question = contradiction(best, variable, role)
+        line, question = contradiction(model, best, variable, role)
         lines.append(line)
         doubt = doubt or question
     else:
@@ -278,8 +304,7 @@ def _role_key(table: str, role: str) -> str:
 
 
 def _open(entry: Entry, doubt: str) -> Entry:
-    lines = tuple(Line(line.key, line.value, line.comment, sure=False) for line in entry.lines)
-    return Entry(entry.table, lines, entry.why, doubt, sure=False)
+    return Entry(entry.table, tuple(map(open_line, entry.lines)), entry.why, doubt, sure=False)
 
 
 def _remarks(model: Model, idle: Sequence[str]) -> Iterable[str]:

@@ -188,7 +188,12 @@ def guesses(model: Model, role: str, variables: Iterable[Variable]) -> list[Gues
         if (guess := _guess(model, role, variable)) is not None
     ]
     fitting = [guess for guess in found if guess.fits is not False]
-    contradictory = [guess for guess in found if guess.name_score >= 9]
+    torques = FORCES & {role}  # a radius makes forces of them
+    contradictory = [
+        guess
+        for guess in found
+        if guess.name_score >= 9 or (torques and guess.name_score and guess.found == units.TORQUE)
+    ]
     return sorted(fitting or contradictory, key=lambda guess: -guess.score)
 
 
@@ -200,6 +205,11 @@ def unambiguous(ranked: list[Guess]) -> bool:
 def words_of(name: str) -> list[str]:
     """Return the words of a name's last part: ``vehicle.tractiveForce_x`` -> tractive, force, x."""
     return _words(_parts(name)[-1])
+
+
+def all_words(name: str) -> list[str]:
+    """Return the words of a name with all its parts."""
+    return [word for part in _parts(name) for word in _words(part)]
 
 
 def _parts(name: str) -> list[str]:

@@ -178,11 +178,12 @@ def bounds_of(inputs: Sequence[Wire]) -> tuple[Bound, ...]:
     return tuple(
         Bound(
             index,
-            -inf if low is None or isnan(low) else low,
-            inf if high is None or isnan(high) else high,
+            -inf if low is None or isnan(low) else low / factor,
+            inf if high is None or isnan(high) else high / factor,
         )
         for index, wired in enumerate(inputs)
-        for variable in (wired.channel.variable,)
-        for low, high in ((variable.minimum, variable.maximum),)
+        for channel, factor in wired.channel.parts
+        for low, high in ((channel.variable.minimum, channel.variable.maximum),)
         if (low is not None or high is not None) and (low is None or high is None or low <= high)
+        if factor > 0.0
     )

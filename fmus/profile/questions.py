@@ -8,6 +8,7 @@ from fmus.description import units
 from fmus.description.model import Channel, Dimension, Model, Variable
 from fmus.profile.draft import Line
 from fmus.profile.matching import FORCES, OTHER_PARTS, ROLES, Guess, words_of
+from fmus.profile.wheels import radius_line, variables_line, wheel_group
 from fmus.text import printable
 
 # Force [N] of a fully pressed pedal of a car of 1000 kg
@@ -55,39 +56,59 @@ def _unit_described(description: str, wanted: Dimension) -> str:
     return next((word for word in words if units.named(word).dimension == wanted), "")
 
 
-def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, str] | None:
-    """Return the question about the only torque or percentage input: a gain makes it a force.
+def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[tuple[Line, ...], str] | None:
+    """Return the question about the only torque or percentage input, which can be a force.
+
+    A group of torques that differ only by the wheel's place counts as one.
 
     Returns:
-        Name, line with the gain, and question, or None unless there is exactly one such input.
+        Lines and question, or None unless there is exactly one such input.
     """
-    for dimension, what, line in (
-        (units.TORQUE, "ratio of the gears / radius of the wheels [m]", "1/m"),
-        (units.NONE, "the force at 1, which is 100 % [N]", "N at 100 %"),
-    ):
-        found = [
-            v
-            for v in inputs
-            if v.scalar and v.is_real and (unit := model.unit_of(v)) is not None
-            if units.to_si(unit).dimension == dimension
-            and not (OTHER_PARTS - POWERED) & set(words_of(v.name))
-        ]
-        if len(found) == 1:
-            name = printable(found[0].name, 60)
-            kind = f"'{name}' is in {printable(found[0].unit, 40)}, {units.quantity(dimension)}"
-            doubt = f"no input is a force; {kind}: if it drives and brakes, add gain = {what}"
-            return found[0].name, Line("gain", "?", line, sure=False), doubt
-    return None
+    able = [v for v in inputs if not (OTHER_PARTS - POWERED) & set(words_of(v.name))]
+    torques = wheel_group(model, able, units.FORCE, named=False)
+    if torques and len(torques) == sum(_is(model, v, units.TORQUE) for v in able):
+        named, (radius, _) = variables_line(torques), radius_line(model, torques[0].name)
+        what = (
+            f"radius = {radius.value} or that of the wheels [m] (and of a motor's torque gain = "
+            "ratio of the gears)"
+        )
+        lines = (open_line(named), open_line(radius))
+        return lines, _as_force(torques[0], units.TORQUE, what)
+    shares = [v for v in able if v.scalar and v.is_real and _is(model, v, units.NONE)]
+    if len(shares) != 1:
+        return None
+    what = "gain = the force at 1, which is 100 % [N]"
+    lines = (
+        Line("variable", shares[0].name, sure=False),
+        Line("gain", "?", "N at 100 %", sure=False),
+    )
+    return lines, _as_force(shares[0], units.NONE, what)
 
 
-def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:
+def _is(model: Model, variable: Variable, dimension: Dimension) -> bool:
+    unit = model.unit_of(variable)
+    return unit is not None and units.to_si(unit).dimension == dimension
+
+
+def _as_force(variable: Variable, dimension: Dimension, what: str) -> str:
+    name, unit = printable(variable.name, 60), printable(variable.unit, 40)
+    kind = f"'{name}' is in {unit}, {units.quantity(dimension)}"
+    return f"no input is a force; {kind}: if it drives and brakes, add {what}"
+
+
+def open_line(line: Line) -> Line:
+    """Return a line as a question."""
+    return Line(line.key, line.value, line.comment, sure=False)
+
+
+def contradiction(model: Model, guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:
     """Return the question about a variable whose unit contradicts its name."""
     unit, name = printable(variable.unit, 40), printable(variable.name, 60)
     what = f"'{name}' is in {unit}, {units.quantity(guess.found)}"
     wanted = ROLES[role].dimension if role in ROLES else units.NONE
     if role in FORCES and guess.found == units.TORQUE:
-        line = Line("gain", "?", "1/m: 1 over the wheels' radius", sure=False)
-        return line, f"{what}; add gain = 1 / (radius of the wheels [m])"
+        line, question = radius_line(model, variable.name)
+        return line, question and f"{what}; add radius = {line.value} or that of the wheels [m]"
     if role in FORCES and guess.found == units.MASS:
         line = Line("unit", "?", f"{unit} is a mass, not a force; kgf?", sure=False)
         return line, f'{what}, not a force; add the true unit: unit = "N" (or "kgf")'

@@ -8,20 +8,52 @@ fits an FMU is checked by :mod:`fmus.profile.wiring`.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Final
 
 from pydantic import Field, field_validator, model_validator
 
 from fmus.profile.tables import Axis, Parameters, Stepping, Table, read_tables, validated
 
+TOGETHER: Final = 1e-6  # largest error of a sum of shares
 
-class Pedal(Axis):
+
+class VehicleAxis(Axis):
+    """A quantity of the vehicle, which one variable has, or several, such as those of the wheels.
+
+    SI = gain * radius * (factor * raw + unit_offset) + offset; for a torque, with 1 / radius.
+    """
+
+    variable: str = Field("", min_length=1)
+    # variables or elements, or an array for all of its elements; they all have the same unit
+    variables: tuple[Annotated[str, Field(min_length=1)], ...] = Field((), max_length=100)
+    # share of a force for each variable, or None for equal ones; other inputs get it whole
+    share: tuple[Annotated[float, Field(ge=0, le=1)], ...] | None = None
+    # [m] radius of the wheels, for torques, angles and their derivatives
+    radius: float | None = Field(None, gt=0.01, le=10)
+
+    @model_validator(mode="after")
+    def _named_once(self) -> VehicleAxis:
+        if bool(self.variable) == bool(self.variables):
+            raise ValueError('expected variable = "..." or variables = ["...", "..."]')
+        if self.share is not None and not self.variables:
+            raise ValueError('share without variables: add variables = ["...", "..."]')
+        if self.share is not None and abs(sum(self.share) - 1.0) > TOGETHER:
+            raise ValueError(f"share: the sum is {sum(self.share):g}; expected 1 (see `gain`)")
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the variables."""
+        return self.variables or (self.variable,)
+
+
+class Pedal(VehicleAxis):
     """A throttle or brake: 0 is released, 1 is fully pressed (per cent where its unit says so)."""
 
     full_force: float = Field(gt=0, le=1e7)  # [N] force at the wheels when fully pressed
 
 
-class SpeedSetpoint(Axis):
+class SpeedSetpoint(VehicleAxis):
     """The speed that the FMU's own controller is to drive at."""
 
     # [s] time constant of the FMU's speed controller, or None for one step
@@ -35,14 +67,15 @@ class Inputs(Table):
     speed_setpoint.
     """
 
-    force: Axis | None = None  # [N] forwards positive
-    drive_force: Axis | None = None  # [N] never negative
-    brake_force: Axis | None = None  # [N] never negative
-    acceleration: Axis | None = None  # [m/s2] commanded acceleration
+    force: VehicleAxis | None = None  # [N] forwards positive
+    drive_force: VehicleAxis | None = None  # [N] never negative
+    brake_force: VehicleAxis | None = None  # [N] never negative
+    acceleration: VehicleAxis | None = None  # [m/s2] commanded acceleration
     throttle: Pedal | None = None
     brake: Pedal | None = None
     speed_setpoint: SpeedSetpoint | None = None  # [m/s] speed to drive at
-    grade: Axis | None = None  # [rad] grade of the road, uphill positive, or its tangent, as % or 1
+    # [rad] grade of the road, uphill positive, or its tangent, as % or 1
+    grade: VehicleAxis | None = None
     # True: at a standstill, no braking force or acceleration is passed on
     block_reverse: bool = True
 
@@ -75,16 +108,17 @@ class Inputs(Table):
 class Outputs(Table):
     """The outputs that are read; without a position the speed is integrated (trapezoid rule)."""
 
-    speed: Axis  # [m/s]
-    position: Axis | None = None  # [m] position along the path
-    acceleration: Axis | None = None  # [m/s2], or None for the speed's difference over a step
+    speed: VehicleAxis  # [m/s]
+    position: VehicleAxis | None = None  # [m] position along the path
+    # [m/s2], or None for the speed's difference over a step
+    acceleration: VehicleAxis | None = None
 
 
 class Initial(Table):
     """The variables that set the FMU's first position and speed."""
 
-    speed: Axis | None = None  # [m/s] parameter, or input with a start value
-    position: Axis | None = None  # [m], or None: positions count from where the FMU starts
+    speed: VehicleAxis | None = None  # [m/s] parameter, or input with a start value
+    position: VehicleAxis | None = None  # [m], or None: positions count from where the FMU starts
     run_up: bool = True  # True: without a parameter for the speed, drive up to it before the start
 
 

@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
 
 from fmus.description import units
-from fmus.description.channels import find_channel, known_names
+from fmus.description.channels import find_channel, find_channels, known_names
 from fmus.description.model import (
     NUMERIC_TYPES,
     Channel,
     Dimension,
     Interface,
+    JointChannel,
     Kind,
     Model,
     Unit,
@@ -17,6 +19,7 @@ from fmus.description.model import (
 )
 from fmus.errors import FmuInterfaceError, FmuProfileError, FmuVariableError
 from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import VehicleAxis
 
 _QUANTITIES = {  # dimension and the unit to suggest, by role
     "force": (units.FORCE, "N"),
@@ -46,6 +49,13 @@ _QUANTITIES = {  # dimension and the unit to suggest, by role
     "safe_distance": (units.LENGTH, "m"),
     "force_limit": (units.FORCE, "N"),
     "comfortable_deceleration": (units.ACCELERATION, "m/s2"),
+}
+DIVIDED: Final = frozenset({"force", "drive_force", "brake_force"})
+_TURNING: Final = {  # dimensions that a radius turns into that of the role, and the unit to suggest
+    **dict.fromkeys(DIVIDED, ((units.TORQUE,), "N.m")),
+    **dict.fromkeys(("speed", "speed_setpoint"), ((units.TURNING, units.FREQUENCY), "rad/s")),
+    "position": ((units.ANGLE, units.NONE), "rad"),
+    "acceleration": (((0, 0, -2, 0, 0, 0, 0, 1), (0, 0, -2, 0, 0, 0, 0, 0)), "rad/s2"),
 }
 # Largest SI value per raw unit, its inverse, or offset; beyond it, a number is mistyped
 _LARGEST = 1e12
@@ -101,7 +111,56 @@ def make_wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
         FmuVariableError: the variable is missing, or cannot be used in this role.
         FmuProfileError: a unit is missing or of the wrong dimension.
     """
+    joint = axis if isinstance(axis, VehicleAxis) and axis.variables else None
+    if joint is not None:
+        return _joint_wire(model, table, role, joint)
     channel = find_channel(model, f"[{table}.{role}]", axis.variable)
+    _require_usable(model, table, role, channel)
+    return _converted(model, table, role, axis, channel)
+
+
+def _joint_wire(model: Model, table: str, role: str, axis: VehicleAxis) -> Wire:
+    """Return the wire of a role that several variables have."""
+    here = f"{model.path}: [{table}.{role}]"
+    parts = [c for name in axis.names for c in find_channels(model, f"[{table}.{role}]", name)]
+    for channel in parts:
+        _require_usable(model, table, role, channel)
+    divided = table == "inputs" and role in DIVIDED
+    if axis.share is not None and not divided:
+        raise FmuProfileError(f"{here} share: only a force is divided; leave it out")
+    if axis.share is not None and len(axis.share) != len(parts):
+        raise FmuProfileError(
+            f"{here} share: {len(axis.share)} numbers for {len(parts)} variables; expected one each"
+        )
+    first = parts[0]
+    odd = next((c for c in parts if _speech(c) != _speech(first)), None)
+    if odd is not None:
+        raise FmuProfileError(
+            f"{here} variables '{first.name}' and '{odd.name}' differ in unit or type; name "
+            "variables of one unit and type"
+        )
+    if len(set(parts)) < len(parts):
+        raise FmuProfileError(f"{here} variables: one of them is named twice; expected each once")
+    mean = 1.0 if table != "outputs" and not divided else 1.0 / len(parts)
+    factors = axis.share or [mean] * len(parts)
+    joined = tuple(zip(parts, factors, strict=True))
+    wire = _converted(model, table, role, axis, JointChannel(first.variable, first.element, joined))
+    if divided and wire.shift != 0.0:
+        raise FmuProfileError(f"{here} a force with an offset cannot be divided; leave it out")
+    return wire
+
+
+def _speech(channel: Channel) -> tuple[str, str, bool]:
+    """Return unit and type of a variable."""
+    return channel.variable.unit, channel.variable.kind, channel.variable.negated
+
+
+def _require_usable(model: Model, table: str, role: str, channel: Channel) -> None:
+    """Refuse a variable that cannot have a role.
+
+    Raises:
+        FmuVariableError: it is not of the role's kind.
+    """
     variable = channel.variable
     problem = ""
     if variable.kind not in NUMERIC_TYPES:
@@ -118,7 +177,6 @@ def make_wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
         raise FmuVariableError(
             f"{model.path}: [{table}.{role}] variable '{channel.name}' {problem}"
         )
-    return _converted(model, table, role, axis, channel)
 
 
 def distinct(model: Model, wires: Iterable[Wire]) -> tuple[Wire, ...]:
@@ -129,13 +187,14 @@ def distinct(model: Model, wires: Iterable[Wire]) -> tuple[Wire, ...]:
     """
     taken: dict[Channel, Wire] = {}
     for wire in wires:
-        if taken.setdefault(wire.channel, wire) is not wire:
-            table = "grade" if wire.role == "slope" else wire.role
-            raise FmuVariableError(
-                f"{model.path}: [inputs.{table}] variable '{wire.channel.name}' is that of "
-                f"[inputs.{taken[wire.channel].role}] already; expected another one"
-            )
-    return tuple(taken.values())
+        for channel, _share in wire.channel.parts:
+            if taken.setdefault(channel, wire) is not wire:
+                table = "grade" if wire.role == "slope" else wire.role
+                raise FmuVariableError(
+                    f"{model.path}: [inputs.{table}] variable '{channel.name}' is that of "
+                    f"[inputs.{taken[channel].role}] already; expected another one"
+                )
+    return tuple(dict.fromkeys(taken.values()))
 
 
 def _is_input(variable: Variable) -> bool:
@@ -154,11 +213,17 @@ def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel
     name = declared if axis.unit is None else axis.unit
     dimension, usual = _QUANTITIES[role]
     unit = units.to_si(model.units.get(name) or Unit(name)) if name else None
-    problem = _unit_problem(unit, axis, dimension, usual)
+    radius = axis.radius if isinstance(axis, VehicleAxis) else None
+    if radius is None:
+        problem = _unit_problem(unit, axis, dimension, usual)
+    else:
+        problem = _radius_problem(unit, role)
     if problem:
         here = f"{model.path}: [{table}.{role}] variable '{channel.name}'"
         raise FmuProfileError(f"{here} {problem}, to [{table}.{role}]")
     gain = 1.0 if axis.gain is None else axis.gain
+    if radius is not None:
+        gain = gain / radius if role in DIVIDED else gain * radius
     factor, offset = (unit.factor, unit.offset) if unit is not None else (1.0, 0.0)
     scale, shift = gain * factor, gain * offset + axis.offset
     if not (1.0 / _LARGEST <= abs(scale) <= _LARGEST and abs(shift) <= _LARGEST):
@@ -167,6 +232,22 @@ def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel
             f"{usual} with an offset of {shift:g}; check unit, gain and offset of [{table}.{role}]"
         )
     return Wire(role, channel, scale, shift, name)
+
+
+def _radius_problem(unit: Unit | None, role: str) -> str:
+    """Return why a quantity does not turn into the role's with a radius, or an empty text."""
+    turning = _TURNING.get(role)
+    if turning is None:
+        return "has a radius, which only forces and motions have; leave out radius"
+    dimensions, usual = turning
+    if unit is None:
+        return f'has no unit; add the line unit = "{usual}", or what it is'
+    if unit.dimension in dimensions and "Hz" not in unit.name:
+        return ""
+    found = units.quantity(unit.dimension)
+    return (
+        f"is in '{unit.name}', {found}, and not in {usual}; leave out radius, or add the true unit"
+    )
 
 
 def _unit_problem(unit: Unit | None, axis: Axis, dimension: Dimension, usual: str) -> str:

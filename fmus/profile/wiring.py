@@ -6,11 +6,10 @@ from math import tan
 from typing import NamedTuple
 
 from fmus.description import units
-from fmus.description.channels import find_channel, known_names, start_channels
+from fmus.description.channels import find_channel, find_channels, known_names, start_channels
 from fmus.description.model import NUMERIC_TYPES, REAL_TYPES, Channel, Interface, Model, Unit, Value
 from fmus.errors import FmuVariableError
-from fmus.profile.tables import Axis
-from fmus.profile.vehicle_profile import Inputs, VehicleProfile
+from fmus.profile.vehicle_profile import Inputs, VehicleAxis, VehicleProfile
 from fmus.profile.wires import Wire, distinct, interface_of, is_output, make_wire
 
 _INPUTS = (
@@ -140,14 +139,14 @@ def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
     )
 
 
-def _grade_wire(model: Model, axis: Axis) -> Wire:
+def _grade_wire(model: Model, axis: VehicleAxis) -> Wire:
     """Return the wire of the road's grade: an angle, or its tangent for the units 1 and %."""
-    variable = find_channel(model, "[inputs.grade]", axis.variable).variable
+    variable = find_channels(model, "[inputs.grade]", axis.names[0])[0].variable
     name = axis.unit or variable.unit
     unit = units.to_si(model.units.get(name) or Unit(name)) if name else None
     tangent = unit is not None and unit.dimension == units.NONE and axis.gain is None
     return make_wire(model, "inputs", "slope" if tangent else "grade", axis)
 
 
-def _initial(model: Model, role: str, axis: Axis | None) -> Wire | None:
+def _initial(model: Model, role: str, axis: VehicleAxis | None) -> Wire | None:
     return None if axis is None else make_wire(model, "initial", role, axis)

@@ -34,7 +34,7 @@ def test_a_force_in_kilograms_is_asked_about():
 
 def test_a_torque_asks_for_the_wheels():
     message = questions(drafted(["traction [N.m]"], ["speed [m/s]"]))
-    assert "gain = 1 / (radius" in message
+    assert "add radius = 0.3 or that of the wheels" in message
 
 
 @pytest.mark.parametrize(

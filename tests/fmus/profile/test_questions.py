@@ -62,9 +62,9 @@ def test_pedals_in_the_short_words_of_simulink():
 @pytest.mark.parametrize(
     ("name", "gain"),
     [
-        ("wheel_torque [N.m]", "ratio of the gears / radius of the wheels"),
-        ("T_motor [Nm]", "ratio of the gears / radius of the wheels"),
-        ("motor_cmd [%]", "the force at 1, which is 100 %"),
+        ("wheel_torque [N.m]", "radius = 0.3 or that of the wheels"),
+        ("T_motor [Nm]", "radius = 0.3 or that of the wheels"),
+        ("motor_cmd [%]", "gain = the force at 1, which is 100 %"),
     ],
 )
 def test_a_torque_or_a_command_is_a_force_but_for_a_gain(name, gain):
@@ -72,12 +72,21 @@ def test_a_torque_or_a_command_is_a_force_but_for_a_gain(name, gain):
     force = entry(draft, "inputs.force")
     assert not draft.confident
     assert line(draft, "inputs.force", "variable").value == name.split(" [")[0]
-    assert f"add gain = {gain}" in force.doubt
+    assert f"add {gain}" in force.doubt
 
 
 def test_a_steering_torque_or_one_of_two_is_not_guessed():
-    for inputs in (["steering_torque [N.m]"], ["torque_left [N.m]", "torque_right [N.m]"]):
+    for inputs in (["steering_torque [N.m]"], ["torque_a [N.m]", "torque_b [N.m]"]):
         assert "gain" not in entry(drafted(inputs), "inputs.force").doubt
+
+
+def test_torques_of_several_wheels_are_one_force():
+    draft = drafted([f"torque_{corner} [N.m]" for corner in ("fl", "fr", "rl", "rr")])
+    named = ("torque_fl", "torque_fr", "torque_rl", "torque_rr")
+    assert line(draft, "inputs.force", "variables").value == named
+    both = drafted(["drive_torque [N.m]", "brake_torque [N.m]"])
+    assert line(both, "inputs.drive_force", "radius").value == 0.3
+    assert "add radius = 0.3" in entry(both, "inputs.brake_force").doubt
 
 
 def test_without_inputs_a_tunable_parameter_is_asked_about():

@@ -79,8 +79,6 @@ def test_the_examples_of_the_documentation_are_profiles():
         complete = block
         if "[inputs." not in block:
             complete += FORCE
-        if "drive_force" not in block and "[inputs.brake_force]" in block:
-            complete = block.partition("[inputs.brake_force]")[0]
         if "[outputs.speed]" not in complete:
             complete += SPEED
         profile(complete)

@@ -12,8 +12,7 @@ from fmus.checking.scale import CLASS_MASSES
 from fmus.checking.self_check import plain
 from fmus.profile.bundled import is_bundled
 from fmus.profile.preparation import choose_profile, prepare
-from fmus.profile.tables import Axis
-from fmus.profile.vehicle_profile import VehicleProfile
+from fmus.profile.vehicle_profile import VehicleAxis, VehicleProfile
 from fmus.text import printable
 from giveway.cli.guards.fmu_arguments import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.option_groups import DryRun
@@ -92,9 +91,9 @@ def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Fi
         return Finding(name, "pass", "giveway's own FMU")
     inputs, outputs = (
         [
-            f"{role} = {axis.variable}" + (f" [{axis.unit}]" if axis.unit else "")
+            f"{role} = {', '.join(axis.names)}" + (f" [{axis.unit}]" if axis.unit else "")
             for role, axis in table
-            if isinstance(axis, Axis)
+            if isinstance(axis, VehicleAxis)
         ]
         for table in (profile.inputs, profile.outputs)
     )
