@@ -24,12 +24,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from fmus.archive.kinds import DESCRIPTION, ROOT, SYSTEM, SYSTEM_ROOT, is_system
 from fmus.archive.markup import check_xml
 from fmus.errors import FmuArchiveError, FmuFileError
 from fmus.text import printable
 
-DESCRIPTION: Final = "modelDescription.xml"
-ROOT: Final = "fmiModelDescription"
 MAX_MEMBERS: Final = 50_000
 MAX_DIRECTORY: Final = 5 << 20  # [bytes] largest list of members of an archive
 MAX_TOTAL: Final = 4 << 30  # [bytes] largest sum of unpacked sizes
@@ -49,7 +48,10 @@ LOCAL_HEADER: Final = 30  # [bytes] size of the header before the name of a memb
 
 @dataclass(frozen=True, eq=False)
 class Archive:
-    """An FMU's archive that has passed the check; an unchanged file may give the same object."""
+    """An FMU's archive that has passed the check; an unchanged file may give the same object.
+
+    The archive of a system of several FMUs (``.ssp``) has the description of the system.
+    """
 
     path: Path
     members: Mapping[str, zipfile.ZipInfo]  # files only, by their plain name
@@ -74,17 +76,19 @@ def open_archive(path: Path) -> Archive:
 
 @lru_cache(maxsize=2)
 def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
+    system = is_system(path)
+    name, root = (SYSTEM, SYSTEM_ROOT) if system else (DESCRIPTION, ROOT)
     with _reading(path) as archive:
         members, copies = _examined(path, archive.infolist())
         _require_same(path, archive, members, copies)
-        info = members.get(DESCRIPTION)
+        info = members.get(name)
         if info is None:
-            raise FmuFileError(_no_description(path, members))
+            raise FmuFileError(_no_description(path, name, members))
         if info.file_size > MAX_DESCRIPTION:
-            msg = f"{path}: {DESCRIPTION} of {_megabytes(info.file_size)}"
+            msg = f"{path}: {name} of {_megabytes(info.file_size)}"
             raise _beyond(msg, _megabytes(MAX_DESCRIPTION))
         description = b"".join(_chunks(archive, info))  # read() would inflate beyond that size
-        check_xml(description, f"{path}: {DESCRIPTION}", ROOT)
+        check_xml(description, f"{path}: {name}", root, namespaces=system)
         if sum(member.file_size for member in members.values()) <= CHECKED_AT_ONCE:
             for member in members.values():
                 deque(_chunks(archive, member), maxlen=0)  # the check sum is compared at the end
@@ -329,14 +333,14 @@ def _beyond(what: str, limit: str) -> FmuArchiveError:
     return FmuArchiveError(f"{what}: beyond all measure; expected at most {limit}")
 
 
-def _no_description(path: Path, members: Mapping[str, zipfile.ZipInfo]) -> str:
-    msg = f"{path}: no {DESCRIPTION} in the archive"
-    inside = [name for name in members if name.endswith(f"/{DESCRIPTION}")]
+def _no_description(path: Path, wanted: str, members: Mapping[str, zipfile.ZipInfo]) -> str:
+    msg = f"{path}: no {wanted} in the archive"
+    inside = [name for name in members if name.endswith(f"/{wanted}")]
     fmus = [name for name in members if name.endswith(".fmu")]
     if inside:
-        folder = printable(inside[0].removesuffix(DESCRIPTION), 100)
+        folder = printable(inside[0].removesuffix(wanted), 100)
         return f"{msg}, but in its folder {folder}; zip the contents of that folder instead"
-    if fmus:
+    if fmus and wanted == DESCRIPTION:
         return f"{msg}, but {printable(fmus[0], 100)}; unpack it and use that FMU"
     return f"{msg}; expected an FMU; export the model again"
 

@@ -49,23 +49,28 @@ class Element:
         return next(self.every(*tags), None)
 
 
-def check_xml(data: bytes, where: str, root: str) -> None:
+def check_xml(data: bytes, where: str, root: str, *, namespaces: bool = False) -> None:
     """Refuse an XML file that cannot be a model description; nothing of it is kept.
 
     Args:
         data: Contents of the XML file.
         where: Name of the file in errors.
         root: Name of the first element.
+        namespaces: True if names count without the prefixes of their namespaces.
 
     Raises:
         FmuArchiveError: the file has a document type or is too large.
         FmuFileError: the file is not well-formed or has another first element.
     """
-    _LimitedParser(where, root, None, lambda _tag: None).go(data)
+    _LimitedParser(where, root, None, lambda _tag: None, namespaces=namespaces).go(data)
 
 
-def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
+def parse(
+    data: bytes, where: str, root: str, kept: frozenset[str], *, namespaces: bool = False
+) -> Element:
     """Return the first element, with the descendants whose names are among ``kept``.
+
+    With ``namespaces``, names count without the prefixes of their namespaces.
 
     Raises:
         FmuArchiveError: the file has a document type or is too large.
@@ -91,7 +96,7 @@ def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
         else:
             open_elements.pop()
 
-    _LimitedParser(where, root, start, end).go(data)
+    _LimitedParser(where, root, start, end, namespaces=namespaces).go(data)
     return top.children[0]
 
 
@@ -103,6 +108,7 @@ class _LimitedParser:
         root: Name of the first element.
         start: Function that receives each element's name, attributes and line, or None.
         end: Function that receives each element's name at its end.
+        namespaces: True if names count without the prefixes of their namespaces.
     """
 
     def __init__(
@@ -111,10 +117,12 @@ class _LimitedParser:
         root: str,
         start: Callable[[str, dict[str, str], int], None] | None,
         end: Callable[[str], None],
+        *,
+        namespaces: bool,
     ) -> None:
         self._where, self._root, self._start, self._end = where, root, start, end
         self._depth = self._count = 0
-        self._parser = parser = expat.ParserCreate()
+        self._parser = parser = expat.ParserCreate(namespace_separator=" " if namespaces else None)
         parser.StartDoctypeDeclHandler = self._on_doctype
         parser.StartElementHandler = self._on_start
         parser.EndElementHandler = self._on_end
@@ -144,6 +152,7 @@ class _LimitedParser:
 
     def _on_start(self, tag: str, attributes: dict[str, str]) -> None:
         line = self._parser.CurrentLineNumber
+        tag = tag.rpartition(" ")[2]
         if not self._count and tag != self._root:
             what = f"<{printable(tag, 60)}> instead of <{self._root}>; export the model again"
             raise FmuFileError(f"{self._where}, line {line}: {what}")

@@ -168,6 +168,46 @@ class Interface:
 
 
 @dataclass(frozen=True)
+class Link:
+    """A connection: raw value of the target = gain * raw value of the source + shift.
+
+    Names are those of the system: ``part.variable``, or a connector of the system itself.
+    """
+
+    source: str
+    target: str
+    gain: float = 1.0
+    shift: float = 0.0
+
+
+@dataclass(frozen=True)
+class System:
+    """Several FMUs that are one vehicle.
+
+    Attributes:
+        parts: Model of each part, by its name.
+        links: Connections between parts.
+        inputs: Links from each input or parameter of the system to its parts.
+        outputs: Link of each output of the system.
+        values: Start values that the system's file gives, by ``part.variable``.
+        doubts: Remarks for the user.
+    """
+
+    parts: Mapping[str, Model]
+    links: tuple[Link, ...]
+    inputs: Mapping[str, tuple[Link, ...]]
+    outputs: Mapping[str, Link]
+    values: Mapping[str, Value]
+    doubts: tuple[str, ...] = ()
+
+    def part_of(self, name: str) -> tuple[str, str] | None:
+        """Return the part and the variable in it for a name, or None for a connector."""
+        fits = [part for part in self.parts if name.startswith(f"{part}.")]
+        part = max(fits, key=len, default="")
+        return (part, name.removeprefix(f"{part}.")) if part else None
+
+
+@dataclass(frozen=True)
 class Model:
     """The model description of an FMU, and the place of its binary for this platform."""
 
@@ -185,6 +225,7 @@ class Model:
     event_indicators: int
     default_step: float | None  # [s] step of its default experiment
     default_tolerance: float | None
+    system: System | None = None  # the FMUs that it is made of, or None for one FMU
 
     def unit_of(self, variable: Variable) -> Unit | None:
         """Return the unit of a variable, or None if it has none."""

@@ -12,10 +12,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.archive_check import DESCRIPTION, ROOT, Archive, open_archive
+from fmus.archive.archive_check import Archive, open_archive
+from fmus.archive.kinds import DESCRIPTION, ROOT, is_system
 from fmus.archive.markup import Element, parse
 from fmus.description.binaries import platforms_of
 from fmus.description.model import FmuDescription, Interface, Kind, Model, Unit, Value, Variable
+from fmus.description.systems import compose
 from fmus.description.variables import (
     MAX_DESCRIPTION,
     MAX_SIZE,
@@ -79,6 +81,8 @@ def model_of(archive: Archive, sizes: tuple[tuple[str, int], ...] = ()) -> Model
         sizes: Structural parameters and their values.
     """
     path, where = archive.path, f"{archive.path}: {DESCRIPTION}"
+    if is_system(path):
+        return compose(archive, read_model)
     root = parse(archive.description, where, ROOT, KEPT)
     version = _version(root, path)
     guid = root.attributes.get("instantiationToken" if version == "3.0" else "guid")

@@ -1,25 +1,57 @@
 """A vehicle whose longitudinal motion is an FMU, with a force as its input."""
 
+from __future__ import annotations
+
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from math import isclose, isfinite
 from pathlib import Path
-from typing import NoReturn, Self
+from typing import NoReturn, Protocol, Self
 
 from fmus.archive.place import unpacking_place
-from fmus.description.model import Value
+from fmus.description.model import Channel, Value
 from fmus.driving.kept_folder import PREFIX, kept
 from fmus.driving.motion import Motion
 from fmus.driving.starting import reach, require_position, start_values
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
 from fmus.fmi import load
+from fmus.fmi.messages import MessageLog
 from fmus.fmi.status import STATUS_NAMES, WARNING
 from fmus.interfaces.vehicle import Drivable
 from fmus.profile.preparation import Prepared, prepare, unpack
 from fmus.profile.step_plan import between
 from fmus.profile.vehicle_profile import VehicleProfile
+
+
+class Runner(Protocol):
+    """An instance of an FMU, or several that are one vehicle; see :class:`fmus.fmi.Instance`."""
+
+    inputs: memoryview[float]
+    outputs: memoryview[float]
+
+    @property
+    def tick(self) -> Callable[[float, float], int]:
+        """Function that does one step."""
+
+    @property
+    def messages(self) -> MessageLog:
+        """Last messages of the FMU."""
+
+    def start(
+        self,
+        values: Mapping[Channel, Value],
+        inputs: Sequence[Channel],
+        outputs: Sequence[Channel],
+    ) -> None:
+        """Start it with these start values."""
+
+    def stop(self) -> None:
+        """End it, until the next start."""
+
+    def close(self) -> None:
+        """Free everything."""
 
 
 class VehicleFmu(Drivable):
@@ -83,7 +115,13 @@ class VehicleFmu(Drivable):
         self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed at both ends of the last FMU step
         self._steps = self._earlier = 0  # since time 0, and during the run-up before it
         self._closed = False
-        self._instance = load(
+        self._instance = self._load(prepared, folder)
+        stack.callback(self._instance.close)
+        self._resources = stack.pop_all()
+
+    def _load(self, prepared: Prepared, folder: Path) -> Runner:
+        """Return what runs the FMU that is unpacked in a folder."""
+        return load(
             prepared.model,
             prepared.wiring.interface,
             folder,
@@ -91,8 +129,6 @@ class VehicleFmu(Drivable):
             prepared.profile.fmu,
             rewinds=not prepared.ours,  # keeping the state takes time in every step
         )
-        stack.callback(self._instance.close)
-        self._resources = stack.pop_all()
 
     # --- start ---------------------------------------------------------------------------------
 

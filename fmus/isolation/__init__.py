@@ -6,11 +6,13 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from fmus.archive.kinds import is_system
 from fmus.description.model import Value
 from fmus.driving.vehicle import VehicleFmu
 from fmus.interfaces.vehicle import Vehicle
 from fmus.isolation.isolated_controller import IsolatedController
 from fmus.isolation.isolated_vehicle import IsolatedVehicle
+from fmus.isolation.parts_vehicle import PartsVehicle
 from fmus.isolation.watchdog_process import processes_reused
 from fmus.profile.bundled import is_bundled
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -41,4 +43,6 @@ def open_vehicle(
     if isolated is None:
         isolated = not is_bundled(Path(path))
     make: type[IsolatedVehicle | VehicleFmu] = IsolatedVehicle if isolated else VehicleFmu
+    if is_system(Path(path)):
+        make = PartsVehicle  # each part is isolated in any case
     return make(path, step_size=step_size, profile=profile, start_values=start_values)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fmus.driving.controller import ControllerFmu
+from fmus.driving.part import PartFmu
 from fmus.driving.vehicle import VehicleFmu
 from fmus.profile.preparation import Prepared
 
@@ -56,6 +57,6 @@ class HostedVehicle:
         self._vehicle.close()
 
 
-Hosted = HostedVehicle | ControllerFmu
+Hosted = HostedVehicle | ControllerFmu | PartFmu
 """The adapter that runs one FMU for one episode: START and STEP take the numbers of a request, of
 which a step's first is the client's processor; ``state`` has the numbers of a reply."""

@@ -15,14 +15,17 @@ from fmus.archive.place import place_note
 from fmus.description.binaries import binary_of, is_library, is_platform, name_note
 from fmus.description.model import Interface, Model, Value
 from fmus.description.reading import read_model
-from fmus.errors import FmuVariableError
+from fmus.description.systems import unpacked_parts
+from fmus.errors import FmuError, FmuProfileError, FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
 from fmus.profile.draft_profile import draft_profile, require_confident
 from fmus.profile.step_plan import StepPlan, step_plan_of
+from fmus.profile.tables import Stepping
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
-from fmus.profile.wires import Wire
+from fmus.profile.wires import Wire, interface_of
 from fmus.profile.wiring import Wiring, wire
+from fmus.text import listed
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,29 @@ class Prepared(PreparedFmu):
     def fitted(self) -> FittedModel | None:
         """Fitted model of the profile, with the delay of the FMU's own steps in its dead times."""
         model = self.profile.model
-        return None if model is None else model.later(self.step_plan.delay)
+        return None if model is None else model.later(self.delay)
+
+    @property
+    def delay(self) -> float:
+        """Longest time [s] by which forces wait for steps, in all parts together."""
+        system = self.model.system
+        parts = () if system is None else map(self.part_steps, system.parts)
+        return self.step_plan.delay + sum(plan.delay for plan in parts)
+
+    def part_stepping(self, name: str) -> Stepping:
+        """Return the settings of a part; those that the profile leaves open are the vehicle's."""
+        own = self.profile.parts.get(name, Stepping())
+        vehicle = self.profile.fmu
+        given = own.model_dump(exclude_unset=True)
+        usual = {"start_timeout": vehicle.start_timeout, "step_timeout": vehicle.step_timeout}
+        return Stepping(**(usual | given))
+
+    def part_steps(self, name: str) -> StepPlan:
+        """Return the relation of a part's steps to those of the vehicle."""
+        assert self.model.system is not None  # it has parts
+        model, own = self.model.system.parts[name], self.part_stepping(name)
+        interface = interface_of(model, own.kind)
+        return step_plan_of(self.path, own.step, interface, model.default_step, self.step_plan.step)
 
 
 def prepare(
@@ -113,6 +138,12 @@ def prepare(
     profile = _chosen(model, profile)
     model = read_model(path, {**profile.parameters, **(start_values or {})})
     wiring = wire(model, profile, start_values)
+    _require_parts(model, profile)
+    if model.system is not None:  # each part has a binary of its own
+        binary, notes = "", model.system.doubts
+    else:
+        binary = binary_of(model, wiring.interface)
+        notes = notes_on(wiring.interface, binary)
     return Prepared(
         model=model,
         profile=profile,
@@ -123,10 +154,34 @@ def prepare(
         ),
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
-        binary=(binary := binary_of(model, wiring.interface)),
-        notes=notes_on(wiring.interface, binary),
+        binary=binary,
+        notes=notes,
         ours=profile is BUNDLED_PROFILE,
     )
+
+
+def _require_parts(model: Model, profile: VehicleProfile) -> None:
+    """Make sure that every part has a binary, and that the profile names no others.
+
+    Raises:
+        FmuProfileError: the profile names a part that does not exist.
+        FmuPlatformError: a part has no binary for this platform.
+    """
+    known = () if model.system is None else tuple(model.system.parts)
+    for name in profile.parts:
+        if name not in known:
+            names = listed(known) or "one FMU is no system of parts"
+            raise FmuProfileError(f"{model.path}: [parts.{name}]: no such part; it has: {names}")
+    if model.system is None:
+        return
+    with unpacked_parts(model) as parts:
+        for name, part in parts.items():
+            kind = profile.parts[name].kind if name in profile.parts else None
+            try:
+                binary_of(part, interface_of(part, kind))
+            except FmuError as error:
+                reason = str(error).removeprefix(f"{part.path}: ")
+                raise type(error)(f"{model.path}: part '{name}': {reason}") from None
 
 
 def choose_profile(path: Path, profile: VehicleProfile | None) -> VehicleProfile:

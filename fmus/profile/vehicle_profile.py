@@ -214,6 +214,8 @@ class VehicleProfile(Table):
     limits: Limits = Limits()
     inverse_map: InverseMap = InverseMap()
     model: FittedModel | None = None
+    # settings of the parts of a vehicle of several FMUs, by the part's name
+    parts: dict[str, Stepping] = Field(default_factory=dict)
 
     @field_validator("record")
     @classmethod

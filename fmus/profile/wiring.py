@@ -102,7 +102,14 @@ def wire(
         ),
         initial_speed=_initial(model, "speed", initial.speed),
         initial_position=_initial(model, "position", initial.position),
-        start_values=start_channels(model, {**profile.parameters, **(start_values or {})}),
+        start_values=start_channels(
+            model,
+            {
+                **({} if model.system is None else model.system.values),
+                **profile.parameters,
+                **(start_values or {}),
+            },
+        ),
         recorded=tuple(_recorded(model, name) for name in profile.record),
     )
 

@@ -14,14 +14,13 @@ from pathlib import Path
 from typing import Final
 
 from fmus.archive.archive_check import (
-    DESCRIPTION,
     EXECUTABLE,
-    ROOT,
     Archive,
     extract,
     open_archive,
     read_start,
 )
+from fmus.archive.kinds import DESCRIPTION, ROOT
 from fmus.archive.markup import Element, parse
 from fmus.archive.packing import write_archive
 from fmus.description.binaries import START, Platform, misfit, this_platform

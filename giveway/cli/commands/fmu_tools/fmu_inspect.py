@@ -88,7 +88,8 @@ def _parts(model: Model, sha256: str, *, everything: bool) -> Iterator[Table]:
     units = dict.fromkeys(v.unit for v in shown if v.unit)
     if units:
         yield _units(model, list(units), len(units) if everything else SHOWN)
-    found = findings(model.path) if len(model.variables) <= VALIDATED else []
+    validated = len(model.variables) <= VALIDATED and model.system is None
+    found = findings(model.path) if validated else []
     if found:
         yield _findings(found, len(found) if everything else SHOWN_FINDINGS)
 
@@ -104,7 +105,7 @@ def _overview(model: Model, sha256: str) -> Table:
         ("file", Text(str(model.path))),
         ("description", Text(printable(model.description))),
         ("made by", Text(printable(model.generation_tool))),
-        ("version", Text(f"FMI {model.fmi_version}")),
+        ("version", Text(model.fmi_version if model.system else f"FMI {model.fmi_version}")),
         *((kind.value, _interface(interface)) for kind, interface in model.interfaces.items()),
         ("platforms", _platforms(model)),
         ("size", Text(_size(model))),
@@ -131,6 +132,8 @@ def _interface(interface: Interface) -> Text:
 def _platforms(model: Model) -> Text:
     """Return all platforms, and whether this one is among them."""
     text = Text(printable(", ".join(model.platforms)) or "none")
+    if model.system is not None:
+        return text  # of all parts
     for kind, interface in model.interfaces.items():
         try:
             member = binary_of(model, interface)
