@@ -51,6 +51,8 @@ def beside_fmpy(prepared: Prepared, forces: Sequence[float]) -> Beside:
         forces: Force [N] of each control step.
     """
     wiring = prepared.wiring
+    if prepared.model.system is not None:
+        return Beside(problem="FMPy drives one FMU")
     used = [*wiring.read[: len(wiring.outputs)], *(wire.channel for wire in wiring.inputs)]
     if any(len(c.parts) > 1 or not c.variable.scalar for c in used):
         return Beside(problem="FMPy takes no single elements of arrays, and no shares or means")

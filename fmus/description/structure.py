@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -164,7 +164,7 @@ class _Walk:
         return name
 
 
-def chain(edges: Mapping[str, Edge], target: str, ends: Mapping[str, str]) -> list[Edge]:
+def chain(edges: Mapping[str, Edge], target: str, ends: Container[str]) -> list[Edge]:
     """Return the connections that lead to a place, from their first source on.
 
     They go through the connectors of systems and end at a component's, one of ``ends``.

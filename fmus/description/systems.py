@@ -123,11 +123,12 @@ class _Joined:
         self.units = dict(structure.units)
         for model in parts.values():
             self.units = dict(model.units) | self.units
-        self._ends = {
-            place: kind
-            for place, kind in structure.kinds.items()
+        edges = structure.edges.values()
+        self._ends = dict.fromkeys(
+            place
+            for place in (*structure.kinds, *(e.source for e in edges), *structure.edges)
             if any(place.startswith(f"{part}.") for part in parts)
-        }
+        )
 
     def variables(self, system: System) -> dict[str, Variable]:
         """Return the variables of all parts, and the system's own connectors."""
@@ -186,7 +187,7 @@ class _Joined:
 
     # ---- connections ----
 
-    def _all(self, targets: Mapping[str, str] | list[str]) -> Iterator[Link]:
+    def _all(self, targets: Iterable[str]) -> Iterator[Link]:
         for target in targets:
             way = chain(self._structure.edges, target, self._ends)
             if way:
@@ -204,7 +205,7 @@ class _Joined:
             unit = there or unit
             gain, shift = edge.factor * gain, edge.factor * shift + edge.offset
         for place in (way[0].source, target):
-            if place in self._ends:
+            if place in self._ends or place not in self._structure.kinds:
                 self._variable(place, "connector")
         return Link(way[0].source, target, gain, shift)
 
