@@ -33,7 +33,7 @@ from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
-LEVELS = (0.125, 0.25, 0.5, 1.0)  # Shares of the largest force in the tests
+LEVELS = (0.05, 0.12, 0.25, 0.5, 1.0)  # Shares of the largest force in the tests
 SPEEDS = (0.0, 2.0, 5.0, 9.0, 14.0, 20.0)  # [m/s] speeds at the start of the tests
 HARDEST = 8.0  # [m/s2] largest deceleration or acceleration of a test
 LEAD_IN, DRIVE, PAUSE, BRAKE, END = SETTLING + 1.0, 1.8, 1.8, 1.5, 1.0  # [s] durations of phases
@@ -160,12 +160,16 @@ def modelled(
     map_friction = profile.inverse_map.friction if profile and mapped else 0.0
     # A sensor that is half a step ahead: the vehicle does forward Euler steps.
     euler = sensor is not None and abs(sensor + 0.5 * h) < 1e-3 * h
-    measured = Measurements.of(tests, map_friction=map_friction, euler=euler)
-    held_out = Measurements.of([validation], map_friction=map_friction, euler=euler)
-    estimate = identify_sides(measured, full=_full_forces(measured, profile), coarse=coarse)
+    measured, held_out, beginnings = (
+        Measurements.of(traces, map_friction=map_friction, full=_full_forces(profile), euler=at)
+        for traces, at in ((tests, euler), ([validation], euler), (tests, True))
+    )
+    estimate = identify_sides(measured, coarse=coarse)
     late = sensor if sensor is not None and sensor > 0.5 * h else 0.0
-    sides = [side_model(estimate, side, late) for side in (0, 1)]
-    common = fit_common(tests, estimate, map_friction)
+    pressed = [max(float(np.abs(trace.force).max()) for trace in tests) > full
+               for full in _full_forces(profile)]  # fmt: skip
+    sides = [side_model(estimate, side, late, pressed=pressed[side]) for side in (0, 1)]
+    common = fit_common(beginnings, estimate, map_friction)
     if common is None or sides == [None, None]:
         raise FmuOutputError(
             f"{path}: it does not respond to forces like a vehicle; expected more speed with more "
@@ -207,12 +211,11 @@ def modelled(
     )
 
 
-def _full_forces(measured: Measurements, profile: VehicleProfile | None) -> tuple[float, float]:
-    """Return the forces [N] of fully pressed pedals, or the largest ones of the tests."""
+def _full_forces(profile: VehicleProfile | None) -> tuple[float, float]:
+    """Return the forces [N] of fully pressed pedals; infinite without pedals."""
     if profile is not None and profile.inputs.throttle and profile.inputs.brake:
         return profile.inputs.throttle.full_force, profile.inputs.brake.full_force
-    drive, brake = (float(command.max()) for command in measured.commands)
-    return drive, brake
+    return np.inf, np.inf
 
 
 def apparent_mass(opener: Opener, path: Path, profile: VehicleProfile | None = None) -> float:

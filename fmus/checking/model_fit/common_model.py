@@ -6,13 +6,11 @@ eq. (3)), where F is the mean over the step of the force that acts behind each s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fmus.checking.manoeuvres import Trace
 from fmus.checking.model_fit.estimation import Estimate
 from fmus.checking.model_fit.measurements import Measurements
 from fmus.checking.model_fit.side_response import Array
@@ -38,16 +36,15 @@ class CommonModel:
 
 
 def fit_common(
-    traces: Sequence[Trace], estimate: Estimate, map_friction: float
+    measured: Measurements, estimate: Estimate, map_friction: float
 ) -> CommonModel | None:
     """Fit M and alpha by least squares, or return None if forces do not move the vehicle.
 
     Args:
-        traces: Traces of the tests.
-        estimate: Estimate of both sides, from the same traces.
+        measured: Measurements, with speeds at the beginning of each step.
+        estimate: Estimate of both sides, from the same drives.
         map_friction: Friction [N.s/m] that an inverse map subtracts from the force.
     """
-    measured = Measurements.of(traces, map_friction=map_friction, euler=True)
     acting = sum(measured.acting(side, response) * measured.largest
                  for side, response in enumerate(estimate.responses))  # fmt: skip
     v, y = measured.speed[measured.used], measured.acceleration

@@ -12,6 +12,7 @@ from fmus.checking.manoeuvres import Trace
 from fmus.checking.model_fit.side_response import Array, SideResponse
 
 STANDSTILL = 0.05  # [m/s] speed below which steps are not fitted: brakes may hold the vehicle
+STOPS = 0.6  # [s] time before a standstill that is not fitted
 SETTLING = 1.0  # [s] first part of a drive that is not fitted: earlier forces are unknown
 ALIKE = 0.9  # share of the positions' disagreement with the speeds that a sensor's lag explains
 INTEGRATED = 1e-6  # [m/s] disagreement below which the position is the speeds' integral
@@ -39,13 +40,19 @@ class Measurements:
 
     @classmethod
     def of(
-        cls, traces: Sequence[Trace], *, map_friction: float = 0.0, euler: bool = False
+        cls,
+        traces: Sequence[Trace],
+        *,
+        map_friction: float = 0.0,
+        full: tuple[float, float] = (np.inf, np.inf),
+        euler: bool = False,
     ) -> Measurements:
         """Collect traces.
 
         Args:
             traces: Traces of drives.
             map_friction: Friction [N.s/m] that an inverse map subtracts from the force.
+            full: Forces [N] of fully pressed pedals; more is not commanded.
             euler: True if the vehicle does forward Euler steps: its resistance is that of the
                 speed at the beginning of a step, otherwise that of the mean speed.
         """
@@ -59,10 +66,12 @@ class Measurements:
             speed[here] = before if euler else 0.5 * (before + after)
             change[here] = (after - before) / trace.step_size
             settled = np.arange(before.size) * trace.step_size >= SETTLING - 1e-9
-            used[here] = (np.minimum(before, after) > STANDSTILL) & settled
+            # A filtered speed still falls when the vehicle stands: its slope leads to 0 soon.
+            stops = after + STOPS * np.minimum(change[here], 0.0) <= 0.0
+            used[here] = (np.minimum(before, after) > STANDSTILL) & settled & ~stops
         return cls(
             step=traces[0].step_size,
-            commands=(np.maximum(commanded, 0.0), np.maximum(-commanded, 0.0)),
+            commands=(np.clip(commanded, 0.0, full[0]), np.clip(-commanded, 0.0, full[1])),
             speed=speed,
             used=used,
             acceleration=change[used],

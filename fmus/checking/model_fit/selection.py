@@ -14,6 +14,7 @@ from fmus.checking.model_fit.side_response import SideResponse
 CLEARLY = 10.0  # difference of the criterion that counts as evidence (Raftery 1995: very strong)
 ROUNDS = 4  # largest number of structures that are added to a side
 PROMISING = 6  # number of structures that are fitted in a round, after a rough comparison
+NOTHING = 0.02  # difference of an exponent from 1, or of two lags [s], that is none
 LAGS = (0.02, 0.1, 0.3, 0.6, 1.0)  # [s] from which a search begins
 DELAYS = (0.0, 0.05, 0.2, 0.5)  # [s] likewise
 SHARES = (0.12, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 0.95)  # limits over the largest command
@@ -25,14 +26,11 @@ DEFAULT = SideResponse()
 Candidates = Iterator[tuple[list[SideResponse], tuple[str, ...]]]
 
 
-def identify_sides(
-    measured: Measurements, *, full: tuple[float, float], coarse: bool = False
-) -> Estimate:
+def identify_sides(measured: Measurements, *, coarse: bool = False) -> Estimate:
     """Return the simplest estimate that explains the measurements.
 
     Args:
         measured: Measurements.
-        full: Forces [N] of fully pressed pedals, or the largest ones of the tests.
         coarse: True to look only for lag, dead time, and limits of force and rate.
     """
     best = Estimate.of(measured)
@@ -47,7 +45,7 @@ def identify_sides(
         for side in (0, 1):
             if not best.covers():
                 structures = _essential if coarse else _candidates
-                best = _grown(best, side, structures(best, side, full[side]))
+                best = _grown(best, side, structures(best, side))
         if best is before:
             break
     return _pruned(best)
@@ -77,7 +75,7 @@ def _grown(estimate: Estimate, side: int, candidates: Candidates) -> Estimate:
     )
 
 
-def _essential(estimate: Estimate, side: int, _full: float) -> Candidates:
+def _essential(estimate: Estimate, side: int) -> Candidates:
     """Generate the limits of force and rate that a side may have in addition."""
     now, names = estimate.responses[side], estimate.names[side]
     top = float(estimate.measured.commands[side].max())
@@ -89,9 +87,9 @@ def _essential(estimate: Estimate, side: int, _full: float) -> Candidates:
         yield [replace(prompt, rate=part * top) for part in RATES], (*rest, "rate")
 
 
-def _candidates(estimate: Estimate, side: int, full: float) -> Candidates:
+def _candidates(estimate: Estimate, side: int) -> Candidates:
     """Generate the structures that a side may have in addition, each with values to begin with."""
-    yield from _essential(estimate, side, full)
+    yield from _essential(estimate, side)
     now, names = estimate.responses[side], estimate.names[side]
     top = float(estimate.measured.commands[side].max())
     rest = tuple(name for name in names if name not in ("lag", "delay"))
@@ -102,11 +100,14 @@ def _candidates(estimate: Estimate, side: int, full: float) -> Candidates:
             for turn in turns
             for damping in (0.1, 0.3)
         ]
-        total = now.lag + now.delay
-        twice = [replace(now, lag=total, second=total**2 * part, delay=0.0)
-                 for part in (0.05, 0.12, 0.2, 0.25)]  # fmt: skip
         yield shaken, (*rest, "lag", "second")
-        yield twice, (*rest, "lag", "second")
+        total = now.lag + now.delay
+        twice = [
+            replace(now, lag=total - late, second=(total - late) ** 2 * part, delay=late)
+            for part in (0.05, 0.12, 0.2, 0.25)
+            for late in (0.0, 0.5 * now.delay, now.delay)
+        ]
+        yield twice, (*rest, "lag", "second", "delay")
     if "release" not in names and "second" not in names:
         yield [replace(now, release=now.lag * part) for part in (0.3, 0.7, 1.5, 3.0)], (
             *names, "release")  # fmt: skip
@@ -126,18 +127,21 @@ def _candidates(estimate: Estimate, side: int, full: float) -> Candidates:
     if "rate" not in names:
         yield [replace(now, rate=part * top) for part in RATES], (*names, "rate")
     if "exponent" not in names:
-        curved = [replace(now, exponent=part, full=full) for part in (0.7, 1.4, 2.0)]
+        curved = [replace(now, exponent=part, full=top) for part in (0.7, 1.4, 2.0)]
         yield curved, (*names, "exponent")
 
 
 def _pruned(estimate: Estimate) -> Estimate:
-    """Return the estimate without the parameters that explain nothing."""
+    """Return the estimate without the parameters that explain nothing, or next to nothing."""
     for side in (0, 1):
         for name in estimate.names[side]:
             names = tuple(other for other in estimate.names[side] if other != name)
             if name == "lag" and "second" in names:
                 continue
-            plain = replace(estimate.responses[side], **{name: getattr(DEFAULT, name)})
-            less = refine(estimate, side, plain, names)
+            now = estimate.responses[side]
+            less = refine(estimate, side, replace(now, **{name: getattr(DEFAULT, name)}), names)
+            tiny = {"exponent": now.exponent - 1.0, "release": (now.release or 0.0) - now.lag}
+            if abs(tiny.get(name, 1.0)) < NOTHING:
+                estimate = less
             estimate = min(less, estimate, key=_criterion)
     return estimate

@@ -11,9 +11,10 @@ from fmus.profile.vehicle_profile import SideModel
 SIDES = ("drive", "brake")
 HEAVIEST = 1e6  # [kg] largest M that counts
 FASTEST = 60.0  # [m/s] highest speed from which a limit of power is told
+QUICK = 2  # Number of steps in which a force rises that has no limit of its rate
 ENOUGH = 20  # Number of steps needed for a side
 ACTIVE = 0.05  # share of the largest force from which a step tells something about a side
-STRAYS = 0.3  # share of a side's steps that do not follow its model, from which the fit is poor
+STRAYS = 0.45  # share of a side's steps that do not follow its model, from which the fit is poor
 EXPLAINED = 0.8  # share of the variation of a side's accelerations below which the fit is poor
 
 
@@ -23,7 +24,9 @@ def active(estimate: Estimate, side: int) -> Array:
     return np.asarray(force > ACTIVE * max(float(force.max()), 1e-12))
 
 
-def side_model(estimate: Estimate, side: int, sensor: float = 0.0) -> SideModel | None:
+def side_model(
+    estimate: Estimate, side: int, sensor: float = 0.0, *, pressed: bool = False
+) -> SideModel | None:
     """Return the table of a side, or None if the tests do not determine it.
 
     Two lags in a row are a lag, the longer one, and a dead time, the shorter one.
@@ -32,6 +35,7 @@ def side_model(estimate: Estimate, side: int, sensor: float = 0.0) -> SideModel 
         estimate: Estimate of both sides.
         side: Side: 0 is driving, 1 is braking.
         sensor: Lag [s] of the speed output, which is not one of the actuator.
+        pressed: True if the tests have pressed the side's pedal fully: that is its limit.
     """
     mass, response = estimate.mass(side), estimate.responses[side]
     if not mass < HEAVIEST or active(estimate, side).sum() < ENOUGH:
@@ -44,6 +48,9 @@ def side_model(estimate: Estimate, side: int, sensor: float = 0.0) -> SideModel 
     gone = min(lag, sensor)
     lag, delay = lag - gone, max(delay - (sensor - gone), 0.0)
     limit = response.limit
+    if pressed:
+        limit = min(limit, float(estimate.measured.commands[side].max()))
+    fastest = estimate.measured.largest / (QUICK * estimate.measured.step)
     power = response.power / limit if np.isfinite(limit) else np.inf
     return SideModel(
         mass=mass,
@@ -51,7 +58,7 @@ def side_model(estimate: Estimate, side: int, sensor: float = 0.0) -> SideModel 
         delay=min(delay, 2.0),
         limit=limit / mass if np.isfinite(limit) else None,
         power_from=power if power < FASTEST else None,
-        rate=response.rate / mass if np.isfinite(response.rate) else None,
+        rate=response.rate / mass if response.rate < fastest else None,
     )
 
 

@@ -140,7 +140,7 @@ def test_progress_counts_every_drive(car):
     told = []
     identified(car(), progress=lambda done, total: told.append((done, total)))
     assert told[0] == (0, told[-1][1])
-    assert told[-1][0] == told[-1][1] == 3 * 4 + 2
+    assert told[-1][0] == told[-1][1] == 3 * 5 + 2
     assert told == sorted(told)
 
 

@@ -21,7 +21,8 @@ def finding(report, name):
 
 
 def identified(opener, force_limit):
-    return identify(opener, Mpc(0.05, 15, force_limit), path=Path("car.fmu"))
+    mpc = Mpc(0.05, 15, force_limit)
+    return identify(opener, mpc, path=Path("car.fmu"), speeds=(2.0, 9.0, 18.0))
 
 
 def test_rolling_resistance_is_not_taken_for_a_weak_drive(car):
