@@ -148,7 +148,7 @@ class InverseMap(Table):
 
 
 class SideModel(Table):
-    """How a vehicle answers to the forces of one sign: driving, or braking."""
+    """The answer of a vehicle to forces of one sign: driving, or braking."""
 
     mass: float = Field(gt=0, le=1e6)  # M [kg]
     lag: float = Field(0.0, ge=0, le=3)  # [s] first-order time constant of the actuator
