@@ -216,18 +216,19 @@ class VehicleFmu(Drivable):
         if self._refusal or not isfinite(force):
             self._require_step(force)
         motion, done, step_plan = self._motion, self._earlier + self._steps, self._step_plan
-        first = step_plan.steps_until(done)
-        last = step_plan.steps_until(done + 1)
-        if first < last:
-            self._drive(force, grade, range(first, last))
+        if step_plan.stretch == 1:
+            first = done * step_plan.substeps
+            self._drive(force, grade, range(first, first + step_plan.substeps))
+            self.position, self.speed = motion.position, motion.speed
+        else:
+            steps = range(step_plan.steps_until(done), step_plan.steps_until(done + 1))
+            if steps:
+                self._drive(force, grade, steps)
+            share = step_plan.share(done + 1)
+            self.position, self.speed = between(*self._ends, step_plan.step, share)
         self._steps += 1
         self.time = self._steps * self.step_size
         self.acceleration = motion.acceleration
-        if step_plan.stretch == 1:
-            self.position, self.speed = motion.position, motion.speed
-        else:
-            share = step_plan.share(done + 1)
-            self.position, self.speed = between(*self._ends, step_plan.step, share)
 
     def _drive(self, force: float, grade: float, steps: range) -> None:
         """Do the FMU's steps that begin within one control step."""

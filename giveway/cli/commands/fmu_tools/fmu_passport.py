@@ -38,6 +38,17 @@ from giveway.reports.passport_page import Section, passport_page
 
 FORCE_LIMIT = 8000.0  # [N] largest force of the tests, as in check
 STEP, HORIZON = 0.05, 15  # [s] control step, and steps of the MPC's horizon
+UNITS = {  # of the numbers in the passport, by key
+    **dict.fromkeys(("mass", "drive_mass", "brake_mass"), "kg"),
+    **dict.fromkeys(("lag", "sensor_lag", "delay", "delay_of_inputs", "horizon"), "s"),
+    **dict.fromkeys(("step", "finer", "time_step", "duration"), "s"),
+    **dict.fromkeys(("speed", "speed_error", "power_from"), "m/s"),
+    **dict.fromkeys(("position", "position_error"), "m"),
+    "friction": "N·s/m",
+    "limit": "m/s²",
+    "rate": "m/s³",
+    "largest_force": "N",
+}
 DRIVEN = ((0.0, 1.0), (0.5, 3.0), (0.0, 2.0), (-0.5, 4.0))  # shares of the force, durations [s]
 
 
@@ -181,7 +192,7 @@ def _not_asked(report: CheckReport, found: Identification | None, prepared: Prep
             for values in (_speed, _time, _force)
         )
         points.append(
-            f"speeds above {fastest:.3g} m/s, forces above {hardest:.4g} N, and drives longer than "
+            f"speeds above {fastest:.3g} m/s, forces above {hardest:.0f} N, and drives longer than "
             f"{longest:.3g} s"
         )
     points += [
@@ -241,22 +252,25 @@ def _page(passport: Mapping[str, Any], report: CheckReport, found: Identificatio
             *((("largest difference of position [m]", f"{beside.position:.2g}"),)
               if beside.position is not None else ()),
         ], points=[f"not compared: {beside.problem}"] if beside.problem else ()),
-        Section("Profile", _rows(passport["profile"])),
+        Section("Profile", _rows(passport["profile"], {})),
         Section("What was not asked", points=passport["not_asked"]),
     ]  # fmt: skip
     footer = f"Written by giveway {passport['giveway']}; the same numbers are in passport.json."
     return passport_page(passport["fmu"]["file"], _lead(report, found), sections, footer)
 
 
-def _rows(values: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+def _rows(
+    values: Mapping[str, Any], units: Mapping[str, str] = UNITS, prefix: str = ""
+) -> list[tuple[str, str]]:
     """Return nested values as rows, with the tables' names before the keys."""
     rows = []
     for key, value in values.items():
         name = f"{prefix}{key}"
         if isinstance(value, Mapping):
-            rows += _rows(value, f"{name}.")
+            rows += _rows(value, units, f"{name}.")
         elif value not in ("", None):
-            rows.append((name.replace("_", " "), _text(value)))
+            unit = units.get(key.removesuffix("_interval"), "")
+            rows.append((name.replace("_", " "), f"{_text(value)} {unit}".rstrip()))
     return rows
 
 
