@@ -160,12 +160,14 @@ def modelled(
     map_friction = profile.inverse_map.friction if profile and mapped else 0.0
     # A sensor that is half a step ahead: the vehicle does forward Euler steps.
     euler = sensor is not None and abs(sensor + 0.5 * h) < 1e-3 * h
-    measured, held_out, beginnings = (
-        Measurements.of(traces, map_friction=map_friction, full=_full_forces(profile), euler=at)
-        for traces, at in ((tests, euler), ([validation], euler), (tests, True))
-    )
-    estimate = identify_sides(measured, coarse=coarse)
     late = sensor if sensor is not None and sensor > 0.5 * h else 0.0
+    filtered = not coarse and (sensor is None or late > 0.0)
+    measured, held_out, beginnings = (
+        Measurements.of(traces, map_friction=map_friction, full=_full_forces(profile), euler=at,
+                        filtered=filtered)
+        for traces, at in ((tests, euler), ([validation], euler), (tests, True))
+    )  # fmt: skip
+    estimate = identify_sides(measured, coarse=coarse)
     pressed = [max(float(np.abs(trace.force).max()) for trace in tests) > full
                for full in _full_forces(profile)]  # fmt: skip
     sides = [side_model(estimate, side, late, pressed=pressed[side]) for side in (0, 1)]

@@ -24,7 +24,7 @@ STRAY = 0.05  # share of residuals that may be anything
 RANGE = 20.0  # [m/s2] range of these
 FEW = 2e-3  # share of stray residuals that needs no explanation
 ANNEALED = (0.3, 0.1, 0.03, FLOOR)  # [m/s2] floors of a search, one after the other
-LEAST_INTERVAL = 2e-3  # smallest half width of an interval, as a share: FMUs have steps, too
+LEAST_INTERVAL = 4e-3  # smallest half width of an interval, as a share: FMUs have steps, too
 _SCALES = {"lag": 0.1, "release": 0.1, "delay": 0.1, "second": 0.01, "exponent": 0.2}
 _BOUNDS = {
     "lag": (0.0, 3.0), "release": (0.0, 3.0), "delay": (0.0, 2.0), "second": (0.0, 2.0),

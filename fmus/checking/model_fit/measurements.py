@@ -12,6 +12,8 @@ from fmus.checking.manoeuvres import Trace
 from fmus.checking.model_fit.side_response import Array, SideResponse
 
 STANDSTILL = 0.05  # [m/s] speed below which steps are not fitted: brakes may hold the vehicle
+LONG_SETTLING = 1.9  # [s] the same with a filtered speed
+FADES = 1.2  # [s] time in which a filtered speed forgets a standstill
 STOPS = 0.6  # [s] time before a standstill that is not fitted
 SETTLING = 1.0  # [s] first part of a drive that is not fitted: earlier forces are unknown
 ALIKE = 0.9  # share of the positions' disagreement with the speeds that a sensor's lag explains
@@ -46,6 +48,7 @@ class Measurements:
         map_friction: float = 0.0,
         full: tuple[float, float] = (np.inf, np.inf),
         euler: bool = False,
+        filtered: bool = False,
     ) -> Measurements:
         """Collect traces.
 
@@ -55,6 +58,8 @@ class Measurements:
             full: Forces [N] of fully pressed pedals; more is not commanded.
             euler: True if the vehicle does forward Euler steps: its resistance is that of the
                 speed at the beginning of a step, otherwise that of the mean speed.
+            filtered: True if the speed may be filtered: what holds a standing vehicle is seen
+                for some time after it has driven off.
         """
         shape = (len(traces), max(trace.force.size for trace in traces))
         commanded, speed, change = np.zeros(shape), np.zeros(shape), np.zeros(shape)
@@ -65,10 +70,16 @@ class Measurements:
             commanded[here] = trace.force - map_friction * before
             speed[here] = before if euler else 0.5 * (before + after)
             change[here] = (after - before) / trace.step_size
-            settled = np.arange(before.size) * trace.step_size >= SETTLING - 1e-9
+            first = LONG_SETTLING if filtered else SETTLING
+            settled = np.arange(before.size) * trace.step_size >= first - 1e-9
             # A filtered speed still falls when the vehicle stands: its slope leads to 0 soon.
             stops = after + STOPS * np.minimum(change[here], 0.0) <= 0.0
-            used[here] = (np.minimum(before, after) > STANDSTILL) & settled & ~stops
+            moving = np.minimum(before, after) > STANDSTILL
+            used[here] = moving & settled & ~stops
+            if filtered:
+                stood = np.maximum.accumulate(np.where(moving, -1, np.arange(moving.size)))
+                since = (np.arange(moving.size) - stood) * trace.step_size
+                used[here] &= (stood < 0) | (since > FADES)
         return cls(
             step=traces[0].step_size,
             commands=(np.clip(commanded, 0.0, full[0]), np.clip(-commanded, 0.0, full[1])),
