@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from giveway.config import EgoRunConfig
-from giveway.ego.vehicle import model_remark
+from giveway.ego.vehicle import driven_model, model_remark
 
 PROFILE = """
 [inputs.force]
@@ -50,3 +50,15 @@ def test_a_truck_gets_the_same_accelerations(remark):
 def test_what_has_been_set_is_not_advised(remark):
     text = remark(18_000.0, force_limit=1e5, force_rate_limit=18_000.0)
     assert text.endswith("for the same accelerations, --set proportional_gain=43000")
+
+
+def test_the_fmus_own_steps_are_part_of_the_dead_time(tmp_path):
+    """A force waits for up to 20 ms if the FMU does steps of 30 ms."""
+    path = tmp_path / "car.toml"
+    text = PROFILE.format(mass=1000.0).replace('"F"', '"force"').replace('"v"', '"speed"')
+    delays = []
+    for step in ("", "[fmu]\nstep = 0.03\n"):
+        path.write_text(text + step, encoding="utf-8")
+        config = EgoRunConfig.model_validate({"vehicle": {"profile": str(path)}})
+        delays.append(driven_model(config, 0.05).delay)
+    assert delays == pytest.approx([0.0, 0.02])

@@ -49,6 +49,7 @@ UNITS = {  # of the numbers in the passport, by key
     "rate": "m/s³",
     "largest_force": "N",
 }
+SEEN = {"limit", "power_from", "rate"}  # limits that a vehicle may not show
 DRIVEN = ((0.0, 1.0), (0.5, 3.0), (0.0, 2.0), (-0.5, 4.0))  # shares of the force, durations [s]
 
 
@@ -172,7 +173,7 @@ def _convergence(report: CheckReport) -> dict[str, Any]:
 def _model(found: Identification) -> dict[str, Any]:
     mass, friction = found.intervals
     return {
-        **found.model.model_dump(mode="json", exclude_none=True),
+        **found.model.model_dump(mode="json"),
         "mass_interval": mass,
         "friction_interval": friction,
         "largest_force": found.largest_force,
@@ -270,7 +271,11 @@ def _rows(
             rows += _rows(value, units, f"{name}.")
         elif value not in ("", None):
             unit = units.get(key.removesuffix("_interval"), "")
-            rows.append((name.replace("_", " "), f"{_text(value)} {unit}".rstrip()))
+            text = f"{_text(value)} {unit}".rstrip()
+            interval = f"± {text} (95 %)" if key.endswith("_interval") else text
+            rows.append((name.replace("_", " "), interval))
+        elif key in SEEN:
+            rows.append((name.replace("_", " "), "none seen"))
     return rows
 
 
