@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
+from urllib.parse import unquote
 
 from fmus.archive.archive_check import Archive
 from fmus.archive.kinds import SYSTEM, SYSTEM_ROOT
@@ -120,7 +121,8 @@ class _Walk:
         self._found.bindings += [(prefix, binding) for binding in bindings_of(system)]
 
     def _component(self, element: Element, prefix: str) -> None:
-        name, source = f"{prefix}{self._name(element)}", element.get("source")
+        name = f"{prefix}{self._name(element)}"
+        source = unquote(element.get("source")).removeprefix("./")
         if element.get("type", FMU) != FMU or source not in self._archive.members:
             what = f"source {printable(source, 80)!r} of type {element.get('type', FMU)}"
             raise FmuInterfaceError(

@@ -179,9 +179,12 @@ class _Joined:
         for prefix, binding in self._structure.bindings:
             for name, value, unit, units in parameter_values(archive, binding):
                 place = f"{prefix}{name}"
-                variable = self._variable(place, "parameter")
-                if unit and variable.unit and isinstance(value, float):
-                    value = self._converted(value, (place, unit), (place, variable.unit), units)
+                if place not in self._structure.kinds:
+                    self._variable(place, "parameter")
+                    self._ends[place] = None
+                there = self._unit(place)
+                if unit and there and isinstance(value, float):
+                    value = self._converted(value, (place, unit), (place, there), units)
                 found[place] = value
         return found
 

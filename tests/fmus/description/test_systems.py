@@ -69,6 +69,14 @@ def test_it_is_one_model_with_the_variables_of_all(system):
     assert parts.doubts == ()
 
 
+def test_a_parameter_of_the_system_sets_that_of_a_part(system):
+    connectors = {"weight": ("parameter", "t"), "chassis.mass": ("parameter", "kg")}
+    path = system([("weight", "chassis.mass")], connectors, values={"weight": 1.3})
+    assert read_model(path).system.values == {"weight": 1.3}
+    assert read_model(path).system.inputs["weight"][0].gain == 1e3
+    assert read_model(path).variables["weight"].causality == "parameter"
+
+
 @pytest.mark.parametrize(
     ("connection", "connector", "said"),
     [

@@ -65,18 +65,24 @@ def vehicle(zoo, tmp_path):
     """Opens the vehicle of three parts; steps: of the powertrain, the brakes, the chassis [s]."""
     opened = []
 
-    def open_with(steps=(None, None, None), *, powertrain=None, tables=None, **changes):
+    def open_with(steps=(None, None, None), *, powertrain=None, tables=None, connections=None):
         parts = {
             "powertrain": powertrain or actuator(zoo, 0.3),
             "brakes": actuator(zoo, 0.1),
             "chassis": zoo.car(role="drive_brake", outputs=("speed", "position")),
         }
         path = write_ssp(
-            tmp_path / "car.ssp", parts, CONNECTIONS, CONNECTORS, values={"chassis.mass": 1200.0}
+            tmp_path / "car.ssp",
+            parts,
+            connections or CONNECTIONS,
+            CONNECTORS,
+            values={"chassis.mass": 1200.0},
+            linear={"brakes.demand": (50.0, 20.0)} if connections else None,
+            plain=("brakes.demand",) if connections else (),
         )
         own = {n: {"step": step} for n, step in zip(parts, steps, strict=True) if step}
         profile = make_profile(ROLES | {"parts": own} | (tables or {}), "the test's profile")
-        car = open_vehicle(path, step_size=H, profile=profile, **changes)
+        car = open_vehicle(path, step_size=H, profile=profile)
         car.files = parts
         opened.append(car)
         return car
@@ -206,6 +212,19 @@ def test_it_is_interpolated_and_identified_as_one_vehicle(vehicle):
     assert car.prepared.delay == pytest.approx(0.02)
     rows = driven(car, [0.0] * 20, speed=1.0)
     assert rows[:, 0] == pytest.approx(np.arange(21) * H, abs=1e-12)
+
+    # The brakes follow the speed: 50 N.s/m and 20 N more, from the first step on.
+    dragged = [("chassis.speed", "brakes.demand"), *(c for c in CONNECTIONS if c[0] != "brake")]
+    car = vehicle(connections=dragged, tables={"inputs": {"force": {"variable": "drive"}}})
+    speeds, brakes = driven(car, [0.0] * 40)[:, 1], 0.0
+    assert any("perhaps an algebraic loop" in warning for warning in car.warnings)
+    expected = [4.0]
+    for _ in range(40):
+        before = brakes
+        brakes += (50.0 * expected[-1] + 20.0 - brakes) * -np.expm1(-H / 0.1)
+        speed = expected[-1] * np.exp(-H / 12.0) - before / 100.0 * -np.expm1(-H / 12.0)
+        expected.append(speed)
+    assert speeds == pytest.approx(np.array(expected), abs=1e-9)
 
     found = coarse(lambda _step: vehicle(), path=car.path)
     assert found.mass == pytest.approx(1200.0, rel=0.1)

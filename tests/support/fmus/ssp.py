@@ -23,6 +23,7 @@ def write_ssp(
     *,
     values: Mapping[str, float] | None = None,
     linear: Mapping[str, tuple[float, float]] | None = None,
+    plain: Sequence[str] = (),
 ) -> Path:
     """Write a system.
 
@@ -33,6 +34,7 @@ def write_ssp(
         connectors: kind and unit of each connector, by the same names.
         values: parameters of the system, like "chassis.mass".
         linear: factor and offset of the connection to a connector.
+        plain: connectors to which units are not converted.
     """
     root = element(None, "ssd:SystemStructureDescription", version="1.0", name=path.stem)
     system = element(root, "ssd:System", name="vehicle")
@@ -67,6 +69,7 @@ def write_ssp(
             part, _, name = place.rpartition(".")
             ends |= {f"{end}Element": part} if part else {}
             ends[f"{end}Connector"] = name
+        ends |= {"suppressUnitConversion": "true"} if target in plain else {}
         connection = element(joined, "ssd:Connection", **ends)
         if target in (linear or {}):
             factor, offset = linear[target]
