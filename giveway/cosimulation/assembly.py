@@ -15,6 +15,7 @@ from giveway.cosimulation.entry.departures import Departures
 from giveway.cosimulation.people.arrivals import Arrivals
 from giveway.cosimulation.people.initial import people_at_first, people_to_come
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
+from giveway.cosimulation.traffic.swept import swept_near
 from giveway.cosimulation.traffic.yielding import Yielding
 from giveway.crowd.exchange import Exchange
 from giveway.crowd.gap_acceptance import GapAcceptance
@@ -177,8 +178,11 @@ def assemble(
         )
     model = model_of(config, time_step, roster, threads=config.crowd.threads)
     if network is not None and exchange is not None and exchange.gaps is not None:
-        first, count = len(network.signals), len(network.gap_crossings)
-        model = HeldAtKerb(model, first, count, network.sidewalks(exchange.gaps.kerbs))
+        gaps, first, count = exchange.gaps, len(network.signals), len(network.gap_crossings)
+        sidewalks = network.sidewalks(gaps.kerbs)
+        swept = swept_near(sumo, gaps.ends, sidewalks)
+        model = HeldAtKerb(model, first, count, sidewalks, swept)
+        gaps.free = model.free
     yielding = None
     if config.traffic.yielding and (added or walkers or egos):
         yielding = Yielding(sumo.vehicles, sumo.step_length)

@@ -63,6 +63,13 @@ class Approaches(NamedTuple):
     high: Array  # distance (c,) [m] from that kerb to the far side of its strip
 
 
+class Waiting(NamedTuple):
+    """Marks of the people who wait for a gap."""
+
+    held: NDArray[np.bool_]  # marks (n,) of all of them
+    stays: NDArray[np.bool_]  # marks (n,) of those of them who are on the sidewalk, and stay there
+
+
 Traffic = Callable[[Crossing], Approaches]
 """A function that returns the vehicles that approach a crossing."""
 
@@ -116,6 +123,7 @@ class GapAcceptance:
 
     Attributes:
         held: Marks (n,) of the people whose next way-point is a kerb at which they wait.
+        free: Place that those who wait do not leave.
     """
 
     def __init__(
@@ -129,16 +137,29 @@ class GapAcceptance:
         self._roster, self._crossings, self._first = roster, crossings, first
         self._step_length, self._seed = step_length, seed
         self.held = np.zeros(0, dtype=np.bool_)
+        self.free: shapely.Geometry = shapely.Polygon()
         # For each person who ever was in the crowd: t_s [s], impatience, time waited [s]
         self._traits = np.zeros((0, 3))
         self._at = np.zeros(0, dtype=np.int64)  # crossing at which each has waited; -1 without one
         self._ignoring: dict[int, tuple[float, float, np.random.Generator]] = {}
 
     @property
+    def ends(self) -> Array:
+        """The middles (n, 2) [m] of the kerbs at which people wait."""
+        ends = [crossing.ends for crossing in self._crossings if crossing is not None]
+        return np.concatenate([np.empty((0, 2)), *ends])
+
+    @property
     def kerbs(self) -> shapely.Geometry:
         """The places around the kerbs at which people wait."""
-        ends = [crossing.ends for crossing in self._crossings if crossing is not None]
-        return shapely.MultiPoint(np.concatenate([np.empty((0, 2)), *ends])).buffer(_QUEUE)
+        return shapely.MultiPoint(self.ends).buffer(_QUEUE)
+
+    @property
+    def waiting(self) -> Waiting:
+        """The people who wait for a gap."""
+        stays = self.held.copy()
+        stays[stays] = shapely.contains_xy(self.free, self._roster.crowd.position[stays])
+        return Waiting(self.held, stays)
 
     def meet(self, name: str, habit: GapHabit) -> None:
         """Learn how a person who joins the crowd accepts gaps."""

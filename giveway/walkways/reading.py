@@ -3,12 +3,13 @@
 Only the parts for pedestrians are kept, so that a network of 50 MB takes little time and memory.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from giveway.scenario_files.network import read_network
+from giveway.walkways.beside_lanes import part_beside
 from giveway.walkways.gates import Array
 
 _PEDESTRIAN = "pedestrian"
@@ -69,7 +70,8 @@ class Survey:
 
     Attributes:
         edges: Normal edges with a lane for pedestrians.
-        walkingareas, crossings: Lane of each, whose shape is an area or a centre line.
+        walkingareas, crossings: Lane of each, whose shape is an area or a centre line. A crossing
+            is the part of it that no lane runs along.
         links: Connections with a walkingarea or crossing at one end.
         junctions: Outline (k, 2) [m] of each junction that has one.
         has_sidewalks: True if there is a lane that pedestrians may use and cars may not.
@@ -103,6 +105,8 @@ class _Reader:
         self.survey = Survey()
         self._edge: dict[str, str] = {}
         self._exclusive = False
+        self._junction_now = ""  # junction of the internal lanes that were read last
+        self._inside: list[str] = []  # shapes of these lanes
         self.tags = {
             "location": self._location,
             "edge": self._edge_tag,
@@ -122,13 +126,16 @@ class _Reader:
     def _lane(self, attributes: dict[str, str]) -> None:
         edge = self._edge
         function = edge.get("function")
-        if function == "internal" or not _admits(attributes, _PEDESTRIAN):
+        if function == "internal":
+            self._note(edge["id"], attributes)
+            return
+        if not _admits(attributes, _PEDESTRIAN):
             return
         found = self.survey
         if function == "walkingarea":
             found.walkingareas[edge["id"]] = _ped_lane(attributes, at_least=1)
         elif function == "crossing":
-            found.crossings[edge["id"]] = _ped_lane(attributes)
+            found.crossings[edge["id"]] = self._crossing(edge["id"], _ped_lane(attributes))
         else:
             found.has_sidewalks |= not _admits(attributes, _CAR)
             # SUMO uses the first lane for pedestrians only, else the first that they may use.
@@ -143,6 +150,20 @@ class _Reader:
                     sidewalk=bool(sidewalk) and sidewalk <= _ON_FOOT,
                 )
                 self._exclusive = exclusive
+
+    def _note(self, edge: str, attributes: dict[str, str]) -> None:
+        """Keep the vehicles' lanes of the junction that is read now, whose crossings come next."""
+        junction = edge.rpartition("_")[0]
+        if junction != self._junction_now:
+            self._junction_now, self._inside = junction, []
+        self._inside.append(attributes.get("shape", ""))
+
+    def _crossing(self, edge: str, lane: PedLane) -> PedLane:
+        """Return a crossing without the part that a lane runs along."""
+        if edge.rpartition("_")[0] != self._junction_now or len(lane.shape) != 2:
+            return lane
+        shape, width = part_beside(lane.shape, lane.width, map(_points, self._inside))
+        return replace(lane, shape=shape, width=width)
 
     def _junction(self, attributes: dict[str, str]) -> None:
         # Internal junctions have no shape, and the outer ones of dead ends have only a line.

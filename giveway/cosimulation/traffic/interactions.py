@@ -77,8 +77,8 @@ class Meetings:
         merging = [ego.rules.keeps_behind for ego in egos if ego.rules.situation.merging]
         yielding = self._yielding
         if yielding is not None and (background.ids or yielding.limited):
-            held = None if self._gaps is None else self._gaps.held
-            yielding.update(background, crowd, egos, rooms, merging, held)
+            waiting = None if self._gaps is None else self._gaps.waiting
+            yielding.update(background, crowd, egos, rooms, merging, waiting)
             self.pending = bool(yielding.limited)
 
     @property

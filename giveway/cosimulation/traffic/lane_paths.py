@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.passage import look
+from giveway.geometry.path import points_at, stations_of
 from giveway.sumo.vehicles import SumoVehicles
 
 Indices = NDArray[np.int64]
@@ -23,6 +24,11 @@ _REACH = 2.0
 _LEAST_REACH = 100.0  # Smallest length [m] of a new lane path
 _SAME_PLACE = 1e-9  # Distance [m] up to which two points of a polyline are one
 _FORGET = 2  # Remembered vehicles per present vehicle, above which those that left are forgotten
+_CAR = 4.5  # Length [m] of a car
+_DIFFER = 0.05  # Distance [m] between two lines from which on they differ
+# Distance [m] behind the end of a lane path, where a vehicle leaves the network, within which
+# people count: half of a shoulder breadth and 0.03 m
+_AT_END = 0.3
 _CELL = 20.0  # Cell size [m] of the grid in which pedestrians are looked up
 
 
@@ -64,9 +70,14 @@ class LanePaths:
     Attributes:
         pool: All lane paths so far, with room for more.
         lanes: Lanes of each lane path, in the order of the pool.
+        middles: Lines (total, 2) [m] of the middles of cars' bodies, row by row beside
+            ``pool.points``. They cut the inner side of bends.
+        bent: Flags (w,) of the lane paths whose two lines differ.
     """
 
     pool: LanePathPool
+    middles: Array
+    bent: NDArray[np.bool_]
     lanes: list[tuple[str, ...]]
 
     def __init__(self, vehicles: SumoVehicles) -> None:
@@ -75,6 +86,7 @@ class LanePaths:
         self._numbers: dict[tuple[str, ...], int] = {}
         self.lanes = []
         self.pool = LanePathPool(*(np.zeros(shape, kind) for shape, kind in _EMPTY))
+        self.middles, self.bent = np.zeros((1, 2)), np.zeros(1, dtype=np.bool_)
         self._points = 0
 
     def of(self, names: Sequence[str], sights: Sequence[float]) -> tuple[Indices, Array]:
@@ -135,6 +147,10 @@ class LanePaths:
         pool.along[begin] = 0.0
         pool.along[begin + 1 : first] = np.cumsum(np.hypot(*np.diff(shapes[0], axis=0).T))
         pool.start[w + 1] = end
+        middles = _middles(pool.points[begin:end])
+        self.middles = np.concatenate([self.middles[:begin], middles])
+        differ = bool((np.abs(middles - pool.points[begin:end]) > _DIFFER).any())
+        self.bent = np.append(self.bent[:w], differ)
         pool.first[w] = first - begin
         pool.nominal[w] = max(self._vehicles.lane_length(lane), 1e-9)
 
@@ -144,6 +160,20 @@ class LanePaths:
             more = np.zeros((max(rows, 2 * len(array)), *array.shape[1:]), array.dtype)
             more[: len(array)] = array
             self.pool = self.pool._replace(**{name: more})
+
+
+def _middles(points: Array) -> Array:
+    """Return the middle (k, 2) [m] of a car's body beside each point of a lane path."""
+    kept = np.append(True, np.hypot(*np.diff(points, axis=0).T) > _SAME_PLACE)
+    line = points[kept]
+    if len(line) < 2:
+        return points
+    ways = np.diff(line[[0, 1, -2, -1]], axis=0)[[0, 2]]
+    ways *= (_CAR / np.hypot(*ways.T))[:, None]  # the car is straight before and behind the line
+    line = np.vstack([line[0] - ways[0], line, line[-1] + ways[1]])
+    along = stations_of(line)
+    at = along[1:-1][np.cumsum(kept) - 1]
+    return (points_at(line, along, at - _CAR / 2) + points_at(line, along, at + _CAR / 2)) / 2
 
 
 @inner
@@ -233,7 +263,8 @@ def gaps_ahead(
                             half_width[i],
                             0.0,
                         )
-                        gaps[i] = min(gaps[i], station)
+                        if station <= stations[count - 1] + _AT_END:
+                            gaps[i] = min(gaps[i], station)
 
 
 @inner

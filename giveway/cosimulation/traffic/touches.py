@@ -16,10 +16,15 @@ _MOST = 1024  # largest number of contacts at one instant
 
 
 class Touches:
-    """Notes which of SUMO's vehicles touch whom at more than 1 m/s and deeper than 5 cm."""
+    """Notes which of SUMO's vehicles touch whom at more than 1 m/s and deeper than 5 cm.
+
+    Who touches as SUMO puts the vehicle or the person onto the road does not count at that instant.
+    """
 
     def __init__(self) -> None:
         self._first: dict[tuple[str, str], float] = {}  # time [s] of each vehicle and person
+        self._known: Sequence[str] = ()  # ids of the people at the instant before
+        self._there: Sequence[str] = ()  # ids of the vehicles at the instant before
         self._pairs = np.empty((_MOST, 2), dtype=np.int64)
 
     def update(
@@ -33,12 +38,16 @@ class Touches:
             names: Ids of the people.
             people: Positions (n, 2) [m] of the people.
         """
+        known, there = self._known, self._there
+        self._known, self._there = tuple(names), tuple(background.ids)
         fast = np.flatnonzero(background.speed > _SPEED)
         if not len(fast) or not len(people):
             return
         count = _contacts(background.bodies[fast], people, SIM.body_radius - _DEPTH, self._pairs)
         for vehicle, person in self._pairs[:count].tolist():
-            self._first.setdefault((background.ids[fast[vehicle]], names[person]), time)
+            pair = background.ids[fast[vehicle]], names[person]
+            if pair[0] in there and pair[1] in known:
+                self._first.setdefault(pair, time)
 
     def __len__(self) -> int:
         """The number of people whom each vehicle touched, of all vehicles together."""

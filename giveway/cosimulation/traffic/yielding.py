@@ -18,7 +18,6 @@ from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controller.driving_constants import CREEPING, STANDING
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
@@ -28,31 +27,26 @@ from giveway.cosimulation.traffic.lane_paths import (
     gaps_ahead,
     sort_pedestrians,
 )
+from giveway.cosimulation.traffic.people_ahead import BESIDE, expected, still, touched_in_front
 from giveway.cosimulation.traffic.waits import Waits
+from giveway.crowd.gap_acceptance import Waiting
 from giveway.ego.ego import Ego
 from giveway.ego.rules.merge_points import FollowingConstraint
 from giveway.geometry.kernel import Array
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
-from pedestrian_model import Crowd, targets
+from pedestrian_model import Crowd
 
-_LOOK_AHEAD = 1.0  # Time [s] for which pedestrians are expected to keep their velocity
-# Times [s] ahead at which people with priority are expected on their route
-_WALKING_ON = (1.0, 2.0)
 _DISTANCE = 2.0  # Distance [m] before a pedestrian at which vehicles want to stop
 _CREEPS_TO = 0.8  # Distance [m] before a person who stands, to which a stuck vehicle creeps
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # Smallest lateral distance [m] that vehicles keep from an ego
-# Distance [m] from a vehicle's side to the middle of a person who waits for a gap, from which on
-# it passes: half of the shoulder breadth and 0.03 m
-_BESIDE = 0.3
 _BEHIND_EGO = 0.5  # Distance [m] behind an ego at which vehicles stand
 _BEFORE_LINE = 1.0  # Distance [m] before their line at which vehicles wait
 _PULLING_AWAY = 2.0  # Speed [m/s] at which a stuck vehicle pulls away
 _APART = 0.5  # Largest distance [m] between the points that stand for an ego's outline
 NOBODY: Mapping[str, float] = MappingProxyType({})
-Marks = NDArray[np.bool_]
 
 
 class Yielding:
@@ -92,7 +86,7 @@ class Yielding:
         egos: Sequence[Ego] = (),
         rooms: Mapping[str, float] = NOBODY,
         merging: Sequence[Mapping[str, FollowingConstraint]] = (),
-        held: Marks | None = None,
+        waiting: Waiting | None = None,
     ) -> None:
         """Limit the vehicles that have to yield, and release the others, after each SUMO step.
 
@@ -103,9 +97,9 @@ class Yielding:
             rooms: Distance [m] to the line of each vehicle that waits there for an ego, by its id.
             merging: Following constraints of the vehicles that let each ego merge before them, by
                 their ids.
-            held: Marks (n,) of the people who wait for a gap, or None without any.
+            waiting: People who wait for a gap, or None if nobody does in this network.
         """
-        limits = self._limits(background, crowd, held) if background.ids and len(crowd) else {}
+        limits = self._limits(background, crowd, waiting) if background.ids and len(crowd) else {}
         if background.ids and egos:
             for name, limit in self._behind_egos(background, egos).items():
                 limits[name] = min(limit, limits.get(name, math.inf))
@@ -129,7 +123,10 @@ class Yielding:
         self._time += self._step_length * len(limits)
 
     def _limits(
-        self, background: BackgroundVehicles, crowd: Crowd, held: Marks | None
+        self,
+        background: BackgroundVehicles,
+        crowd: Crowd,
+        waiting: Waiting | None,
     ) -> dict[str, float]:
         """The speed limit [m/s] of each vehicle with a pedestrian ahead."""
         # a vehicle decelerates with at least 2 m/s^2, from which this sight follows
@@ -140,13 +137,11 @@ class Yielding:
         self._lane_paths.forget(background.ids)
         found = (np.column_stack([background.x, background.y]), positions, numbers)
         half_width = background.width / 2 + CORRIDOR_MARGIN
-        waits = held is not None and bool(held.any())
-        gaps = self._gaps(found, sight, half_width, _expected(crowd, held if waits else None))
-        if waits:
-            there, way = crowd.position[held], _LOOK_AHEAD * crowd.velocity[held]
-            there = np.concatenate([there, there + 0.5 * way, there + way])
-            beside = self._gaps(found, sight, background.width / 2 + _BESIDE, there)
-            gaps = np.minimum(gaps, beside)
+        gaps = self._gaps(found, sight, half_width, expected(crowd, waiting), waiting)
+        if waiting is not None:
+            room, there = background.width / 2 + BESIDE, still(crowd, waiting)
+            gaps = np.minimum(gaps, self._gaps(found, sight, room, there, waiting))
+            gaps[touched_in_front(background, crowd.position)] = 0.0
         near = np.flatnonzero(gaps <= sight)
         stuck = self._waits.stuck(background, near, crowd, self._vehicles)
         here = gaps if not stuck else self._gaps(found, sight, half_width, crowd.position)
@@ -163,13 +158,28 @@ class Yielding:
         return limits
 
     def _gaps(
-        self, found: tuple[Array, Array, Indices], sight: Array, half_width: Array, people: Array
+        self,
+        found: tuple[Array, Array, Indices],
+        sight: Array,
+        half_width: Array,
+        people: Array,
+        waiting: Waiting | None = None,
     ) -> Array:
-        """The distance (m,) [m] of each vehicle to the first person on its way; inf without one."""
-        gaps = np.full(len(sight), np.inf)
-        if (found[2] >= 0).any():
-            pool, order = self._lane_paths.pool, sort_pedestrians(people)
-            gaps_ahead(found, pool, sight, half_width, people, order, gaps)
+        """The distance (m,) [m] of each vehicle to the first person on its way; inf without one.
+
+        Where people wait for gaps, the inner side of bends counts, which vehicles' middles cut.
+        """
+        gaps, (fronts, positions, numbers) = np.full(len(sight), np.inf), found
+        if not (numbers >= 0).any() or not len(people):
+            return gaps
+        pool, order = self._lane_paths.pool, sort_pedestrians(people)
+        gaps_ahead(found, pool, sight, half_width, people, order, gaps)
+        numbers = np.where((numbers >= 0) & self._lane_paths.bent[numbers], numbers, -1)
+        if waiting is not None and (numbers >= 0).any():
+            inner, more = pool._replace(points=self._lane_paths.middles), np.full_like(gaps, np.inf)
+            turning = fronts, positions, numbers
+            gaps_ahead(turning, inner, sight, half_width, people, order, more)
+            gaps = np.minimum(gaps, more)
         return gaps
 
     def _separate(
@@ -263,20 +273,6 @@ class Yielding:
                 if safe < speed + b * self._step_length:
                     limits[name] = min(safe, limits.get(name, math.inf))
         return limits
-
-
-def _expected(crowd: Crowd, held: Marks | None = None) -> Array:
-    """The present and expected positions (k, 2) [m] of people, without those who wait for a gap."""
-    places = [crowd.position, crowd.position + _LOOK_AHEAD * crowd.velocity]
-    if held is not None:
-        places = [place[~held] for place in places]
-    relying = np.flatnonzero(crowd.priority)
-    if len(relying):
-        place = crowd.position[relying]
-        way = targets(crowd, relying) - place
-        pace = crowd.desired_speed[relying] / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
-        places += [place + (time * pace)[:, None] * way for time in _WALKING_ON]
-    return np.concatenate(places)
 
 
 def _safe_speed(room: float, leader: float, deceleration: float, reaction: float) -> float:

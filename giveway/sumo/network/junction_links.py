@@ -1,5 +1,6 @@
 """The junctions of the loaded network: the movements through them, and their priorities."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 from giveway.scenario_files.right_of_way import JunctionLogic, right_of_way
 from giveway.sumo.network.internal_lanes import lanes_inside
 from giveway.sumo.network.lanes import Lanes
+from giveway.sumo.network.pedestrian_crossings import Crossing
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +57,11 @@ class Junctions:
     def at(self, inside: str) -> dict[int, Movement]:
         """Return the movements of the junction in which a link ends with the lane ``inside``."""
         return self.of(self._junctions.get(inside, ""))
+
+    def beside(self, crossings: Iterable[Crossing]) -> list[Movement]:
+        """Return the movements through the junctions of crossings."""
+        junctions = {self._junctions.get(crossing.lane, ""): None for crossing in crossings}
+        return [movement for name in junctions for movement in self.of(name).values()]
 
     def yielding_to(self, crossing: str) -> frozenset[str]:
         """Return the lanes inside a junction whose vehicles give way to people on a crossing.

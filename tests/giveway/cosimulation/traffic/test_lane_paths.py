@@ -11,7 +11,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.cosimulation.traffic.lane_paths import LanePathPool, gaps_ahead, sort_pedestrians
+from giveway.cosimulation.traffic.lane_paths import (
+    LanePathPool,
+    _middles,
+    gaps_ahead,
+    sort_pedestrians,
+)
 from giveway.ego.perception.corridor import closest_in_front
 from giveway.geometry.kernel import kernel
 from giveway.geometry.path import EgoPath
@@ -47,7 +52,10 @@ def pooled(lanes: list[np.ndarray]) -> LanePathPool:
 
 
 def one_by_one(lane: np.ndarray, station: float, sight: float, people: np.ndarray) -> float:
-    """The gap by the ego's own means: a path from the front on, everybody looked at."""
+    """The gap by the ego's own means: a path from the front on, everybody looked at.
+
+    Who is more than 0.3 m behind the end of the lanes does not count.
+    """
     path = EgoPath.through(lane)
     front = np.array(path.pose(station)[:2])
     ahead = EgoPath.through([front, *lane[path.stations > station]])
@@ -56,7 +64,7 @@ def one_by_one(lane: np.ndarray, station: float, sight: float, people: np.ndarra
     gap, _ = closest_in_front(
         ahead.vertices, ahead.stations, (0, segments), near, 0.0, HALF_WIDTH, 0.0
     )
-    return gap if gap <= sight else math.inf
+    return gap if gap <= min(sight, ahead.length + 0.3) else math.inf
 
 
 @settings(max_examples=40)
@@ -99,6 +107,20 @@ def test_a_car_on_no_lane_or_at_the_end_of_its_route_sees_nobody() -> None:
         gaps,
     )
     assert gaps.tolist() == [math.inf, math.inf]
+
+
+def test_the_middle_of_a_car_cuts_the_inner_side_of_a_bend() -> None:
+    angle = np.linspace(0.0, np.pi / 2, 19)
+    bend = 10.0 * np.column_stack([np.sin(angle), 1.0 - np.cos(angle)])
+    lane = np.vstack([[-30.0, 0.0], bend, bend[-1:], [10.0, 40.0]])
+    middles = _middles(lane)
+    assert middles.shape == lane.shape
+    assert middles[[0, 1, -1]] == pytest.approx(lane[[0, 1, -1]], abs=0.3)
+    inwards = np.hypot(*(middles[8:13] - (0.0, 10.0)).T)
+    assert inwards == pytest.approx(10.0 * np.cos(2.25 / 10.0), abs=0.01)  # of a chord of 4.5 m
+    straight = np.array([[0.0, 0.0], [5.0, 0.0], [60.0, 0.0]])
+    assert _middles(straight) == pytest.approx(straight)
+    assert _middles(straight[:1]).tolist() == [[0.0, 0.0]]
 
 
 @pytest.mark.parametrize("count", [0, 1, 7, 1000])

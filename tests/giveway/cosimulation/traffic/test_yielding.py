@@ -1,22 +1,14 @@
-"""Where background vehicles expect people to be."""
+"""The speed from which a background vehicle stops before a person, or behind an ego."""
 
-import numpy as np
+import pytest
 
-from giveway.cosimulation.traffic.yielding import _expected
-from pedestrian_model import Crowd
+from giveway.cosimulation.traffic.yielding import _safe_speed
 
 
-def test_people_walk_on_and_those_with_priority_to_their_goals():
-    crowd = Crowd.create(
-        [(0.0, 0.0), (9.0, 0.0)],
-        [(1.0, 0.0), (0.0, 0.0)],
-        1.2,
-        [[(50.0, 0.0)], [(9.0, 70.0)]],
-        priority=[0.0, 1.0],
-    )
-    np.testing.assert_allclose(
-        _expected(crowd),
-        [(0.0, 0.0), (9.0, 0.0), (1.0, 0.0), (9.0, 0.0), (9.0, 1.2), (9.0, 2.4)],
-    )
-    crowd.priority[:] = 0.0
-    assert len(_expected(crowd)) == 4
+@pytest.mark.parametrize("room", [0.0, 0.5, 20.0])
+@pytest.mark.parametrize("leader", [0.0, 6.0])
+def test_a_vehicle_stops_in_its_room_after_the_reaction_time(room: float, leader: float) -> None:
+    speed = _safe_speed(room, leader, 4.5, 1.0)
+    stops = speed * 1.0 + speed**2 / 9.0
+    assert stops == pytest.approx(room + leader**2 / 9.0)
+    assert _safe_speed(-1.0, 0.0, 4.5, 1.0) == 0.0

@@ -60,3 +60,26 @@ def test_who_has_come_to_the_kerb_is_not_pushed_to_and_fro() -> None:
         model.advance(crowd, Vehicles.empty(), Surroundings(closed=np.array([True])))
         moved.append(abs(crowd.position[0, 0]))
     assert 0.0 < moved[0] < 0.5 * moved[1]
+
+
+@pytest.mark.parametrize("near", [True, False])
+def test_who_does_not_cross_steps_back_from_where_cars_turn(near: bool) -> None:
+    """The first waits, the second walks along, the third crosses, the fourth comes from there."""
+    swept = shapely.box(-5.0, -0.5, 5.0, 0.0)
+    crowd = Crowd.create(
+        [(-2.0, -0.4), (0.0, -0.4), (2.0, -0.4), (4.0, -0.4)],
+        [(0.0, 0.0)] * 4,
+        1.2,
+        [[(-2.0, -0.2), (-2.0, 9.0)], [(0.0, -0.2)], [(2.0, -0.4), (2.0, 9.0)], [(4.0, -3.0)]],
+        signals=[[0, -1], [-1], [1, -1], [-1]],
+    )
+    car = Vehicles.create(0.0, 6.0 if near else 90.0, 0.0, 4.0)
+    held = HeldAtKerb(PlainModel("social-force", SIM, STEP), 0, 1, SIDEWALK, swept)
+    assert held.free.bounds == (-5.0, -2.0, 5.0, -0.5)
+    for _ in range(8):
+        held.advance(crowd, car, Surroundings(closed=np.array([True, False])))
+    y = crowd.position[:, 1]
+    assert bool(y[0] <= -0.5) is near
+    assert bool(y[1] <= -0.5) is near
+    assert y[2] > -0.4
+    assert y[3] < -0.5
