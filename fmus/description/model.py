@@ -72,6 +72,7 @@ class Variable:
     minimum: float | None = None  # smallest value, in the variable's unit
     maximum: float | None = None
     settable: bool = False  # True if it can be set before the start
+    clocks: tuple[int, ...] = ()  # references of the clocks with which it may change
     again_on: int = 0  # line of another variable of the same name; 0 without one
     negated: bool = False  # FMI 1's negatedAlias: the value is that of the reference, times -1
 
@@ -146,6 +147,26 @@ class JointChannel(Channel):
     def parts(self) -> tuple[tuple[Channel, float], ...]:
         """The single channels, each with its factor."""
         return self.joined
+
+
+@dataclass(frozen=True)
+class Clock:
+    """A clock of FMI 3.
+
+    Attributes:
+        variability: How its interval varies: "constant", "fixed", "countdown", "triggered", ...
+        interval: Time between two ticks [s], or None if the description does not tell.
+        shift: Time of the first tick [s].
+        needed: True if variables belong to it.
+    """
+
+    name: str
+    reference: int
+    causality: str
+    variability: str
+    interval: float | None
+    shift: float
+    needed: bool
 
 
 @dataclass(frozen=True)
@@ -226,6 +247,7 @@ class Model:
     default_step: float | None  # [s] step of its default experiment
     default_tolerance: float | None
     system: System | None = None  # the FMUs that it is made of, or None for one FMU
+    clocks: tuple[Clock, ...] = ()
 
     def unit_of(self, variable: Variable) -> Unit | None:
         """Return the unit of a variable, or None if it has none."""

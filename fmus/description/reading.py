@@ -25,6 +25,7 @@ from fmus.description.variables import (
     VARIABLE_TAGS,
     broken,
     number,
+    read_clocks,
     read_variables,
     whole,
 )
@@ -110,6 +111,7 @@ def model_of(archive: Archive, sizes: tuple[tuple[str, int], ...] = ()) -> Model
         event_indicators=indicators,
         default_step=_positive(where, experiment, "stepSize"),
         default_tolerance=_positive(where, experiment, "tolerance"),
+        clocks=read_clocks(root, where) if version == "3.0" else (),
     )
 
 

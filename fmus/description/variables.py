@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Final, TypeVar
 
 from fmus.archive.markup import Element
-from fmus.description.model import INTEGER_TYPES, REAL_TYPES, Variable
+from fmus.description.model import INTEGER_TYPES, REAL_TYPES, Clock, Variable
 from fmus.errors import FmuFileError
 from fmus.text import clean, printable
 
@@ -24,6 +24,7 @@ PARAMETERS: Final = frozenset({"parameter", "calculatedParameter", "structuralPa
 FREE: Final = frozenset({"parameter", "structuralParameter", "input"})  # settable before the start
 MAX_REFERENCE: Final = (1 << 32) - 1
 MAX_SIZE: Final = 10_000_000  # values of an array
+LONGEST: Final = 1e9  # [s] interval of a clock
 MAX_NAME: Final = 1000  # characters
 MAX_UNIT: Final = 60
 MAX_DESCRIPTION: Final = 500
@@ -139,6 +140,7 @@ def _variable(
         description=clean(element.get("description"), MAX_DESCRIPTION),
         minimum=next((limit for limit in minima if limit is not None), None),
         maximum=next((limit for limit in maxima if limit is not None), None),
+        clocks=_clocks(element),
         settable=variability != "constant" and changeable,
         negated=version == "1.0" and element.get("alias") == "negatedAlias",
     )
@@ -240,6 +242,44 @@ def _reference(where: str, element: Element) -> int:
     if reference is None or not 0 <= reference <= MAX_REFERENCE:
         raise _bad(where, element, "valueReference", f"0 to {MAX_REFERENCE}")
     return reference
+
+
+def _clocks(element: Element) -> tuple[int, ...]:
+    """Return the references of the clocks with which a variable may change."""
+    return tuple(int(word) for word in element.get("clocks").split() if word.isdecimal())
+
+
+def read_clocks(root: Element, where: str) -> tuple[Clock, ...]:
+    """Return the clocks of FMI 3.
+
+    Raises:
+        FmuFileError: an interval is malformed; the message names the line.
+    """
+    elements = _children(root, "ModelVariables")
+    needed = {reference for element in elements for reference in _clocks(element)}
+    return tuple(
+        Clock(
+            name=element.get("name"),
+            reference=_reference(where, element),
+            causality=element.get("causality", "local"),
+            variability=clean(element.get("intervalVariability"), MAX_UNIT),
+            interval=_seconds(where, element, "interval"),
+            shift=_seconds(where, element, "shift") or 0.0,
+            needed=_reference(where, element) in needed,
+        )
+        for element in elements
+        if element.tag == "Clock"
+    )
+
+
+def _seconds(where: str, element: Element, name: str) -> float | None:
+    """Return an interval or a shift, which is a decimal or a fraction, or None without it."""
+    value = number(where, element, f"{name}Decimal")
+    if value is None and (counter := number(where, element, f"{name}Counter")) is not None:
+        value = counter / (number(where, element, "resolution") or 1.0)
+    if value is None or (0.0 <= value <= LONGEST and (value > 0.0 or name == "shift")):
+        return value
+    raise _bad(where, element, f"{name}Decimal", f"a time above 0, up to {LONGEST:g} s")
 
 
 def _types(root: Element, version: str) -> dict[str, Element]:

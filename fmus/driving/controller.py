@@ -40,6 +40,7 @@ class ControllerFmu:
             folder,
             prepared.binary,
             prepared.profile.fmu,
+            clocks=prepared.clocks,
         )
 
     @staticmethod

@@ -51,7 +51,7 @@ class PartFmu:
 
     Attributes:
         time: Time at the end of the last step [s].
-        warnings: Warnings, which stay empty.
+        warnings: Remarks on the FMU and on its start.
 
     Raises:
         FmuPlatformError: the FMU has no binary that can be loaded.
@@ -59,11 +59,17 @@ class PartFmu:
 
     def __init__(self, prepared: PreparedPart, folder: Path) -> None:
         self.prepared = prepared
-        self.warnings: list[str] = []
         self.time = 0.0
         self._instance = load(
-            prepared.model, prepared.wiring.interface, folder, prepared.binary, prepared.stepping
+            prepared.model,
+            prepared.wiring.interface,
+            folder,
+            prepared.binary,
+            prepared.stepping,
+            clocks=prepared.clocks,
         )
+        self.warnings = self._instance.remarks
+        self.warnings += prepared.notes
 
     @staticmethod
     def numbers(prepared: PreparedPart) -> tuple[int, int]:

@@ -30,6 +30,7 @@ class Runner(Protocol):
 
     inputs: memoryview[float]
     outputs: memoryview[float]
+    remarks: list[str]
 
     @property
     def tick(self) -> Callable[[float, float], int]:
@@ -128,6 +129,7 @@ class VehicleFmu(Drivable):
             prepared.binary,
             prepared.profile.fmu,
             rewinds=not prepared.ours,  # keeping the state takes time in every step
+            clocks=prepared.clocks,
         )
 
     # --- start ---------------------------------------------------------------------------------
@@ -168,6 +170,7 @@ class VehicleFmu(Drivable):
         self._tick = self._instance.tick
         self._motion = motion = Motion(self.prepared)
         self.warnings = motion.warnings
+        self.warnings += [f"{self.path.name}: {remark}" for remark in self._instance.remarks]
         motion.begin(self._outputs)
         self._refusal = ""
         self._show(motion)

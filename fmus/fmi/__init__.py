@@ -18,6 +18,7 @@ from fmus.fmi.fmi3 import Fmi3Calls
 from fmus.fmi.library import Library
 from fmus.fmi.messages import MessageLog
 from fmus.fmi.running import Instance
+from fmus.profile.clocks import Ticking
 from fmus.profile.tables import Stepping
 
 __all__ = ["load"]
@@ -33,6 +34,7 @@ def load(
     stepping: Stepping,
     *,
     rewinds: bool = True,
+    clocks: tuple[Ticking, ...] = (),
 ) -> Instance:
     """Load an FMU's library, ready to be started.
 
@@ -45,6 +47,7 @@ def load(
             the FMU in Co-Simulation), and the first and last time that the FMU is given.
         rewinds: True to keep the state before each step, so that a discarded step can be repeated
             in smaller ones. It works only with Co-Simulation FMUs that can save their state.
+        clocks: Input clocks that tick.
 
     Raises:
         FmuInterfaceError: this version and kind cannot be run.
@@ -62,8 +65,11 @@ def load(
         if interface.kind == Kind.MODEL_EXCHANGE:
             from fmus.fmi.model_exchange import ModelExchange  # Co-Simulation needs no numpy
 
-            return ModelExchange(calls, stepping.tolerance, stepping.solver)
-        return CoSimulation(calls, stepping.tolerance, rewinds=rewinds)
+            instance: Instance = ModelExchange(calls, stepping.tolerance, stepping.solver)
+        else:
+            instance = CoSimulation(calls, stepping.tolerance, rewinds=rewinds)
+        instance.tickings = clocks
+        return instance
     except BaseException:
         library.close()
         raise

@@ -110,6 +110,8 @@ class Calls(ABC):
         self.start_time = 0.0  # [s] first time of the FMU
         # [s] end of the simulation that the FMU is given, or None
         self.stop_time: float | None = None
+        # references of the clocks that tick now, or None if none is ever ticked
+        self.active: frozenset[int] | None = None
         self.event_mode = False  # FMI 3's Co-Simulation: True for instances with event mode
         self.prefix = f"fmi{model.fmi_version[0]}"  # beginning of all functions' names
         self.exchanges = interface.kind == Kind.MODEL_EXCHANGE

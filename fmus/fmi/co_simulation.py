@@ -4,14 +4,17 @@ An FMU may discard a step. It then reports how far it came, and the rest is done
 fails, the state before the step is restored and the step is done in halves, quarters, ...
 
 FMI 3 FMUs with events may need the importer to handle them (event mode). They are first run without
-it. If a step fails, a new instance is made with event mode and brought to the same point.
+it, unless they have input clocks to tick or make no other instance. If a step fails, a new instance
+is made with event mode and brought to the same point.
 """
 
+from collections.abc import Iterator
 from contextlib import suppress
 from ctypes import c_double, c_void_p
 
 from fmus.errors import FmuPlatformError
-from fmus.fmi.calls import CallFailedError, Calls
+from fmus.fmi.calls import CallFailedError, Calls, NoInstanceError
+from fmus.fmi.clocks import NEGLIGIBLE as TICK
 from fmus.fmi.running import Instance, Tick
 from fmus.fmi.status import DISCARD, ENDED, ERROR, FATAL, WARNING
 from fmus.fmi.values import Transfer
@@ -39,6 +42,7 @@ class CoSimulation(Instance):
         self._start, self._step = c_double(), c_double()
         self._before: c_void_p | None = None  # state before the last step
         self._before_time = 0.0  # [s] time of that state
+        self._now = calls.start_time  # [s] time of the present event
         calls.function(calls.name("DoStep"))
         self._past: list[tuple[float, float, bytes]] | None = (
             None  # steps, as long as it may matter
@@ -57,21 +61,35 @@ class CoSimulation(Instance):
         past = self._past = [] if has_events and not calls.event_mode else None
         inputs = self.inputs
 
+        def events(time: float) -> int:
+            self._now = time
+            calls.enter_event_mode()
+            if self.clocks is not None:
+                self.clocks.activate(time)
+            status = note_status(set_inputs(*set_arguments))
+            return status if status > WARNING else self._handle_events()
+
         def event_tick(time: float, size: float) -> int:
             try:
-                calls.enter_event_mode()
-                status = note_status(set_inputs(*set_arguments))
-                if status > WARNING or (status := self._handle_events()) > WARNING:
+                if (status := events(time)) > WARNING:
                     return status
-                if save:
-                    save()
-                start.value, step.value = time, size
-                status = do_step(*arguments)
-                if (status or flags[0]) and (status := complete(status, time, size)) > WARNING:
-                    return status
-                if stepper.event.value:
-                    calls.enter_event_mode()
-                    if (status := self._handle_events()) > WARNING:
+                for part, length, ticks in self._parts(time, size):
+                    if save:
+                        save()
+                    start.value, step.value = part, length
+                    status = do_step(*arguments)
+                    if (status or flags[0]) and (
+                        status := complete(status, part, length)
+                    ) > WARNING:
+                        return status
+                    status = 0
+                    if ticks:
+                        status = events(part + length)
+                    elif stepper.event.value:
+                        self._now = part + length
+                        calls.enter_event_mode()
+                        status = self._handle_events()
+                    if status > WARNING:
                         return status
             except CallFailedError as error:
                 self.messages.add(ERROR, str(error))
@@ -110,6 +128,25 @@ class CoSimulation(Instance):
         if self.calls.event_mode and (status := self._handle_events()) > WARNING:
             raise CallFailedError("the event iteration", status)
 
+    def _instantiate(self) -> None:
+        self.calls.event_mode |= bool(self.tickings)
+        try:
+            super()._instantiate()
+        except NoInstanceError:  # some FMUs want event mode, others refuse it
+            if self.calls.event_mode or "hasEventMode" not in self.interface.flags:
+                raise
+            self.messages.take()
+            self.calls.event_mode = True
+            super()._instantiate()
+
+    def _parts(self, time: float, size: float) -> Iterator[tuple[float, float, bool]]:
+        """Yield the parts of a step between ticks: begin, length, whether a tick ends it."""
+        end = time + size
+        while self.clocks is not None and time < (tick := self.clocks.next) < end - TICK:
+            yield time, tick - time, True
+            time, size = tick, end - tick
+        yield time, size, False
+
     def _handle_events(self) -> int:
         """Do the event iteration, then return to step mode.
 
@@ -121,6 +158,8 @@ class CoSimulation(Instance):
             if info.ended:
                 return ENDED
             if not info.again:
+                if self.clocks is not None:
+                    self.clocks.ask(self._now)
                 self.calls.enter_step_mode()
                 return 0
         self.messages.add(ERROR, f"its event iteration has not ended after {ROUNDS} rounds")

@@ -5,6 +5,8 @@ first of a state event, a time event, an event that the FMU wants after an integ
 the end of the step; event mode again; and so on (FMI 2.0.4, section 3.2; FMI 3.0.1, section 3).
 """
 
+from functools import partial
+from math import inf
 from typing import Any, Literal
 
 from fmus.errors import FmuInterfaceError
@@ -61,7 +63,7 @@ class ModelExchange(Instance):
     def prepare(self) -> None:  # noqa: D102 - as in Instance
         try:
             self._system = ContinuousSystem(self.calls)
-            self._iterate(self.calls.start_time)
+            self._iterate(self.calls.start_time, ticks=False)
             self.calls.enter_continuous_time_mode()
             self._solver = self._make_solver()
             self._nominals = self._system.nominals()
@@ -75,6 +77,7 @@ class ModelExchange(Instance):
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:  # noqa: D102
         set_inputs, set_arguments = into.function, into.arguments
         get_outputs, get_arguments = out.function, out.arguments
+        self._set_inputs = partial(set_inputs, *set_arguments)
 
         def tick(time: float, size: float) -> int:
             try:
@@ -120,6 +123,8 @@ class ModelExchange(Instance):
         events = 0
         while end - time > negligible:
             upcoming = self._next_event
+            if self.clocks is not None:
+                upcoming = min(self.clocks.next, inf if upcoming is None else upcoming)
             timed = upcoming is not None and upcoming < end - negligible
             stop = upcoming if timed and upcoming is not None else end
             time, happened = self._integrate(time, stop)
@@ -144,8 +149,12 @@ class ModelExchange(Instance):
             self._nominals = self._system.nominals()
         self.solver.restart(time, self._system.states(), self._nominals)
 
-    def _iterate(self, time: float) -> None:
-        """Update the discrete states until nothing changes any more."""
+    def _iterate(self, time: float, *, ticks: bool = True) -> None:
+        """Update the discrete states until nothing changes any more; clocks may tick."""
+        if ticks and self.clocks is not None:
+            self.clocks.activate(time)
+            if self.calls.active:
+                self.note_status(int(self._set_inputs()))
         for _ in range(ROUNDS):
             info = self.calls.update_discrete_states()
             self._update_nominals |= info.nominals_changed
@@ -157,6 +166,8 @@ class ModelExchange(Instance):
             raise IntegrationError(
                 f"its event iteration at {time:.9g} s has not ended after {ROUNDS} rounds"
             )
+        if self.clocks is not None:
+            self.clocks.ask(time)
         upcoming = info.next_time
         # A time event that is over has just been handled, but some FMUs keep naming it.
         later = upcoming is not None and upcoming > time + _resolution(time)

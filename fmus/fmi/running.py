@@ -7,11 +7,18 @@ from contextlib import suppress
 from fmus.description.model import Channel, Value
 from fmus.errors import FmuStartError
 from fmus.fmi.calls import CallFailedError, Calls, Setting
+from fmus.fmi.clocks import Clocks
 from fmus.fmi.status import ERROR, FATAL, PENDING, WARNING, named
 from fmus.fmi.values import Transfer, settings
+from fmus.profile.clocks import Ticking
+from fmus.text import printable
 
 Tick = Callable[[float, float], int]
 """One step: (start of the step [s], step [s]) -> status."""
+
+
+class _ClocksRefusedError(Exception):
+    """The FMU refuses the ticks of clocks to which nothing belongs."""
 
 
 class Instance(ABC):
@@ -26,9 +33,12 @@ class Instance(ABC):
     Attributes:
         inputs: One double per input channel; the next :attr:`tick` hands them to the FMU.
         outputs: One double per output channel, with the values of the last tick.
+        remarks: Remarks for the user on the last start.
         tick: Function that does one step and fills :attr:`outputs`.
         messages: Last messages of the FMU, and the faults found in it.
     """
+
+    tickings: tuple[Ticking, ...] = ()  # input clocks that tick
 
     def __init__(self, calls: Calls, tolerance: float | None) -> None:
         self.model = calls.model
@@ -42,6 +52,8 @@ class Instance(ABC):
         self._before_start: list[Setting] = []
         self._at_start: list[Setting] = []  # start values of the inputs
         self._initialised = False
+        self.clocks: Clocks | None = None
+        self.remarks: list[str] = []  # remarks on the last start
         self._worst = 0  # highest status since the instance was made
         self._untouchable = False  # True after a fatal error
 
@@ -81,7 +93,7 @@ class Instance(ABC):
 
     def _initialise(self) -> None:
         """Make an instance and bring it to its first time."""
-        self.calls.instantiate()
+        self._instantiate()
         self.calls.configure(self._before_start)
         try:  # an FMU may compute with its inputs as soon as it enters initialization mode
             self.calls.configure(self._at_start)
@@ -90,11 +102,37 @@ class Instance(ABC):
                 raise
             self.messages.take()  # it takes inputs in that mode only
             self.calls.free()
-            self.calls.instantiate()
+            self._instantiate()
             self.calls.configure(self._before_start)
         self.calls.initialise(self._at_start, self.tolerance)
         self._initialised = True
-        self.prepare()
+        try:
+            self._ask_clocks()
+            self.prepare()
+        except _ClocksRefusedError as refusal:
+            names = ", ".join(printable(one.name, 60) for one in self.tickings)
+            self.remarks.append(f"it refuses the ticks of its input clocks ({names}): {refusal}")
+            self.messages.take()
+            self.calls.free()
+            self._worst, self._initialised, self.tickings = 0, False, ()
+            self.calls.event_mode, self.calls.active = False, None
+            self._initialise()
+
+    def _instantiate(self) -> None:
+        """Make an instance."""
+        self.calls.instantiate()
+
+    def _ask_clocks(self) -> None:
+        """Try out the clocks in the event mode after the initialisation."""
+        self.clocks = Clocks(self.calls, self.tickings) if self.tickings else None
+        if self.clocks is None:
+            return
+        try:
+            self.clocks.try_out()
+        except CallFailedError as error:
+            if self.clocks.needed or error.status == FATAL:
+                raise
+            raise _ClocksRefusedError(error) from None
 
     def _link(
         self,

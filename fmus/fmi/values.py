@@ -136,13 +136,14 @@ class Transfer:
         self.function: Callable[..., int] = _nothing
         self.arguments: tuple[Any, ...] = ()
         types = [_type(calls, channel) for channel in channels]
+        kinds = [(t, frozenset(c.variable.clocks)) for t, c in zip(types, channels, strict=True)]
         for index, channel in enumerate(channels):
             self.view[index] = float(start_list(channel.variable)[channel.element])
         if not channels:
             return
         plain = all(
             c.parts[0][0] is c and c.variable.scalar and not c.variable.negated for c in channels
-        )
+        ) and not any(clocks for _, clocks in kinds)
         if plain and len(set(types)) == 1 and types[0].type is c_double:
             self.function = calls.function(calls.name(verb, types[0].suffix))
             references = [channel.variable.reference for channel in channels]
@@ -150,18 +151,21 @@ class Transfer:
             return
         self._groups = [
             _Group(
-                calls, verb, ctype, [(i, c) for i, c in enumerate(channels) if types[i] == ctype]
+                calls, verb, kind[0], [(i, c) for i, c in enumerate(channels) if kinds[i] == kind]
             )
-            for ctype in dict.fromkeys(types)
+            for kind in dict.fromkeys(kinds)
         ]
+        self._calls = calls
         self._setting = verb == "Set"
         self.function = self._copy
 
     def _copy(self) -> int:
         """Set or get all groups, and return the worst status."""
-        worst = 0
+        worst, active = 0, self._calls.active
         for group in self._groups:
             if self._setting:
+                if active is not None and group.clocks and not group.clocks & active:
+                    continue  # it may change only as its clock ticks
                 group.fill(self.view)
             status = group.function(*group.arguments)
             if status not in (0, 1):
@@ -200,6 +204,7 @@ class _Group:
         ]
         self._joint = [i for i, channel in channels if channel.parts[0][0] is not channel]
         self._convert = convert
+        self.clocks = frozenset(variables[0].clocks)
         references = [variable.reference for variable in variables]
         self.function = calls.function(calls.name(verb, ctype.suffix))
         self.arguments = calls.arguments(references, self._values)

@@ -14,6 +14,7 @@ from typing import NoReturn, TypeGuard
 from fmus.description.binaries import binary_of
 from fmus.description.channels import find_channel
 from fmus.description.model import Channel, Link, Model, System, Value
+from fmus.description.reading import read_model
 from fmus.description.systems import unpacked_parts
 from fmus.driving.part import PartFmu, PartWiring, PreparedPart
 from fmus.errors import FmuError, FmuStartError
@@ -21,6 +22,7 @@ from fmus.fmi.messages import MessageLog
 from fmus.isolation import processor
 from fmus.isolation.fmu_process import FmuProcess, while_starting
 from fmus.isolation.wire import LOAD, START, STEP
+from fmus.profile.clocks import tickings_of
 from fmus.profile.preparation import Prepared
 from fmus.profile.wires import interface_of
 
@@ -47,6 +49,7 @@ class Parts:
         self.inputs = self.outputs = memoryview(bytearray()).cast("d")
         self.messages = MessageLog()  # stays empty: a part that fails raises its error itself
         self.warnings: list[str] = []
+        self.remarks: list[str] = []  # stays empty: the parts' processes report theirs
         self._parts: dict[str, _Part] = {}
         self._told: list[tuple[int, _Part, int, Link]] = []
         self._read: list[tuple[_Part, int, Link]] = []
@@ -217,8 +220,9 @@ class _Part:
         def channel(variable: str) -> Channel:
             return find_channel(model, f"part '{name}':", variable)
 
-        interface = interface_of(model, self.stepping.kind)
         values = given.plain[name]
+        model = read_model(model.path, values)  # a structural parameter sizes arrays
+        interface = interface_of(model, self.stepping.kind)
         wiring = PartWiring(
             interface=interface,
             numbers=tuple(channel(v) for v, value in values.items() if _is_number(value)),
@@ -227,9 +231,10 @@ class _Part:
             start_values={channel(v): x for v, x in values.items() if not _is_number(x)},
         )
         self._settable = [c.variable.settable and c.variable.is_real for c in wiring.inputs]
+        clocks, remarks = tickings_of(model, interface, self.stepping, self.plan.step)
         part = PreparedPart(
-            model, self.plan, (), prepared.step_size, binary_of(model, interface), (), wiring,
-            self.stepping,
+            model, self.plan, (), prepared.step_size, binary_of(model, interface), tuple(remarks),
+            clocks, wiring, self.stepping,
         )  # fmt: skip
         self.process = FmuProcess(PartFmu, part)
 

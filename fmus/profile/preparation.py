@@ -18,6 +18,7 @@ from fmus.description.reading import read_model
 from fmus.description.systems import unpacked_parts
 from fmus.errors import FmuError, FmuProfileError, FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
+from fmus.profile.clocks import Ticking, tickings_of
 from fmus.profile.commands import Command, make_command
 from fmus.profile.draft_profile import draft_profile, require_confident
 from fmus.profile.step_plan import StepPlan, step_plan_of
@@ -48,6 +49,7 @@ class PreparedFmu:
         step_size: Step size of the controller [s].
         binary: Library for this platform, by its name in the archive.
         notes: Remarks on the FMU for the user.
+        clocks: Input clocks that tick.
     """
 
     model: Model
@@ -56,6 +58,7 @@ class PreparedFmu:
     step_size: float
     binary: str
     notes: tuple[str, ...]
+    clocks: tuple[Ticking, ...]
 
     @property
     def path(self) -> Path:
@@ -138,35 +141,43 @@ def prepare(
     profile = _chosen(model, profile)
     model = read_model(path, {**profile.parameters, **(start_values or {})})
     wiring = wire(model, profile, start_values)
-    _require_parts(model, profile)
+    _require_parts(model, profile, wiring)
     if model.system is not None:  # each part has a binary of its own
         binary, notes = "", model.system.doubts
     else:
         binary = binary_of(model, wiring.interface)
         notes = notes_on(wiring.interface, binary)
+    plan = step_plan_of(path, profile.fmu.step, wiring.interface, model.default_step, step_size)
+    clocks, remarks = tickings_of(model, wiring.interface, profile.fmu, plan.step)
     return Prepared(
         model=model,
         profile=profile,
         wiring=wiring,
         command=make_command(profile, wiring.inputs, step_size),
-        step_plan=step_plan_of(
-            path, profile.fmu.step, wiring.interface, model.default_step, step_size
-        ),
+        step_plan=plan,
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
         binary=binary,
-        notes=notes,
+        notes=(*notes, *remarks),
+        clocks=clocks,
         ours=profile is BUNDLED_PROFILE,
     )
 
 
-def _require_parts(model: Model, profile: VehicleProfile) -> None:
+def _require_parts(model: Model, profile: VehicleProfile, wiring: Wiring) -> None:
     """Make sure that every part has a binary, and that the profile names no others.
 
     Raises:
-        FmuProfileError: the profile names a part that does not exist.
+        FmuProfileError: the profile names a part that does not exist, or several variables.
         FmuPlatformError: a part has no binary for this platform.
     """
+    wires = (*wiring.inputs, *wiring.outputs, wiring.initial_speed, wiring.initial_position)
+    joint = next((w for w in wires if w is not None and len(w.channel.parts) > 1), None)
+    if model.system is not None and joint is not None:
+        raise FmuProfileError(
+            f"{model.path}: {joint.channel.name}: several variables of a system of FMUs "
+            "cannot have one role; join them within the system"
+        )
     known = () if model.system is None else tuple(model.system.parts)
     for name in profile.parts:
         if name not in known:

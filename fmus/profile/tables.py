@@ -46,31 +46,6 @@ class Axis(Table):
         return self
 
 
-class Stepping(Table):
-    """The settings for stepping an FMU."""
-
-    # None for co-simulation if it has it
-    kind: Literal["co-simulation", "model-exchange"] | None = None
-    # [s] step of the FMU, or None for the control step
-    step: float | None = Field(None, gt=0, le=10)
-    start_time: float = Field(0.0, ge=-1e9, le=1e9)  # [s] the FMU's time at the start of the run
-    stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] end that the FMU is given, or None
-    # solver of Model Exchange, or None for cvode if it runs
-    solver: Literal["cvode", "rk4"] | None = None
-    tolerance: float | None = Field(None, gt=0, le=0.1)  # relative tolerance of Model Exchange
-    start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall-clock limit
-    step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall-clock limit
-
-    @model_validator(mode="after")
-    def _ends_after_its_start(self) -> Stepping:
-        if self.stop_time is not None and self.stop_time <= self.start_time:
-            raise ValueError(
-                f"stop_time = {self.stop_time:g}: expected more than start_time = "
-                f"{self.start_time:g} [s]"
-            )
-        return self
-
-
 def flat(values: Any) -> Any:
     """Return the variables' values by full name: ``vehicle.mass = 1`` is a table in TOML."""
     if not isinstance(values, dict):
@@ -89,6 +64,37 @@ def flat(values: Any) -> Any:
             else:
                 found[name] = value
     return found
+
+
+Period = Annotated[float, Field(ge=0, le=1e6)]
+Periods = Annotated[dict[str, Period], BeforeValidator(flat)]
+
+
+class Stepping(Table):
+    """The settings for stepping an FMU."""
+
+    # None for co-simulation if it has it
+    kind: Literal["co-simulation", "model-exchange"] | None = None
+    # [s] step of the FMU, or None for the control step
+    step: float | None = Field(None, gt=0, le=10)
+    start_time: float = Field(0.0, ge=-1e9, le=1e9)  # [s] the FMU's time at the start of the run
+    stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] end that the FMU is given, or None
+    # [s] period of an input clock in place of its own, by name; 0: it never ticks
+    clocks: Periods = Field(default_factory=dict)
+    # solver of Model Exchange, or None for cvode if it runs
+    solver: Literal["cvode", "rk4"] | None = None
+    tolerance: float | None = Field(None, gt=0, le=0.1)  # relative tolerance of Model Exchange
+    start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall-clock limit
+    step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall-clock limit
+
+    @model_validator(mode="after")
+    def _ends_after_its_start(self) -> Stepping:
+        if self.stop_time is not None and self.stop_time <= self.start_time:
+            raise ValueError(
+                f"stop_time = {self.stop_time:g}: expected more than start_time = "
+                f"{self.start_time:g} [s]"
+            )
+        return self
 
 
 Parameters = Annotated[dict[str, Value], BeforeValidator(flat)]

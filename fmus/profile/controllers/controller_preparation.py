@@ -12,6 +12,7 @@ from pathlib import Path
 from fmus.description.binaries import binary_of
 from fmus.description.model import Value
 from fmus.description.reading import read_model
+from fmus.profile.clocks import tickings_of
 from fmus.profile.controllers.controller_draft import draft_controller
 from fmus.profile.controllers.controller_profile import ControllerProfile
 from fmus.profile.controllers.controller_wiring import ControllerWiring, wire_controller
@@ -61,15 +62,18 @@ def prepare_controller(
     model = read_model(path, {**profile.parameters, **(start_values or {})})
     wiring = wire_controller(model, profile, setup, start_values or {})
     interface = wiring.interface
+    plan = step_plan_of(path, profile.fmu.step, interface, model.default_step, step_size)
+    clocks, remarks = tickings_of(model, interface, profile.fmu, plan.step)
     return PreparedController(
         model=model,
         profile=profile,
         wiring=wiring,
-        step_plan=step_plan_of(path, profile.fmu.step, interface, model.default_step, step_size),
+        step_plan=plan,
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
         binary=(binary := binary_of(model, interface)),
-        notes=notes_on(interface, binary),
+        notes=(*notes_on(interface, binary), *remarks),
+        clocks=clocks,
     )
 
 

@@ -28,6 +28,7 @@ REFERENCES: Final = {name: index + 1 for index, name in enumerate(QUANTITIES)}
 INPUT_ARRAY: Final = 60  # value references beyond those of single quantities
 OUTPUT_ARRAY: Final = 61
 LOAD: Final = 62
+CLOCK: Final = 59
 
 INPUTS: Final[dict[Role, tuple[str, ...]]] = {
     "force": ("force",),
@@ -95,6 +96,11 @@ class Car:
         only_step: [s] the one communication step it accepts.
         constant_step: it refuses a step that differs from its first.
         keeps_final_only: it keeps a step only if its state will not be set back before it.
+        clock: FMI 3: attributes of its input clock ``tick``; the force counts as it ticks.
+        clocked: the force belongs to the clock.
+        interval: [s] of the clock, for who asks.
+        refuses_ticks: it answers them with an error.
+        only_event_mode: FMI 3: it makes no instance without event mode.
         divides: by its spare input, as soon as it enters initialization mode.
         needs_event_mode: FMI 3: it refuses steps before its events are handled.
         needs_stop_time: [s] it wants to be told a stop time as late as this.
@@ -127,6 +133,11 @@ class Car:
     only_step: float | None = None
     constant_step: bool = False
     keeps_final_only: bool = False
+    clock: Mapping[str, str] = field(default_factory=dict)
+    clocked: bool = False
+    interval: float = 0.0
+    refuses_ticks: bool = False
+    only_event_mode: bool = False
     divides: bool = False
     needs_event_mode: bool = False
     needs_stop_time: float | None = None
@@ -207,10 +218,12 @@ def settings(car: Car, token: str, calls: str) -> str:
     """The text of resources/car.txt, which the library reads about itself."""
     lines = [f"token {token}", f"role {car.role}", f"nominal {car.nominal!r}"]
     flags = ("euler", "once_per_process", "strict_time", "constant_step", "keeps_final_only",
-             "needs_event_mode", "divides")  # fmt: skip
+             "needs_event_mode", "divides", "only_event_mode")  # fmt: skip
     lines += [flag for flag in flags if getattr(car, flag)]
     if car.needs_stop_time:
         lines.append(f"needs_stop_time {car.needs_stop_time!r}")
+    if car.clock and not car.refuses_ticks:
+        lines += ["samples", f"interval {car.interval!r}"]
     if car.only_step:
         lines.append(f"only_step {car.only_step!r}")
     if car.calls:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 from xml.etree import ElementTree as Xml
 
 from support.fmus.cars import (
+    CLOCK,
     INPUT_ARRAY,
     LOAD,
     OUTPUT_ARRAY,
@@ -152,6 +153,9 @@ def _fmi3(car: Car, token: str) -> Xml.Element:
         causality="independent",
         variability="continuous",
     )
+    if car.clock:
+        clock = {"name": "tick", "valueReference": str(CLOCK), "causality": "input"}
+        Xml.SubElement(variables, "Clock", clock | dict(car.clock))
     if car.array:
         _arrays(variables, car)
     for quantity in _variables(car):
@@ -169,6 +173,8 @@ def _fmi3(car: Car, token: str) -> Xml.Element:
         if causality in ("output", "local"):
             element.set("initial", "calculated")
         _attributes(element, car, quantity)
+        if quantity == "force" and car.clocked:
+            element.set("clocks", str(CLOCK))
         if quantity.startswith("rate_"):
             element.set("derivative", str(REFERENCES[f"state_{quantity.removeprefix('rate_')}"]))
     load = Xml.SubElement(

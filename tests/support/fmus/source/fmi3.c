@@ -33,6 +33,10 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback logMessage,
                                          fmi3IntermediateUpdateCallback intermediateUpdate) {
     Instance *self = instance_create(resources ? resources : "", token, say, environment, (void *)logMessage);
+    if (self != NULL && self->only_event_mode && !eventModeUsed) {
+        instance_destroy(self);
+        return NULL;
+    }
     if (self != NULL) self->event_mode = self->event_pending = eventModeUsed;
     return self;
 }
@@ -161,6 +165,27 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
     return self->ended ? fmi3OK : (fmi3Status)status;
 }
 
+/* ---- the clock ---- */
+
+fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const fmi3Clock values[]) {
+    Instance *self = c;
+    if (!self->samples || n != 1) return fmi3Error;
+    self->ticks = values[0];
+    char call[40];
+    snprintf(call, sizeof call, "tick %.9g", self->car.time);
+    if (self->ticks) instance_called(self, call);
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetIntervalDecimal(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 intervals[],
+                                  fmi3IntervalQualifier qualifiers[]) {
+    Instance *self = c;
+    if (!self->samples || n != 1) return fmi3Error;
+    intervals[0] = self->interval;
+    qualifiers[0] = self->interval > 0.0 ? fmi3IntervalChanged : fmi3IntervalNotYetKnown;
+    return fmi3OK;
+}
+
 /* ---- Model Exchange ---- */
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needUpdate, fmi3Boolean *terminateSimulation,
@@ -170,6 +195,8 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needUpdate, fmi
     instance_called(self, "update");
     Status status = misbehave(self, AT_EVENT, self->car.time, 0.0);
     self->event_pending = false;
+    if (self->ticks) self->car.value[Q_force] = self->next_force;
+    self->ticks = false;
     double shift = self->car.value[Q_gear_time];
     *valuesChanged = car_event(&self->car);
     *needUpdate = self->car.chatters;
@@ -246,7 +273,6 @@ fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) {
 ABSENT(fmi3GetBinary, const fmi3ValueReference vr[], size_t n, size_t sizes[], fmi3Binary values[], size_t m)
 ABSENT(fmi3SetBinary, const fmi3ValueReference vr[], size_t n, const size_t sizes[], const fmi3Binary values[], size_t m)
 ABSENT(fmi3GetClock, const fmi3ValueReference vr[], size_t n, fmi3Clock values[])
-ABSENT(fmi3SetClock, const fmi3ValueReference vr[], size_t n, const fmi3Clock values[])
 ABSENT(fmi3GetNumberOfVariableDependencies, fmi3ValueReference vr, size_t *n)
 ABSENT(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t of[], fmi3ValueReference on[], size_t on_elements[],
        fmi3DependencyKind kinds[], size_t n)
@@ -257,7 +283,6 @@ ABSENT(fmi3GetDirectionalDerivative, const fmi3ValueReference unknowns[], size_t
        size_t m, const fmi3Float64 seed[], size_t k, fmi3Float64 sensitivity[], size_t l)
 ABSENT(fmi3GetAdjointDerivative, const fmi3ValueReference unknowns[], size_t n, const fmi3ValueReference knowns[],
        size_t m, const fmi3Float64 seed[], size_t k, fmi3Float64 sensitivity[], size_t l)
-ABSENT(fmi3GetIntervalDecimal, const fmi3ValueReference vr[], size_t n, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
 ABSENT(fmi3GetIntervalFraction, const fmi3ValueReference vr[], size_t n, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
        fmi3IntervalQualifier qualifiers[])
 ABSENT(fmi3GetShiftDecimal, const fmi3ValueReference vr[], size_t n, fmi3Float64 shifts[])

@@ -43,6 +43,9 @@ static void read_line(Instance *self, char *line) {
     else if (strcmp(key, "strict_time") == 0) self->strict_time = true;
     else if (strcmp(key, "constant_step") == 0) self->constant_step = true;
     else if (strcmp(key, "keeps_final_only") == 0) self->keeps_final_only = true;
+    else if (strcmp(key, "only_event_mode") == 0) self->only_event_mode = true;
+    else if (strcmp(key, "samples") == 0) self->samples = true;
+    else if (strcmp(key, "interval") == 0) self->interval = number(&rest);
     else if (strcmp(key, "divides") == 0) self->divides = true;
     else if (strcmp(key, "needs_event_mode") == 0) self->needs_event_mode = true;
     else if (strcmp(key, "needs_stop_time") == 0) self->needs_stop_time = number(&rest);
@@ -270,6 +273,10 @@ Status instance_set(Instance *self, unsigned reference, const double values[], i
         if (quantity >= Q_mass && has_fault(self, "refuse_start_value")) {
             self->say(self, ERROR, "I do not like this start value");
             return ERROR;
+        }
+        if (quantity == Q_force && self->samples && self->initialised) {
+            self->next_force = self->factor[quantity] * values[i] + self->offset[quantity];
+            continue;
         }
         if (quantity >= Q_state_position && quantity <= Q_state_force)
             self->car.x[quantity - Q_state_position] = values[i];

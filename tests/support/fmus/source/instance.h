@@ -37,6 +37,11 @@ struct Instance {
     bool keeps_final_only; /* a step after which its state may be set back is not kept */
     bool needs_event_mode; /* FMI 3: no step without it, nor before its events are handled */
     bool event_mode, event_pending;
+    bool only_event_mode; /* FMI 3: makes no instance without it */
+    bool samples;         /* the force counts as its clock ticks */
+    bool ticks;           /* it ticks now */
+    double interval;      /* [s] of the clock, for who asks */
+    double next_force;    /* the input, until the next tick */
     bool divides;         /* by an input, as it enters initialization mode */
     double needs_stop_time; /* [s] it has to be told one as late as this; 0: none */
     double stop_time;
