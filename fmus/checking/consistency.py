@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
 from fmus.checking.manoeuvres import Trace
-from fmus.checking.model_fit.fitting import STANDSTILL
+from fmus.checking.model_fit.measurements import STANDSTILL
 from fmus.profile.advice import gain_line
 from fmus.profile.vehicle_profile import VehicleProfile
 

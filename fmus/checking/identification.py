@@ -26,7 +26,7 @@ from fmus.checking.model_fit.measurements import (
 from fmus.checking.model_fit.prediction import position_errors, speed_errors
 from fmus.checking.model_fit.remarks import estimate_remarks, resistance_remarks, side_remarks
 from fmus.checking.model_fit.selection import identify_sides
-from fmus.checking.model_fit.side_models import poverty, side_model
+from fmus.checking.model_fit.side_models import HEAVIEST, poverty, side_model
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
 from fmus.isolation import processes_reused
 from fmus.profile.advice import gain_line
@@ -180,7 +180,8 @@ def modelled(
     known = [side for side in sides if side is not None]
     ahead = position_errors(validation, common.mass, common.friction, horizon)
     one_step = speed_errors(validation, common.mass, common.friction)
-    model = FittedModel(
+    # Without validation: also what is no vehicle at all is described, and called poor.
+    model = FittedModel.model_construct(
         mass=common.mass,
         friction=common.friction,
         lag=float(np.mean([side.lag for side in known])),
@@ -209,7 +210,7 @@ def modelled(
             *resistance_remarks(estimate, common),
             *side_remarks(model, profile),
         ),
-        poor="; ".join(poverty(estimate)),
+        poor="; ".join(poverty(estimate) if common.mass < HEAVIEST else ["no force moves it"]),
     )
 
 

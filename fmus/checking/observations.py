@@ -1,18 +1,20 @@
 """The tests of a check. Each function examines traces and returns one finding."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from fmus.checking.consistency import SPEED_UNITS, unit_of
 from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
+from fmus.checking.identification import modelled
 from fmus.checking.manoeuvres import Trace
-from fmus.checking.model_fit.fitting import Fit, fit, prepare
 from fmus.checking.model_fit.prediction import position_errors
-from fmus.checking.model_fit.saturation import ResistanceModel, saturation
 from fmus.checking.scale import GROSS, gross_error
+from fmus.errors import FmuOutputError
 from fmus.profile.advice import gain_line
+from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 MOVES = 0.02  # [m/s] change of speed above which the vehicle moves
 CREEPS = 0.1  # [m/s] tolerated speed in the wrong direction
@@ -142,12 +144,15 @@ def coasts(response: Trace, expected: Expected) -> Finding:
     return Finding(name, "pass", text)
 
 
-def quick_fit(traces: Sequence[Trace]) -> Fit | None:
-    """Fit M, alpha and the actuator from the drives of a check."""
-    return fit([prepare(trace) for trace in traces])
+def quick_fit(traces: Sequence[Trace], profile: VehicleProfile | None = None) -> FittedModel | None:
+    """Return the coarse model of the drives of a check, or None if forces do not move it."""
+    try:
+        return modelled(traces, traces[0], 1, Path(), profile, coarse=True).model
+    except FmuOutputError:
+        return None
 
 
-def matches_model(model: Fit | None, response: Trace, expected: Expected) -> Finding:
+def matches_model(model: FittedModel | None, response: Trace, expected: Expected) -> Finding:
     """Test whether the controller's M and alpha describe this vehicle."""
     name = "controller's model"
     if model is None or model.r_squared < NO_VEHICLE:
@@ -217,34 +222,34 @@ def _missing_lead(mass: float, step: float, expected: Expected) -> float | None:
 
 
 def actuator_limits(
-    model: Fit | None, response: Trace, full: Trace, rolling: Trace, expected: Expected
+    model: FittedModel | None, response: Trace, full: Trace, rolling: Trace, expected: Expected
 ) -> Finding:
     """Test whether the controller's largest forces arrive and suffice."""
     name, largest = "force limits", expected.largest_force
     if model is None:
         return Finding(name, "skip", "not to be said without a model")
-    resisted = ResistanceModel.of(model, [prepare(response), prepare(rolling)])
-    drive = saturation([full], 1.0, resisted, [response])
-    brake = saturation([rolling], -1.0, resisted)
-    lowest, hardest = min(drive, brake), largest / resisted.mass
-    if not np.isfinite(lowest):
-        lagging = _missing_lead(resisted.mass, response.step_size, expected) is not None
+    known = quick_fit([full, response, rolling], expected.profile) or model
+    sides = (("drive", known.drive), ("brake", known.brake))
+    limits = [(side.limit * side.mass, name) for name, side in sides if side and side.limit]
+    if not limits:
+        hardest = largest / known.mass
+        lagging = _missing_lead(known.mass, response.step_size, expected) is not None
         if hardest >= WEAK or lagging:  # a lead is missing then
             return Finding(name, "pass", f"{largest:.0f} N drive as they should")
-        enough = float(f"{FIRM * resisted.mass:.1g}")
+        enough = float(f"{FIRM * known.mass:.1g}")
         return Finding(
             name, "warn", f"{largest:.0f} N brake it with {hardest:.2g} m/s² at most",
             f"check and identify it with --force-limit {enough:.0f}, run it with "
             f"--vehicle-force-limit {enough:.0f}",
         )  # fmt: skip
-    which = "drive" if drive <= brake else "brake"
+    lowest, which = min(limits)
     return Finding(
         name, "warn", f"no more than {lowest:.0f} N of {which} force arrive",
         f"run it with --vehicle-force-limit {lowest:.0f} or less",
     )  # fmt: skip
 
 
-def actuator_lag(model: Fit | None, step: float, expected: Expected) -> Finding:
+def actuator_lag(model: FittedModel | None, step: float, expected: Expected) -> Finding:
     """Test whether forces act late."""
     name = "actuator lag"
     if model is None:

@@ -3,12 +3,15 @@
 import numpy as np
 
 from fmus.checking.manoeuvres import Trace
-from fmus.checking.model_fit.fitting import fit, prepare
+from fmus.checking.model_fit.common_model import fit_common
+from fmus.checking.model_fit.estimation import Estimate
+from fmus.checking.model_fit.measurements import Measurements
 from fmus.checking.model_fit.prediction import position_errors
 from giveway.results.ego_result import EgoResult
 from giveway.run_data.tracks import EgoTrack
 
 _TOLERATED = 0.05  # Largest tolerated position error [m] over the horizon
+_FEWEST = 10  # Smallest number of steps for a fit
 _SURE = 0.1  # Largest relative half width of M's 95 % interval for a fit to be reported
 
 
@@ -70,7 +73,10 @@ def _trace(track: EgoTrack, time_step: float) -> Trace:
 
 def _fitting(trace: Trace) -> str:
     """Return the M and alpha that fit better, in brackets, or "" if they cannot be told."""
-    found = fit([prepare(trace)], actuator=False)
+    measured = Measurements.of([trace], euler=True)
+    if measured.acceleration.size < _FEWEST:
+        return ""
+    found = fit_common(measured, Estimate.of(measured), 0.0)
     if found is None or not found.intervals[0] <= _SURE * found.mass:
         return ""
     return f" (M = {found.mass:.4g} kg and alpha = {found.friction:.4g} N.s/m fit better)"

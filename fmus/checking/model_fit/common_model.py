@@ -48,18 +48,23 @@ def fit_common(
     acting = sum(measured.acting(side, response) * measured.largest
                  for side, response in enumerate(estimate.responses))  # fmt: skip
     v, y = measured.speed[measured.used], measured.acceleration
-    X = np.column_stack((acting + map_friction * v, -v))
+    scale = np.array([measured.largest, max(float(np.abs(v).max(initial=0.0)), 1e-9)])
+    X = np.column_stack((acting + map_friction * v, -v)) / scale
     # Noise in v is also in v': the mean speed of the step, an instrument, is free of this.
-    Z = np.column_stack((X[:, 0], -v - 0.5 * measured.step * y)) * estimate.linear.weights[:, None]
-    solution = np.linalg.solve(Z.T @ X, Z.T @ y)
+    means = (v + 0.5 * measured.step * y) / scale[1]
+    Z = np.column_stack((X[:, 0], -means)) * estimate.linear.weights[:, None]
+    bread = np.linalg.pinv(Z.T @ X)
+    solution = bread @ (Z.T @ y)
     if solution[1] < 0.0:  # a negative friction would drive: fit without friction
         solution = np.array([Z[:, 0] @ y / (Z[:, 0] @ X[:, 0]), 0.0])
     if solution[0] <= 0.0:
         return None
-    mass, friction = 1.0 / solution[0], solution[1] / solution[0]
     left = y - X @ solution
+    solution = solution / scale
+    mass, friction = 1.0 / solution[0], solution[1] / solution[0]
     slopes = np.array([[-(mass**2), 0.0], [-friction * mass, mass]])
-    covariance = slopes @ _covariance(X, Z, left, measured.drive) @ slopes.T
+    spread = bread @ _scores(Z, left, measured.drive) @ bread.T / np.outer(scale, scale)
+    covariance = slopes @ spread @ slopes.T
     half_mass, half_friction = NORMAL_95 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     return CommonModel(
         float(mass), float(friction), (float(half_mass), float(half_friction)),
@@ -67,12 +72,12 @@ def fit_common(
     )  # fmt: skip
 
 
-def _covariance(X: Array, Z: Array, left: Array, group: NDArray[np.int_]) -> Array:
-    """Return the covariance (2, 2) of the solution, with errors that are correlated in a drive.
+def _scores(Z: Array, left: Array, group: NDArray[np.int_]) -> Array:
+    """Return the covariance (2, 2) of the sums of errors, which are correlated in a drive.
 
     It is that of clusters (Liang & Zeger 1986).
     """
-    bread = np.linalg.inv(Z.T @ X)
+    if not group.any():  # a single drive: its errors are taken as independent
+        return np.asarray(Z.T @ Z * np.mean(left**2))
     scores = np.array([Z[group == g].T @ left[group == g] for g in np.unique(group)])
-    meat = scores.T @ scores * len(scores) / max(len(scores) - 1, 1)
-    return np.asarray(bread @ meat @ bread.T)
+    return np.asarray(scores.T @ scores * len(scores) / (len(scores) - 1))

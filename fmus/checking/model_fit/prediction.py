@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fmus.checking.manoeuvres import Trace
-from fmus.checking.model_fit.fitting import STANDSTILL
+from fmus.checking.model_fit.measurements import STANDSTILL
 
 
 def speed_errors(trace: Trace, mass: float, friction: float) -> NDArray[np.float64]:

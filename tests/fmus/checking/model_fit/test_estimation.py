@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from fmus.checking import Mpc, check, expected_of, opener_of
 from fmus.checking.identification import identify
-from fmus.checking.model_fit.fitting import fit, prepare
-from fmus.checking.model_fit.saturation import ResistanceModel
 from fmus.profile.vehicle_profile import make_profile
 
 TRUCK = {"mass": 18_000.0, "friction": 50.0, "constant": 900.0, "lag": 0.8}
@@ -44,14 +41,12 @@ def test_with_forces_of_its_size_a_truck_is_known_well(car):
 
 def test_all_four_resistances_come_back(car):
     opener = car(mass=1500.0, friction=40.0, constant=200.0, drag=0.8)
-    drives = [prepare(trace) for trace in identified(opener, 6_000.0).tests]
-    model = fit(drives)
-    found = ResistanceModel.of(model, drives)
-    assert found.mass == pytest.approx(1500.0, rel=0.01)
-    assert found.constant == pytest.approx(200.0, rel=0.1)
-    assert found.quadratic == pytest.approx(0.8, rel=0.1)
-    speed, zero = np.array([10.0]), np.array([0.0])
-    assert found.force(speed, zero) == pytest.approx(40.0 * 10 + 200.0 + 80.0, rel=0.02)
+    found = identified(opener, 6_000.0).estimate
+    assert found.mass(0) == pytest.approx(1500.0, rel=0.01)
+    constant, viscous, quadratic = found.linear.coefficients[2:] * 1500.0
+    assert constant == pytest.approx(200.0, rel=0.1)
+    assert viscous == pytest.approx(40.0, rel=0.1)
+    assert quadratic == pytest.approx(0.8, rel=0.1)
 
 
 def test_forces_too_small_for_a_truck_are_told_with_the_flag(car):
