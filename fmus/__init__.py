@@ -18,6 +18,7 @@ from fmus.errors import (
     FmuStartError,
     FmuStateError,
     FmuStepError,
+    FmuUnsuitableError,
     FmuVariableError,
 )
 from fmus.interfaces.vehicle import Vehicle
@@ -60,6 +61,7 @@ __all__ = [
     "FmuStartError",
     "FmuStateError",
     "FmuStepError",
+    "FmuUnsuitableError",
     "FmuVariableError",
     "IsolatedController",
     "IsolatedVehicle",

@@ -41,6 +41,10 @@ class FmuOutputError(FmuError):
     """The FMU's outputs are no finite numbers, or none that a car can have."""
 
 
+class FmuUnsuitableError(FmuOutputError):
+    """The FMU runs, but not as a vehicle that can be driven and stopped as told."""
+
+
 class FmuCrashError(FmuStepError):
     """The FMU's process died, or hung and was ended."""
 

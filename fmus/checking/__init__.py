@@ -1,9 +1,11 @@
 """Tests of whether an FMU behaves like a vehicle: dry runs, step halving, identification."""
 
+from fmus.checking.answers import Answers, measure
 from fmus.checking.check import CheckReport, check, expected_of
 from fmus.checking.coarse import coarse
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, Mpc, identify
+from fmus.checking.judgement import Told, judge, told_of, too_weak
 from fmus.checking.manoeuvres import (
     Opener,
     Phase,
@@ -21,6 +23,7 @@ from fmus.checking.self_check import (
 )
 
 __all__ = [
+    "Answers",
     "CheckReport",
     "Convergence",
     "Finding",
@@ -28,6 +31,7 @@ __all__ = [
     "Mpc",
     "Opener",
     "Phase",
+    "Told",
     "Trace",
     "Verdict",
     "check",
@@ -37,8 +41,12 @@ __all__ = [
     "expected_of",
     "goes_the_wrong_way",
     "identify",
+    "judge",
+    "measure",
     "opener_of",
     "remedy",
     "require_converged",
+    "told_of",
+    "too_weak",
     "without_guards",
 ]

@@ -5,8 +5,10 @@ from dataclasses import dataclass, field, replace
 
 from fmus.checking import consistency
 from fmus.checking import observations as observe
+from fmus.checking.answers import measure
 from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
+from fmus.checking.judgement import judge, told_of
 from fmus.checking.manoeuvres import Attempt, Opener, Phase, Trace, try_to_drive
 from fmus.checking.scale import known_masses
 from fmus.checking.self_check import Convergence, convergence, milliseconds, plain, remedy
@@ -73,11 +75,12 @@ def expected_of(
         start_speed: Start speed of the rolling start [m/s].
     """
     known = known_masses(profile, mass, vehicle_class)
+    told = told_of(profile, mass, vehicle_class, flag="--mass", limit_flag="--force-limit")
     mass = DEFAULT_MASS if mass is None else mass
     if profile is not None and profile.model is not None:
         mass, friction = profile.model.mass, profile.model.friction
     force = min(force_limit, GENTLE * mass)
-    return Expected(mass, friction, HORIZON, start_speed, force, force_limit, profile, known)
+    return Expected(mass, friction, HORIZON, start_speed, force, force_limit, profile, known, told)
 
 
 @processes_reused()
@@ -105,6 +108,9 @@ def check(
     tell = progress or (lambda _name: None)
     go_on = _drive_all(report, opener, unguarded, tell)
     _observe(report)
+    if go_on:
+        tell("answers")
+        _judge(report, unguarded or opener)
     if go_on:
         tell("step halving")
         # Guards would end the drives of light or stiff vehicles at the first step of any length.
@@ -175,6 +181,20 @@ def _phases(name: str, expected: Expected) -> list[Phase]:
         "rolling": [Phase(0.0, 2.0), Phase(-force, BRAKE)],
         "full": [Phase(expected.largest_force, 2.0, below=30.0)],
     }[name]
+
+
+def _judge(report: CheckReport, opener: Opener) -> None:
+    """Judge driving, braking and mass as a run does; a pass is one finding."""
+    expected = report.expected
+    if expected.told is None:
+        return
+    try:
+        answers = measure(opener, brake_force=expected.largest_force)
+    except FmuError:
+        return  # a drive before has found it, or halved steps will
+    found = judge(answers, expected.told, expected.profile)
+    bad = [finding for finding in found if finding.verdict != "pass"]
+    report.findings.extend(bad or [replace(found[1], name="stops")])
 
 
 def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from fmus.checking.judgement import Told
 from fmus.checking.scale import KnownMass
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
@@ -20,6 +21,7 @@ class Expected:
         largest_force: Largest force u_max [N].
         profile: Profile of the vehicle, or None for a shipped FMU.
         known: Masses of the vehicle that the user or the profile states.
+        told: What is told of the vehicle, for the judgement that a run makes, too.
     """
 
     mass: float
@@ -30,6 +32,7 @@ class Expected:
     largest_force: float
     profile: VehicleProfile | None
     known: tuple[KnownMass, ...] = ()
+    told: Told | None = None
 
     @property
     def identified(self) -> FittedModel | None:

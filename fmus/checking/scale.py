@@ -8,6 +8,10 @@ from fmus.profile.vehicle_profile import VehicleProfile
 
 GROSS: Final = 3.0  # Factor in the mass that neither load nor fit explains
 NEAR: Final = 1.3  # largest deviation, as a factor, from a ratio of units; loads differ
+DOUBTFUL: Final = 1.5  # Factor in the mass from which it is a question whether a unit is wrong
+CLOSE: Final = (
+    1.08  # largest deviation, as a factor, of a measured factor from the one it is named by
+)
 FAR: Final = 1.5  # the same for 100 and 1000, which have no neighbours
 CLASS_MASSES: Final[Mapping[str, tuple[float, float]]] = {
     # [kg] empty to fully loaded, by SUMO's vehicle class (EU 2018/858: M1 and N1 up to 3.5 t;
@@ -36,6 +40,17 @@ _NAMES: Final = (  # factor of the mass, and the unit that the axis seems to hav
     (100.0, "100 times too weak", "cm/s2", ("acceleration",)),
     (0.01, "100 times too strong", "m/s2", ("acceleration",)),
 )
+NAMED: Final = (
+    (1.943844, "knots 1.94"), (2.0, "2"), (2.236936, "mph 2.24"), (3.6, "km/h 3.6"),
+    (4.448222, "lbf 4.45"), (9.80665, "kgf 9.81"), (100.0, "100"), (1000.0, "1000"),
+)  # fmt: skip
+
+
+def named(factor: float) -> str:
+    """Return a factor as text, with the named factors that are close to it."""
+    size = max(factor, 1.0 / factor)
+    close = [name for value, name in NAMED if max(size / value, value / size) <= CLOSE]
+    return f"a factor of {size:.3g}" + (f" (near {', '.join(close)})" if close else "")
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from fmus import (
     FmuError,
     FmuOutputError,
     FmuStartCrashError,
+    FmuUnsuitableError,
     Vehicle,
     VehicleProfile,
     bundled_fmu,
@@ -21,9 +22,15 @@ from fmus import (
     prepare,
     read_profile,
 )
-from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
-from fmus.profile.advice import gain_line
-from fmus.profile.tables import Axis
+from fmus.checking import (
+    convergence,
+    judge,
+    measure,
+    opener_of,
+    remedy,
+    told_of,
+    too_weak,
+)
 from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.tables.basics import BUNDLED_VEHICLES, DEFAULT_SPEED, EXACT, VehicleConfig
@@ -35,9 +42,8 @@ from giveway.run_data.tracks import EGO_COLUMNS
 _CHECK_FORCE = 4000.0  # largest force [N] of the self-check
 _SAME_STEP = 1e-6  # relative tolerance for two equal step sizes
 _OTHER_SIZE = 2.0  # ratio of masses from which the defaults for a car no longer fit
-_sound: set[tuple[str, str, float, float, float]] = (
-    set()
-)  # FMUs that passed the self-check in this process
+# FMUs that passed the self-check in this process
+_sound: set[tuple[str, str, float, float, float, float, float | None]] = set()
 
 
 def fmu_path(settings: VehicleConfig) -> Path:
@@ -61,6 +67,9 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
         with retold(FmuError, VehicleError):
             prepare(path, step_size=time_step, profile=profile)
         taken = {ROAD_GRADE[0], *(column.name for column in EGO_COLUMNS)}
+        weak = too_weak(profile, config.vehicle.mass, config.vehicle.force_limit)
+        if weak:
+            raise VehicleError(f"[vehicle] of ego '{config.ego_id}': {weak}")
         for name in () if profile is None else profile.record:
             if name in taken:
                 raise VehicleError(
@@ -98,8 +107,7 @@ def open_for(
 
     if not ours:
         profile = choose_profile(path, profile)
-        if profile.fmu.self_check:
-            _require_sound(path, profile, config, time_step)
+        _require_sound(path, profile, config, time_step)
     vehicle = open_vehicle(
         path,
         step_size=time_step,
@@ -128,15 +136,43 @@ def _require_sound(
     every step is left to the run, which keeps the rows up to the failure.
 
     Raises:
-        FmuError: its steps do not converge, or it goes the wrong way.
+        FmuError: its steps do not converge, it does not answer as a vehicle that can be driven and
+            stopped, or as another one than the profile and the flags tell.
     """
     speed = config.ego.initial_speed
     speed = DEFAULT_SPEED if speed is None else speed
-    force = min(_CHECK_FORCE, config.vehicle.force_limit)
+    vehicle, mass = config.vehicle, _told_mass(config, profile)
+    force = min(_CHECK_FORCE, vehicle.force_limit)
     digest = sha256(path.read_bytes()).hexdigest()
-    key = (digest, profile.model_dump_json(), time_step, speed, force)
+    key = (digest, profile.model_dump_json(), time_step, speed, force, vehicle.force_limit, mass)
     if key in _sound:
         return
+    try:
+        if profile.fmu.self_check:
+            _require_convergence(path, profile, time_step, force, speed)
+        answers = measure(
+            opener_of(path, step_size=time_step, profile=_without_bound(profile)),
+            brake_force=vehicle.force_limit,
+        )
+    except (FmuStartCrashError, FmuUnsuitableError):
+        raise  # the run would have no rows, and would wait for a hang again
+    except FmuError:
+        return
+    for finding in judge(answers, told_of(profile, mass), profile):
+        if finding.verdict != "pass":
+            raise FmuUnsuitableError(f"{path}: {finding.text}; {finding.remedy}")
+    _sound.add(key)
+
+
+def _require_convergence(
+    path: Path, profile: VehicleProfile, time_step: float, force: float, speed: float
+) -> None:
+    """Make sure that smaller steps give the same drive; a motion that no car has is left to others.
+
+    Raises:
+        FmuUnsuitableError: they do not.
+        FmuError: the FMU fails.
+    """
     try:
         result = convergence(
             opener_of(path, step_size=time_step, profile=_without_bound(profile)),
@@ -144,19 +180,19 @@ def _require_sound(
             force=force,
             start_speed=speed,
         )
-    except FmuStartCrashError:
-        raise  # the run would have no rows, and would wait for a hang again
-    except FmuError:
+    except FmuOutputError:
         return
     if result.problem:
-        raise FmuOutputError(f"{path}: {result.problem}; {remedy(result)}")
-    if any(goes_the_wrong_way(trace) for trace in result.traces[:1]):
-        role = next(role for role, axis in profile.inputs if isinstance(axis, Axis))
-        raise FmuOutputError(
-            f"{path}: a force forwards slows it down, and one backwards does not; turn the sign: "
-            f"write {gain_line(profile, 'inputs', role, -1.0, '')}, or in [outputs.speed]"
-        )
-    _sound.add(key)
+        raise FmuUnsuitableError(f"{path}: {result.problem}; {remedy(result)}")
+
+
+def _told_mass(config: EgoRunConfig, profile: VehicleProfile) -> float | None:
+    """Return the mass [kg] that a flag or the configuration tells, or None."""
+    mass, given = config.vehicle.mass, config.vehicle.model_fields_set
+    if profile.model is not None:
+        return None if mass == profile.model.mass else mass
+    chosen = "mass" in given and given != set(VehicleConfig.model_fields)
+    return mass if chosen or mass != VehicleConfig().mass else None
 
 
 def _without_bound(profile: VehicleProfile) -> VehicleProfile:

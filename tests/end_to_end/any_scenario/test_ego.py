@@ -135,6 +135,9 @@ CLASSES = """
 """
 
 
+BUS = {"mass": 12000.0, "force_limit": 60_000.0}
+
+
 @pytest.mark.parametrize("options", ["", '<lateral-resolution value="0.8"/>'])
 def test_several_egos_of_all_kinds_each_with_its_own_driver(
     drive: Drive, scenario: Callable[..., Path], options: str
@@ -145,7 +148,7 @@ def test_several_egos_of_all_kinds_each_with_its_own_driver(
         crowd={"zone": "none"},
         time_limit=12.0,
         egos=(
-            {"ego": {"take_over": "bus"}, "vehicle": {"mass": 12000.0}, "controller": "pid"},
+            {"ego": {"take_over": "bus"}, "vehicle": BUS, "controller": "pid"},
             {"ego": {"take_over": "truck"}, "vehicle": {"fmu": "fmi3"}, "controller": "mpc-paper"},
             {"ego": {"take_over": "bicycle"}, "regulation": {"reference_speed": 5.0}},
             {"ego": {"take_over": "flow.3"}},

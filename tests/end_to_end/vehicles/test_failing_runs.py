@@ -72,9 +72,8 @@ def test_a_run_ends_at_the_step_that_failed(zoo, typed, profiled, tmp_path, faul
     assert "completed" not in json.dumps(manifest.get("outcome", ""))
 
 
-@pytest.mark.parametrize("behaviour", ["position_stands", "frozen"])
-def test_a_position_that_stands_at_a_positive_speed_ends_the_run(zoo, giveway, tmp_path, behaviour):
-    car = zoo.car(behaviour=behaviour, at=AT)
+def test_a_position_that_stands_at_a_positive_speed_ends_the_run(zoo, giveway, tmp_path):
+    car = zoo.car(behaviour="position_stands", at=AT)
     profile = car.with_suffix(".toml")
     words = ("--profile", profile, "--vehicle-isolation", "none", "--time-limit", 12)
     line = the_line(giveway(*WORDS, "--vehicle", car, *words), car)
@@ -161,15 +160,7 @@ def test_the_diverging_fmu_of_a_real_tool_is_no_success(giveway, tmp_path):
 @pytest.mark.parametrize(
     ("options", "note"),
     [
-        (
-            {"behaviour": "frozen", "at": AT, "outputs": ("speed",)},
-            "speed has not changed for 2 s",
-        ),
-        ({"values": {"mass": 3000.0}}, "does not answer as the controller's M = 1000 kg"),
-        (
-            {"spoken": {"speed": (1 / 3.6, 0.0)}, "initial": (), "outputs": ("speed",)},
-            "does not answer as",
-        ),
+        ({"values": {"mass": 2000.0}}, "does not answer as the controller's M = 1000 kg"),
         ({"initial": ()}, "no parameter for the initial speed: driven up to 4"),
     ],
 )
@@ -179,6 +170,37 @@ def test_a_run_that_goes_on_notes_what_is_odd(zoo, giveway, options, note):
     done = giveway(*WORDS, "--vehicle", car, *words)
     assert done.returncode == 0, done.stderr
     assert note in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize(
+    ("options", "flags", "said"),
+    [
+        ({"values": {"mass": 3000.0}}, (), r"8000 N brake it with 2\.\d m/s2 .* expected 3 m/s2"),
+        (
+            {"spoken": {"speed": (1 / 3.6, 0.0)}, "initial": (), "outputs": ("speed",)},
+            (),
+            r"does it weigh that\?",
+        ),
+        ({"values": {"mass": 2000.0}}, ("--vehicle-mass", 1000), r"--vehicle-mass 2\d\d\d"),
+        (
+            {"role": "drive_brake", "spoken": {"brake_force": (-1.0, 0.0)}},
+            (),
+            r"braking makes it faster; .* gain = -1\.0 in \[inputs\.brake_force\]",
+        ),
+        ({"values": {"engaged": 0.0}}, (), r"gear, ignition"),
+        ({"behaviour": "frozen", "at": AT, "outputs": ("speed",)}, (), r"no force moves it"),
+    ],
+)
+def test_a_vehicle_that_cannot_stop_or_is_another_is_refused(zoo, giveway, options, flags, said):
+    car = zoo.car(**options)
+    profile = ("--profile", car.with_suffix(".toml"), *flags)
+    assert_says(the_line(giveway(*WORDS, "--vehicle", car, *profile), car), said)
+
+
+def test_a_force_limit_that_cannot_stop_the_mass_is_refused(giveway):
+    done = giveway("run", "encounter", "--vehicle-mass", 40_000, "--vehicle-force-limit", 2000)
+    assert done.returncode == 1
+    assert "expected 3 m/s2 or more: write --vehicle-force-limit 320000" in done.stderr
 
 
 def times_in(line: str) -> list[float]:

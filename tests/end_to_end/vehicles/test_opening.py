@@ -50,10 +50,9 @@ def test_with_that_line_it_drives(zoo, run):
     assert len(run(zoo.car(**DIVERGING), fmu={"step": 0.025}).ego) > 10
 
 
-def test_the_check_can_be_left_out(zoo, run):
-    """Then it is the user's business."""
-    free = {"fmu": {"self_check": False}, "limits": {"acceleration": 1e4}}
-    assert len(run(zoo.car(**DIVERGING), **free).ego) > 10
+def test_without_the_comparison_it_must_still_drive_and_stop(zoo, run):
+    with pytest.raises(VehicleError, match="against coasting"):
+        run(zoo.car(**DIVERGING), fmu={"self_check": False})
 
 
 def test_an_fmu_that_fails_at_every_step_is_left_to_the_run(zoo, run):

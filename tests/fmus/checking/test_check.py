@@ -201,7 +201,7 @@ def test_lag_and_limits_are_seen(car):
 
 
 def test_noise_is_not_reproducible(car):
-    noisy = iter(range(10))
+    noisy = iter(range(30))
 
     def opener(_step):
         made = car(noise=0.01, seed=1)(None)
