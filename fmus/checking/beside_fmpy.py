@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fmus.archive.place import unpacking_place
 from fmus.driving.starting import start_values
 from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import FmuError
@@ -56,7 +57,11 @@ def beside_fmpy(prepared: Prepared, forces: Sequence[float]) -> Beside:
     used = [*wiring.read[: len(wiring.outputs)], *(wire.channel for wire in wiring.inputs)]
     if any(len(c.parts) > 1 or not c.variable.scalar for c in used):
         return Beside(problem="FMPy takes no single elements of arrays, and no shares or means")
-    with tempfile.TemporaryDirectory(prefix="beside-fmpy-", ignore_cleanup_errors=True) as scratch:
+    if prepared.clocks:
+        return Beside(problem="FMPy does not tick input clocks")
+    with tempfile.TemporaryDirectory(
+        prefix="beside-fmpy-", dir=unpacking_place(), ignore_cleanup_errors=True
+    ) as scratch:
         folder = Path(scratch)
         (folder / "order").write_bytes(pickle.dumps((prepared, prepared.path.resolve(), forces)))
         try:

@@ -34,7 +34,8 @@ def simulate(
         step: Step of the FMU [s].
     """
     count = len(next(iter(inputs.values())))
-    time = np.arange(count + 1) * step
+    first = stepping.start_time
+    time = first + np.arange(count + 1) * step
     held = {name: np.append(values, values[-1]) for name, values in inputs.items()}
     if interface.kind is Kind.MODEL_EXCHANGE:  # its inputs would change linearly within a step
         time = np.repeat(time, 2)[1:]
@@ -53,8 +54,9 @@ def simulate(
         input=signals,
         output=list(outputs),
         output_interval=step,
-        stop_time=count * step,
+        start_time=first,
+        stop_time=first + count * step,
         set_stop_time=False,
     )
-    at = np.searchsorted(found["time"], (np.arange(count + 1) + 1e-6) * step) - 1
+    at = np.searchsorted(found["time"] - first, (np.arange(count + 1) + 1e-6) * step) - 1
     return np.stack([np.asarray(found[name], float)[at] for name in outputs], axis=1)

@@ -16,9 +16,9 @@ def prepared(zoo, path, **fmu):
     return prepare(path, step_size=0.05, profile=make_profile(values, "the test's profile"))
 
 
-@pytest.mark.parametrize("step", [0.03, 0.01])
-def test_both_drive_the_same_at_any_step(zoo, step):
-    found = beside_fmpy(prepared(zoo, zoo.car(role="acceleration"), step=step), FORCES)
+@pytest.mark.parametrize("fmu", [{"step": 0.03}, {"step": 0.01, "start_time": 5.0}])
+def test_both_drive_the_same_at_any_step(zoo, fmu):
+    found = beside_fmpy(prepared(zoo, zoo.car(role="acceleration"), **fmu), FORCES)
     assert found.problem == ""
     assert found.duration == pytest.approx(4.5, abs=0.03)
     assert found.speed < 1e-9
@@ -34,6 +34,12 @@ def test_model_exchange_agrees_within_the_solvers_tolerance(zoo):
 def test_an_fmu_that_crashes_ends_its_own_process_alone(zoo):
     found = beside_fmpy(prepared(zoo, zoo.car(behaviour="segfault", at=0.1)), FORCES)
     assert found.problem == "the process of FMPy's drive ended with -11"
+
+
+def test_what_fmpy_does_not_tick_is_not_compared(zoo):
+    clock = {"intervalVariability": "constant", "intervalDecimal": "0.1"}
+    path = zoo.car(fmi="3.0", clock=clock, flags={"hasEventMode": "true"})
+    assert "clocks" in beside_fmpy(prepared(zoo, path), FORCES).problem
 
 
 def test_elements_of_arrays_are_not_compared(zoo):
