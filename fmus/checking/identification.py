@@ -252,11 +252,12 @@ def apparent_mass(opener: Opener, path: Path, profile: VehicleProfile | None = N
     first = int(np.flatnonzero(trace.force == force)[0])
     seconds = (trace.force.size - first) * trace.step_size
     rough = force * seconds / max(float(trace.speed[-1] - trace.speed[first]), 1e-3)
-    again = drive(opener, [Phase(0.0, 1.0), Phase(2.0 * rough, 2.0), Phase(0.0, 2.0)])
+    # Half of it for longer: a slow actuator has risen then, and a weak one is not at its limit.
+    again = drive(opener, [Phase(0.0, 1.0), Phase(0.5 * rough, 3.0), Phase(0.0, 3.0)])
     change = np.diff(again.speed) / again.step_size
-    pushed = int(np.flatnonzero(again.force)[-1])
-    gain = float(change[pushed] - change[-1])  # [m/s2] without the resistance
-    return min(rough, 2.0 * rough / gain) if gain > 0.0 else rough
+    pushed, last = int(np.flatnonzero(again.force)[-1]) + 1, max(round(0.5 / again.step_size), 1)
+    gain = float(change[pushed - last : pushed].mean() - change[-last:].mean())  # [m/s2]
+    return min(rough, 0.5 * rough / gain) if gain > 0.0 else rough
 
 
 @dataclass

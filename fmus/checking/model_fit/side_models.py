@@ -11,10 +11,11 @@ from fmus.profile.vehicle_profile import SideModel
 SIDES = ("drive", "brake")
 HEAVIEST = 1e6  # [kg] largest M that counts
 FASTEST = 60.0  # [m/s] highest speed from which a limit of power is told
+NEARLY = 0.95  # share of the largest command from which a limit is none
 QUICK = 2  # Number of steps in which a force rises that has no limit of its rate
 ENOUGH = 20  # Number of steps needed for a side
 ACTIVE = 0.05  # share of the largest force from which a step tells something about a side
-STRAYS = 0.45  # share of a side's steps that do not follow its model, from which the fit is poor
+STRAYS = 0.5  # share of a side's steps that do not follow its model, from which the fit is poor
 EXPLAINED = 0.8  # share of the variation of a side's accelerations below which the fit is poor
 
 
@@ -47,9 +48,10 @@ def side_model(
         lag, delay = longer, delay + lag - longer
     gone = min(lag, sensor)
     lag, delay = lag - gone, max(delay - (sensor - gone), 0.0)
-    limit = response.limit
+    top = float(estimate.measured.commands[side].max())
+    limit = response.limit if response.limit < NEARLY * top else np.inf
     if pressed:
-        limit = min(limit, float(estimate.measured.commands[side].max()))
+        limit = min(response.limit, top)
     fastest = estimate.measured.largest / (QUICK * estimate.measured.step)
     power = response.power / limit if np.isfinite(limit) else np.inf
     return SideModel(
