@@ -12,6 +12,8 @@ from fmus.profile.vehicle_profile import VehicleProfile
 
 RATIO_TOLERANCE = 0.02  # largest relative difference of two factors that should be the same
 
+FILTERS = tuple(0.05 * n for n in range(1, 31))  # [s] time constants that are tried
+
 SPEED_UNITS = (("km/h", 3.6), ("mph", 1 / 0.44704), ("kn", 3600 / 1852), ("ft/s", 1 / 0.3048))
 _LENGTH_UNITS = (("km", 1e-3), ("mm", 1e3), ("cm", 1e2), ("ft", 1 / 0.3048), ("mi", 1 / 1609.344))
 _ACCELERATION_UNITS = (("g", 1 / 9.80665), ("km/h/s", 3.6), ("cm/s2", 1e2), ("ft/s2", 1 / 0.3048))
@@ -27,6 +29,12 @@ def position_follows_speed(response: Trace, expected: Expected) -> Finding:
     if not np.isfinite(ratio) or (ratio == 0.0 and misfit == 0.0):
         return Finding(name, "skip" if not np.any(way) else "fail", "the position does not move")
     if misfit > 0.05:
+        late = _filtered(response)
+        if late is not None:
+            return Finding(
+                name, "warn", f"the speed follows the position's rate {late:.2g} s late: filtered",
+                "'giveway fmu identify' measures it as `sensor_lag`",
+            )  # fmt: skip
         return Finding(
             name, "fail", f"the position is not the way driven (off by {100 * misfit:.0f} %)",
             "is [outputs.position] the right variable? Without that table the speed is integrated",
@@ -35,6 +43,23 @@ def position_follows_speed(response: Trace, expected: Expected) -> Finding:
     if abs(ratio - 1.0) <= RATIO_TOLERANCE:
         return Finding(name, "pass", text)
     return Finding(name, "fail", *_position_remedy(text, ratio, expected.profile))
+
+
+def _filtered(response: Trace) -> float | None:
+    """Return the time constant [s] of a filter that makes the speed of the position, or None."""
+    h = response.step_size
+    best: tuple[float, float | None] = (0.05, None)
+    rate = np.diff(response.position) / h
+    for lag in FILTERS:
+        share, speed = -np.expm1(-h / lag), float(response.speed[0])
+        filtered = np.empty_like(rate)
+        for k, value in enumerate(rate):
+            speed += share * (value - speed)
+            filtered[k] = speed
+        ratio, misfit = _ratio(filtered, response.speed[1:])
+        if misfit < best[0] and abs(ratio - 1.0) <= RATIO_TOLERANCE:
+            best = misfit, lag
+    return best[1]
 
 
 def _position_remedy(text: str, ratio: float, profile: VehicleProfile | None) -> tuple[str, str]:

@@ -1,13 +1,14 @@
 """The command ``giveway fmu check``: a vehicle FMU's dry run as a table and a picture."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from rich.console import Console
 
 from fmus import FmuError
 from fmus.checking import CheckReport, Finding, check, expected_of, opener_of, without_guards
+from fmus.checking.remedies import tried
 from fmus.checking.scale import CLASS_MASSES
 from fmus.checking.self_check import plain
 from fmus.profile.bundled import is_bundled
@@ -19,6 +20,8 @@ from giveway.cli.option_groups import DryRun
 from giveway.cli.screen.printing import findings_table, print_json, print_place
 from giveway.errors import ConfigError
 
+_OF_STEPS = {"step halving", "starts", "reproducible"}  # tests that an edited axis does not mend
+_NOTHING = "no line that was tried mends it all; perhaps"
 _STYLES = {
     "pass": "green", "skip": "cyan", "warn": "yellow", "ask": "bold magenta", "fail": "bold red",
 }  # fmt: skip
@@ -76,11 +79,30 @@ def check_command(path: Path, profile: Path | None, trial: DryRun) -> int:
             unguarded=opener_of(path, step_size=step, profile=without_guards(chosen)),
             progress=lambda name: status.update(f"Driving: {name} ..."),
         )
-    findings = [_profile_found(path, profile, chosen), *report.findings]
+        status.update("Trying remedies ...")
+        findings = [_profile_found(path, profile, chosen), *_with_remedies(path, report, step)]
     code = _conclude(console, path, findings, as_json=as_json)
     if out is not None:
         _draw(console, report, path, out)
     return code
+
+
+def _with_remedies(path: Path, report: CheckReport, step: float) -> list[Finding]:
+    """Return the findings; lines for the profile are in them only if the check passes with them."""
+    open_ones = {f.name for f in report.findings if f.verdict in ("fail", "ask")} - _OF_STEPS
+    if not open_ones:
+        return report.findings
+    remedy = tried(path, report.expected, step_size=step)
+    found = []
+    for finding in report.findings:
+        if finding.name in open_ones:
+            if remedy is not None:
+                line = f"write {remedy.lines}: tried, and the vehicle then drives and stops right"
+                finding = replace(finding, remedy=line)
+            elif finding.verdict == "fail" and "`" in finding.remedy:
+                finding = replace(finding, remedy=f"{_NOTHING}; {finding.remedy}")
+        found.append(finding)
+    return found
 
 
 def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Finding:

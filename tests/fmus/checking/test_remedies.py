@@ -1,0 +1,29 @@
+"""A line is told only if the vehicle drives and stops right with it."""
+
+import pytest
+
+from fmus.checking import expected_of
+from fmus.checking.remedies import tried
+from fmus.profile.vehicle_profile import make_profile
+
+
+def lines(zoo, known=None, changes=None, **options):
+    path = zoo.car(**options)
+    profile = make_profile(zoo.profile(path) | (changes or {}), "test")
+    found = tried(path, expected_of(profile, mass=known), step_size=0.05)
+    return None if found is None else found.lines
+
+
+@pytest.mark.parametrize(
+    ("options", "known", "line"),
+    [
+        ({"spoken": {"position": (1000.0, 0.0)}}, None, '`unit = "km"` in [outputs.position]'),
+        (
+            {"spoken": {"force": (4.448222, 0.0)}, "outputs": ("speed",)},
+            1000.0,
+            '`unit = "lbf"` in [inputs.force]',
+        ),
+    ],
+)
+def test_the_line_that_mends_it(zoo, options, known, line):
+    assert lines(zoo, known, **options) == line
