@@ -189,7 +189,7 @@ def _judge(report: CheckReport, opener: Opener) -> None:
     if expected.told is None:
         return
     try:
-        answers = measure(opener, brake_force=expected.largest_force)
+        answers = measure(opener, brake_force=expected.brake_force)
     except FmuError:
         return  # a drive before has found it, or halved steps will
     found = judge(answers, expected.told, expected.profile)

@@ -7,6 +7,8 @@ from fmus.checking.scale import KnownMass
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
+USUAL = 8.0  # [m/s2] largest force over mass of a car, that of the default vehicle
+
 
 @dataclass(frozen=True)
 class Expected:
@@ -38,6 +40,12 @@ class Expected:
     def identified(self) -> FittedModel | None:
         """The model that an earlier identification wrote into the profile, or None."""
         return self.profile.model if self.profile else None
+
+    @property
+    def brake_force(self) -> float:
+        """The force [N] with which the brakes are judged: that of a car of the identified mass."""
+        known = 0.0 if self.identified is None else self.identified.mass
+        return max(self.largest_force, USUAL * known)
 
     @property
     def role(self) -> str:

@@ -107,7 +107,7 @@ class _Trial:
         free = without_guards(profile)
         opener = opener_of(self._path, step_size=self._step, profile=free)
         try:
-            return measure(opener, brake_force=self._expected.largest_force)
+            return measure(opener, brake_force=self._expected.brake_force)
         except FmuError:
             return None
 
@@ -128,7 +128,7 @@ class _Trial:
             rolling = drive(opener, [Phase(0.0, 0.1)], speed=start)
             if self._wrong(observe.start_speed(rolling, expected)):
                 return inf
-            answers = measure(opener, brake_force=expected.largest_force)
+            answers = measure(opener, brake_force=expected.brake_force)
         except FmuError:
             return inf
         if self._wrong(*judge(answers, told, profile)):

@@ -40,6 +40,7 @@ from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EGO_COLUMNS
 
 _CHECK_FORCE = 4000.0  # largest force [N] of the self-check
+_FILTERED = 4.0  # [m] difference of position and speed that a filter of half a second makes
 _SAME_STEP = 1e-6  # relative tolerance for two equal step sizes
 _OTHER_SIZE = 2.0  # ratio of masses from which the defaults for a car no longer fit
 # FMUs that passed the self-check in this process
@@ -196,8 +197,12 @@ def _told_mass(config: EgoRunConfig, profile: VehicleProfile) -> float | None:
 
 
 def _without_bound(profile: VehicleProfile) -> VehicleProfile:
-    """Return the profile without a bound of the acceleration, which diverging solvers exceed."""
-    limits = profile.limits.model_copy(update={"acceleration": 1e12})
+    """Return the profile without a bound of the acceleration, which diverging solvers exceed.
+
+    A filtered speed lags behind the position when the brakes are fully applied.
+    """
+    jump = max(profile.limits.position_jump, _FILTERED)
+    limits = profile.limits.model_copy(update={"acceleration": 1e12, "position_jump": jump})
     return profile.model_copy(update={"limits": limits})
 
 
