@@ -4,6 +4,7 @@ Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Contr
 Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
 """
 
+from controller.actuator import Actuator, ActuatorSide
 from controller.declarations import DECLARED
 from controller.errors import (
     ControllerError,
@@ -50,6 +51,8 @@ __all__ = [
     "PRINTED_PID",
     "STYLES",
     "Acceleration",
+    "Actuator",
+    "ActuatorSide",
     "Answer",
     "Controller",
     "ControllerError",

@@ -1,5 +1,6 @@
 """The paper's MPC with a PID as fallback (Yang & Özgüner 2019, algorithm 1), or a PID alone."""
 
+from controller.actuator import Actuator, Anticipation
 from controller.defaults import STANDSTILL
 from controller.observation import Observation
 from controller.paper_mpc.mpc import Mpc
@@ -14,13 +15,20 @@ class SpeedController:
     Args:
         mpc: MPC, or None to let the PID drive alone.
         pid: PID, which acts if the MPC has no plan.
+        actuator: Actuator of the vehicle, known to the tuned PID only; None if each force acts at
+            once.
     """
 
     foresees = False
 
-    def __init__(self, mpc: Mpc | None, pid: Pid | TunedPid) -> None:
+    def __init__(
+        self, mpc: Mpc | None, pid: Pid | TunedPid, actuator: Actuator | None = None
+    ) -> None:
         self.mpc = mpc
         self.pid = pid
+        self._anticipation: Anticipation | None = None
+        if actuator is not None and not actuator.ideal and isinstance(pid, TunedPid):
+            self._anticipation = Anticipation(pid.model, actuator)
         self._previous_force = 0.0
 
     @property
@@ -32,6 +40,8 @@ class SpeedController:
         """Forget the past of both controllers."""
         self._previous_force = 0.0
         self.pid.reset()
+        if self._anticipation is not None:
+            self._anticipation.reset()
         if self.mpc is not None:
             self.mpc.reset()
 
@@ -72,11 +82,19 @@ class SpeedController:
     def applied(self, force: float) -> None:
         """Continue from the ``force`` [N] that the safety layer applied instead of the last one."""
         self._previous_force = force
+        if self._anticipation is not None:
+            force = self._anticipation.applied(force)
         self.pid.applied(force)
 
     def _by_pid(
         self, speed: float, gap: float, limit: float, reason: str, status: str, iterations: int
     ) -> Decision:
-        force = self.pid.control(speed, gap, limit)
+        if isinstance(self.pid, TunedPid) and self._anticipation is not None:
+            ahead = self._anticipation.look(speed)
+            gap -= ahead.travel
+            force = self.pid.control(ahead.speed, gap, limit, (ahead.least, ahead.most))
+            force = self._anticipation.command([force])
+        else:
+            force = self.pid.control(speed, gap, limit)
         reference = self.pid.reference_speed(gap, limit)
         return Decision(force, "pid", reason, status, iterations, reference, None)

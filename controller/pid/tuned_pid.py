@@ -84,13 +84,20 @@ class TunedPid:
         """The target speed [m/s] at ``gap`` [m], at most ``limit`` [m/s]."""
         return self.reference.target(gap, limit)
 
-    def control(self, speed: float, gap: float, limit: float = inf) -> float:
+    def control(
+        self,
+        speed: float,
+        gap: float,
+        limit: float = inf,
+        reach: tuple[float, float] = (-inf, inf),
+    ) -> float:
         """Return the force u(k) [N].
 
         Args:
             speed: Speed v(k) [m/s].
             gap: Distance to the closest pedestrian in front [m]; inf without one.
             limit: Upper bound on the reference speed [m/s].
+            reach: Least and largest force [N] that can act in this step.
 
         Raises:
             ParameterError: speed or gap is not a number.
@@ -111,6 +118,7 @@ class TunedPid:
         high = min(p.force_limit, self._force + p.force_rate_limit)
         if limit <= 0.0:
             high = max(low, min(high, 0.0))
+        low, high = min(max(low, reach[0]), reach[1]), min(max(high, reach[0]), reach[1])
         force = min(max(wanted, low), high)
         settled = max(0.0, 1.0 - abs(a_ref) / _TRANSIENT)
         self._learn(settled * e, force - wanted)

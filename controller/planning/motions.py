@@ -19,7 +19,7 @@ def aim(
     before: float,
     goals: Array,
     fastest: float,
-    jerk: float,
+    jerks: tuple[float, float],
     time_step: float,
     motions: Motion,
 ) -> None:
@@ -31,12 +31,13 @@ def aim(
         goals: Wanted acceleration [m/s^2] and speed [m/s] at which it ends, (k, 2). Speeding up to
             0 ends at ``fastest``.
         fastest: Speed [m/s] at which speeding up ends.
-        jerk: Jerk [m/s^3] with which accelerations change.
+        jerks: Jerks [m/s^3] with which accelerations fall and rise.
         time_step: Control step [s].
         motions: Motions (k or more, N + 1), filled.
     """
     distance, speeds, accelerations = motions
-    most, count, last = jerk * time_step, goals.shape[0], speeds.shape[1] - 1
+    falls, rises = jerks[0] * time_step, jerks[1] * time_step
+    count, last = goals.shape[0], speeds.shape[1] - 1
     asked_for = np.full(count, before)
     for k in range(count):
         distance[k, 0], speeds[k, 0] = 0.0, speed
@@ -49,7 +50,7 @@ def aim(
                 goal = min(wanted, max((end - v) / _EASING, -FIRM))
             else:
                 goal = max(wanted, min(0.0, (goals[k, 1] - v) / _EASING))
-            a += min(max(goal - a, -most), most)
+            a += min(max(goal - a, -falls), rises)
             after = max(v + time_step * a, 0.0)
             if after > fastest:
                 after = max(fastest, min(after, v))
@@ -63,7 +64,7 @@ def approach(
     speed: float,
     before: float,
     end: float,
-    limits: tuple[float, float, float],
+    limits: tuple[float, float, tuple[float, float]],
     time_step: float,
     motion: Motion,
 ) -> None:
@@ -73,21 +74,21 @@ def approach(
         speed: Speed now [m/s].
         before: Acceleration before [m/s^2].
         end: Distance [m] to the place of the stop.
-        limits: Largest acceleration [m/s^2], highest speed [m/s], and jerk [m/s^3] with which
-            accelerations change.
+        limits: Largest acceleration [m/s^2], highest speed [m/s], and jerks [m/s^3] with which
+            accelerations fall and rise.
         time_step: Control step [s].
         motion: Motion (N + 1,), filled.
     """
-    (wanted, fastest, jerk), (distance, speeds, accelerations) = limits, motion
+    (wanted, fastest, jerks), (distance, speeds, accelerations) = limits, motion
     s, v, a = 0.0, speed, before
-    most = jerk * time_step
+    falls, rises = jerks[0] * time_step, jerks[1] * time_step
     for i in range(len(speeds)):
         distance[i], speeds[i] = s, v
         # The car drives on until its acceleration has changed. This distance is not left to brake.
-        left = max(end - s - 0.75 * (_EASING + 2.0 * max(a, 0.0) / jerk) * v, 0.0)
+        left = max(end - s - 0.75 * (_EASING + 2.0 * max(a, 0.0) / jerks[0]) * v, 0.0)
         aimed_at = min(fastest, np.sqrt(2.0 * SOFT_STOP * left), left / _CREEPING)
         goal = min(max((aimed_at - v) / _EASING, -FIRM), wanted)
-        a += min(max(goal - a, -most), most)
+        a += min(max(goal - a, -falls), rises)
         after = max(v + time_step * a, 0.0)
         accelerations[i] = (after - v) / time_step
         s += time_step * v
@@ -112,7 +113,7 @@ def branch_off(
     goals, alone = np.array([[braking, 0.0]]), (1, len(distance) - first)
     x, v, a = distance[first:], speeds[first:], accelerations[first:]
     tail = x.reshape(alone), v.reshape(alone), a.reshape(alone)
-    aim(speeds[first], before, goals, fastest, _JERK, time_step, tail)
+    aim(speeds[first], before, goals, fastest, (_JERK, _JERK), time_step, tail)
     for i in range(first, len(distance)):
         distance[i] += driven
 

@@ -6,12 +6,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from controller._jit import Array
+from controller.actuator import Actuator, Ahead, Anticipation
 from controller.defaults import STANDSTILL
 from controller.driving_constants import CREEPING, PATIENCE
 from controller.errors import ParameterError
 from controller.foresight import Foresight, Manoeuvre
 from controller.model import LongitudinalModel
 from controller.observation import Observation
+from controller.planning.capability import jerks_of, within
 from controller.planning.following import (
     UNSOLVED,
     follow,
@@ -19,8 +21,8 @@ from controller.planning.following import (
     unfold_and_judge,
 )
 from controller.planning.parameters import PlannerParameters
-from controller.planning.search import Search
-from controller.planning.smoothing import SmoothingProblem
+from controller.planning.search import Search, postponed
+from controller.planning.smoothing import Limits, SmoothingProblem
 from controller.protocol import Decision
 from controller.qp.exact_solver import ExactSolver
 from controller.qp.least_squares import Outcome
@@ -63,6 +65,10 @@ class Planner:
     Args:
         model: Longitudinal model of the vehicle.
         parameters: Horizon, limits and weights, or None for the defaults.
+        actuator: Actuator of the vehicle, or None if each force acts at once.
+
+    Attributes:
+        anticipation: Forces on their way through the actuator, or None if each acts at once.
 
     Raises:
         ParameterError: the time step leaves no horizon.
@@ -70,13 +76,24 @@ class Planner:
     """
 
     def __init__(
-        self, model: LongitudinalModel, parameters: PlannerParameters | None = None
+        self,
+        model: LongitudinalModel,
+        parameters: PlannerParameters | None = None,
+        actuator: Actuator | None = None,
     ) -> None:
         self.model = model
         self._decay, self._speed_per_force = model.decay, model.speed_per_force
-        self.parameters = parameters = parameters or PlannerParameters()
-        N = parameters.horizon
-        self._search = Search(model, parameters)
+        parameters = parameters or PlannerParameters()
+        self.anticipation = None
+        if actuator is not None and not actuator.ideal:
+            self.anticipation = Anticipation(model, actuator)
+            parameters = within(parameters, actuator, model.mass)
+        self.parameters = parameters
+        N, dead_steps = parameters.horizon, self.anticipation.steps if self.anticipation else 0
+        self._search = Search(model, parameters, dead_steps)
+        if actuator is not None:
+            self._search.jerks = jerks_of(actuator, parameters.manoeuvres.jerk, model.mass)
+        self._wanted = self._search.goals[:, 0].copy()
         self._problem = SmoothingProblem(model, parameters)
         self._solver = ExactSolver(self._problem, parameters.iteration_limit, box=None)
         problem = self._problem
@@ -101,6 +118,8 @@ class Planner:
         """Forget the last plan, and for how long the ego has waited."""
         self._solver.reset()
         self._search.reset()
+        if self.anticipation is not None:
+            self.anticipation.reset()
         self._waited = 0.0
 
     def plan(
@@ -110,15 +129,18 @@ class Planner:
         fastest: float,
         road: Road,
         foresight: Foresight | None,
+        ahead: Ahead | None = None,
     ) -> Plan:
-        """Plan from the state at t_k, and return the force.
+        """Plan from the state in which a force begins to act, and return this force.
 
         Args:
-            speed: Speed x_2(k) [m/s].
-            previous_force: Force u(k-1) [N]; 0 at standstill, where the brake holds without work.
+            speed: Speed [m/s] there: x_2(k), without a dead time.
+            previous_force: Force [N] that acts there: u(k-1), without a lag; 0 at standstill, where
+                the brake holds without work.
             fastest: Speed [m/s] with nobody in the way.
             road: Distances and speeds that the road allows.
             foresight: Foresight of the crowd, or None if nobody can get in the way.
+            ahead: Motion until a force begins to act, or None if it acts at once.
 
         Raises:
             ParameterError: a value is not a number.
@@ -136,8 +158,15 @@ class Planner:
             end = min(end, road.gap - search.least)
         elif speed <= STANDSTILL:
             end = min(end, road.gap - self.parameters.safe_distance)
-        name = search.choose(speed, before, fastest, allowed, foresight, end, road.to_clear)
-        plan = self._smooth((speed, before, previous_force, fastest), road, name)
+        if ahead is not None:
+            self._bound(speed, previous_force, ahead)
+            end -= ahead.travel
+        name = search.choose(speed, before, fastest, allowed, foresight, end, road.to_clear, ahead)
+        there = road
+        if ahead is not None and ahead.steps:
+            search.from_there(ahead)
+            there = from_there(road, ahead)
+        plan = self._smooth((speed, before, previous_force, fastest), there, name)
         self._wait(speed, road, name)
         return plan
 
@@ -156,6 +185,26 @@ class Planner:
         elif waits:
             self._waited += self.model.time_step
             search.creep(self._waited >= PATIENCE)
+
+    def _bound(self, speed: float, force: float, ahead: Ahead) -> None:
+        """Bound plans and manoeuvres by what the actuator can do in its present state."""
+        p, problem, anticipation = self.parameters, self._problem, self.anticipation
+        assert anticipation is not None
+        drive = min(p.force_limit, anticipation.actuator.drive.largest(speed))
+        falls, rises = force - ahead.least, ahead.most - force
+        self._reach = (
+            max(ahead.least, force - p.force_rate_limit),
+            min(ahead.most, force + p.force_rate_limit),
+        )
+        limits = Limits(*problem.limits)._replace(
+            force_rate=min(p.force_rate_limit, falls),
+            drive=drive,
+            rise=min(p.force_rate_limit, rises),
+        )
+        problem.limits = tuple(limits)
+        self._arrays = (*self._arrays[:2], problem.limits, *self._arrays[3:])
+        left = max((drive - self.model.friction * speed) / self.model.mass, 0.0)
+        np.minimum(self._wanted, left, out=self._search.goals[:, 0])
 
     def _rules(self) -> tuple[int, float, tuple[Any, ...]]:
         """The number of calm steps, the calm braking [m/s^2], and the weights of the cost."""
@@ -200,14 +249,35 @@ class Planner:
         force = self._force(state[0], state[2])
         return Plan(force, status, corrections, name, search.tried)
 
+    def forces(self, first: float) -> list[float]:
+        """Return the forces [N] of the plan's steps, of which the first one is given."""
+        if self.anticipation is None:
+            return [first]
+        v = self._plan.speed[: self.anticipation.lead + 1]
+        later = (v[2:] - self._decay * v[1:-1]) / self._speed_per_force
+        return [first, *later.tolist()]
+
     def _force(self, speed: float, previous_force: float) -> float:
         """Return the force [N] for the plan's next speed, within the actuator's limits."""
         p = self.parameters
         force = (float(self._plan.speed[1]) - self._decay * speed) / self._speed_per_force
+        if self.anticipation is not None:
+            return min(max(force, self._reach[0]), self._reach[1])
         if speed > STANDSTILL:
             low, high = previous_force - p.force_rate_limit, previous_force + p.force_rate_limit
             force = min(max(force, low), high)
         return min(max(force, -p.force_limit), p.force_limit)
+
+
+def from_there(road: Road, ahead: Ahead) -> Road:
+    """Return the road from where a force begins to act; beyond the horizon it stays as it is."""
+    lane_speeds = road.lane_speeds
+    return road._replace(
+        allowed=postponed(road.allowed, ahead.steps) - ahead.travel,
+        lane_speeds=None if lane_speeds is None else postponed(lane_speeds, ahead.steps),
+        gap=road.gap - ahead.travel,
+        to_clear=max(road.to_clear - ahead.travel, 0.0),
+    )
 
 
 class PlanningController:
@@ -236,20 +306,29 @@ class PlanningController:
     def control(self, observation: Observation) -> Decision:
         """Decide on the force [N] at t_k."""
         ego, ahead, limits = observation.ego, observation.ahead, observation.limits
-        speed = ego.speed
+        speed, planner = ego.speed, self.planner
         previous = 0.0 if speed <= STANDSTILL else self._previous_force
+        anticipation, there = planner.anticipation, None
+        if anticipation is not None:
+            there = anticipation.look(speed)
+            speed, previous = there.speed, there.force
+            previous = max(previous, 0.0) if speed <= STANDSTILL else previous
         reference = min(self.planner.parameters.reference_speed, limits.speed_limit)
         allowed = ahead.obstacle_positions - (ego.position + limits.safe_distance)
         road = Road(allowed, limits.lane_speeds, ahead.gap, ahead.to_clear)
-        plan = self.planner.plan(
-            speed, previous, reference, road, observation.pedestrians.foresight
+        plan = planner.plan(
+            speed, previous, reference, road, observation.pedestrians.foresight, there
         )
         force = plan.force
         if speed <= STANDSTILL and force < 0.0:
             force = 0.0  # the brake holds without work
+        if anticipation is not None:
+            force = anticipation.command(planner.forces(force))
         self._previous_force = force
         return Decision(force, "mpc", plan.manoeuvre, plan.status, plan.iterations, reference, None)
 
     def applied(self, force: float) -> None:
         """Continue from the force [N] that the safety layer applied instead of the last one."""
         self._previous_force = force
+        if self.planner.anticipation is not None:
+            self.planner.anticipation.applied(force)

@@ -12,6 +12,7 @@ from math import inf
 import numpy as np
 
 from controller._jit import Array, kernel
+from controller.actuator import Ahead
 from controller.foresight import Batches, Evaluation, Foresight, Manoeuvre, Trials
 from controller.model import LongitudinalModel
 from controller.planning.costs import cost, cost_of_blocking
@@ -27,22 +28,29 @@ class Search:
     Args:
         model: Longitudinal model of the vehicle.
         parameters: Horizon, manoeuvres and weights.
+        dead_steps: Number of steps until a force begins to act.
 
     Attributes:
         weights: Weights of the cost, a plain tuple of the fields of :class:`Weights`.
         creeps: Whether the ego may come nearer to people in front, :meth:`creep`.
-        best: Distance, speed and acceleration of the manoeuvre of least cost. This and what
-            follows is valid until the next search.
+        best: Distance, speed and acceleration of the manoeuvre of least cost, from where a force
+            begins to act. This and what follows is valid until the next search.
         gap: Gaps (N,) [m] of its predicted outcome, as in :class:`Evaluation`.
         threat_free: Threat-free speeds (N,) [m/s], as in :class:`Evaluation`.
         passing: Passing speeds (N,) [m/s], as in :class:`Evaluation`.
         missing: Largest part [m] of the stopping distance for which it has no room.
         tried: Number of manoeuvres that were compared.
+        jerks: Jerks [m/s^3] with which accelerations of manoeuvres fall and rise.
+        goals: Wanted acceleration [m/s^2] of each kind of manoeuvre, and the speed [m/s] at which
+            it ends, (k, 2).
     """
 
-    def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
+    def __init__(
+        self, model: LongitudinalModel, parameters: PlannerParameters, dead_steps: int = 0
+    ) -> None:
         N, m, v_r = parameters.horizon, parameters.manoeuvres, parameters.reference_speed
         self._manoeuvres, self._time_step = m, model.time_step
+        self.jerks, self._dead_steps = (m.jerk, m.jerk), dead_steps
         usual = Weights.of(parameters, m)
         self._weights = tuple(usual), tuple(usual.creeping())
         # Lost time refers to at least half of v_r, also where a bend or a light allows less.
@@ -53,7 +61,7 @@ class Search:
         self._names = [f"{a:+g} m/s^2 to {end:g} m/s" for a, end in self._kinds]
         self._names[_DRIVE_ON] = "drive on"
         self._names += ["up to the end", "as planned"]
-        self._goals = np.array(self._kinds)
+        self.goals = np.array(self._kinds)
         # Braking to a speed is tried only from a higher one. The index of _others counts the
         # target speeds below the present speed.
         self._slower = sorted({least for a, least in self._kinds if a < 0.0})
@@ -72,6 +80,9 @@ class Search:
         self._trials = Trials.empty(count, N, penalty.copy())
         self._motions = (self._trials.distance, self._trials.speed, self._trials.acceleration)
         self._each = [self._trials.of(trial) for trial in range(count)]
+        # The motions from where a force begins to act; the trials begin now
+        x, v, a = self._motions
+        self._later = (x.copy(), v.copy(), a.copy()) if dead_steps else self._motions
         self.gap, self.threat_free, self.passing = np.full((3, N), inf)
         self._free = np.full(N, inf)
         self._take(_DRIVE_ON)
@@ -110,6 +121,7 @@ class Search:
         foresight: Foresight | None,
         end: float,
         to_clear: float = 0.0,
+        ahead: Ahead | None = None,
     ) -> str:
         """Choose the manoeuvre of least cost, and return its name.
 
@@ -118,14 +130,15 @@ class Search:
         close to a person or a vehicle.
 
         Args:
-            speed: Speed now [m/s].
+            speed: Speed [m/s] where a force begins to act: now, without a dead time.
             before: Acceleration before [m/s^2].
             fastest: Speed [m/s] with nobody in the way.
             allowed: Distances (N,) [m] that may be driven until steps 1 ... N.
             foresight: Foresight of the crowd, or None if nobody can get in the way.
-            end: Distance [m] to the end of the way. If it is within the horizon, driving up to it
-                is tried as well.
+            end: Distance [m] from there to the end of the way. If it is within the horizon,
+                driving up to it is tried as well.
             to_clear: Keep-clear distance [m]. To stand within it costs extra.
+            ahead: Motion until a force begins to act, or None without a dead time.
         """
         planned = self._planned
         others = self._others[bisect_left(self._slower, speed)]
@@ -138,6 +151,8 @@ class Search:
             content = () if self._turn % 2 else (others[self._turn // 2 % len(others)],)
         batches = Batches(first, content, others if drive_on else (_DRIVE_ON, *others))
         self._lay_out(speed, before, fastest, end if ends else inf)
+        if self._dead_steps and ahead is not None:
+            self._prepend(ahead)
         if to_clear > 0.0 or self._charged:
             self._charge(fastest, min(to_clear, float(allowed[-1])))
         if self._compare(batches, drive_on, fastest, allowed, foresight):
@@ -151,13 +166,36 @@ class Search:
         """Fill all trials, for a way that ends after ``end`` [m]."""
         m, last = self._manoeuvres, self._last
         lay_out(
-            (speed, before, fastest, end, m.jerk, m.deceleration, self._time_step),
-            self._goals,
+            (speed, before, fastest, end, *self.jerks, m.deceleration, self._time_step),
+            self.goals,
             self._planned,
             self._holds,
             (last.distance, last.speed),
-            self._motions,
+            self._later,
         )
+
+    def _prepend(self, ahead: Ahead) -> None:
+        """Fill the trials: the motion until a force begins to act, and then each manoeuvre."""
+        d = self._dead_steps
+        distance, speed, acceleration = self._motions
+        for whole, later in zip(self._motions, self._later, strict=True):
+            whole[:, d:] = later[:, : whole.shape[1] - d]
+        distance[:, d:] += ahead.travel
+        distance[:, :d], speed[:, :d] = ahead.travels[:d], ahead.speeds[:d]
+        acceleration[:, :d] = np.diff(ahead.speeds) / self._time_step
+
+    def from_there(self, ahead: Ahead) -> None:
+        """Let the outcome of the best manoeuvre begin where a force begins to act.
+
+        What is beyond the horizon stays as it is at its end.
+        """
+        d = self._dead_steps
+        whole, later = self._motions[0][self._best], self._later[0][self._best]
+        beyond = self.gap[-1] + whole[-1] - (ahead.travel + later[-d:])
+        self.gap = np.concatenate([self.gap[d:], beyond])
+        self.threat_free = postponed(self.threat_free, d)
+        self.passing = postponed(self.passing, d)
+        self.best = tuple(motion[self._best] for motion in self._later)
 
     def _charge(self, fastest: float, to_clear: float) -> None:
         """Add the cost of standing within the first ``to_clear`` [m] to each trial's penalty."""
@@ -245,6 +283,11 @@ class Search:
         self._best, self.best = trial, self._each[trial]
 
 
+def postponed(values: Array, steps: int) -> Array:
+    """Return ``values`` (N,) from ``steps`` steps later on; the last one stays to the end."""
+    return np.concatenate([values[steps:], np.full(steps, values[-1])])
+
+
 @kernel
 def lay_out(
     state: tuple[float, ...],
@@ -258,21 +301,22 @@ def lay_out(
 
     Args:
         state: Speed [m/s], acceleration before [m/s^2], wanted speed [m/s], distance to the end of
-            the way [m] (inf without this trial), jerk [m/s^3], deceleration b [m/s^2], and time
-            step [s].
+            the way [m] (inf without this trial), jerks [m/s^3] with which accelerations fall and
+            rise, deceleration b [m/s^2], and time step [s].
         goals: Wanted acceleration [m/s^2] and speed [m/s] at which braking ends, (k, 2).
         planned: Whether there is a last plan. If not, the last trial keeps the speed.
         holds: Whether the last speed of this plan is kept beyond its horizon.
         last: Distances [m] and speeds [m/s] of this plan.
         motions: Distances, speeds and accelerations, (k + 2, N + 1) each, filled.
     """
-    speed, before, fastest, end, jerk, b, time_step = state
+    speed, before, fastest, end, falls, rises, b, time_step = state
+    jerks = falls, rises
     distance, speeds, accelerations = motions
     k = goals.shape[0]
-    aim(speed, before, goals, fastest, jerk, time_step, motions)
+    aim(speed, before, goals, fastest, jerks, time_step, motions)
     if np.isfinite(end):
         to = (distance[k], speeds[k], accelerations[k])
-        approach(speed, before, end, (goals[0, 0], fastest, jerk), time_step, to)
+        approach(speed, before, end, (goals[0, 0], fastest, jerks), time_step, to)
     k += 1
     to = (distance[k], speeds[k], accelerations[k])
     if planned:
@@ -281,4 +325,4 @@ def lay_out(
         shift(speed, holds, b, time_step, to)
     else:
         keeping = distance[k:], speeds[k:], accelerations[k:]
-        aim(speed, before, np.zeros((1, 2)), fastest, jerk, time_step, keeping)
+        aim(speed, before, np.zeros((1, 2)), fastest, jerks, time_step, keeping)

@@ -52,9 +52,11 @@ class Limits(NamedTuple):
     time_step: float  # control step dt [s]
     decay: float  # share of a speed that is left after a step without force
     gain: float  # change of speed per force in a step, dt / M [s/kg]
-    force: float  # largest force [N]
-    force_rate: float  # largest change of the force [N per step]
+    force: float  # largest braking force [N]
+    force_rate: float  # largest fall of the force [N per step]
     speed: float  # highest speed [m/s]
+    drive: float  # largest driving force [N]
+    rise: float  # largest rise of the force [N per step]
 
 
 class SmoothingProblem:
@@ -86,6 +88,8 @@ class SmoothingProblem:
                 p.force_limit,
                 p.force_rate_limit,
                 p.speed_max,
+                p.force_limit,
+                p.force_rate_limit,
             )
         )
         h = np.diff(nodes, prepend=0) * dt
@@ -186,7 +190,7 @@ def fill(
     c, n = Limits(*limits), len(nodes)
     dt = c.time_step
     weakest = max(-c.force, previous_force - c.force_rate)
-    strongest = min(c.force, previous_force + c.force_rate)
+    strongest = min(c.drive, previous_force + c.rise)
     least = max(0.0, c.decay * speed + c.gain * weakest)
     most = min(c.speed, max(fastest, speed), c.decay * speed + c.gain * strongest)
     most = max(most, least)  # after hard braking even the largest force may give a negative speed
@@ -196,7 +200,7 @@ def fill(
     most = min(most, max(least, speed_limits[0]))
     lower[0], upper[0] = least, most
     lower[n : 2 * n - 1] = -hardest
-    upper[n : 2 * n - 1] = hardest
+    upper[n : 2 * n - 1] = c.gain * c.drive / dt
     v, driven = least, dt * speed  # x_1(k+1) is independent of all forces
     for i in range(1, n):
         slower = max(0.0, v - hardest * intervals[i])

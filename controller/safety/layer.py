@@ -8,16 +8,18 @@ verification with a fail-safe manoeuvre (Althoff & Dolan, IEEE T-RO 2014; Pek & 
 with safe distances as in RSS (Shalev-Shwartz et al., arXiv 1708.06374).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil, exp, expm1, inf, log
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from controller._jit import Array, kernel
+from controller.actuator import Actuator
 from controller.defaults import FORCE_LIMIT, STANDSTILL
 from controller.model import LongitudinalModel
 from controller.parameters import require, require_not_negative, require_positive
+from controller.safety.actuator_bound import Lagging, advance_bound
 from controller.safety.stopping import EgoMotion, Limits, Walking, is_safe, packed, unpacked
 from controller.safety.worst_motion import RECORDED, WorstMotion
 
@@ -75,6 +77,7 @@ class SafetyParameters:
     force_limit: float = FORCE_LIMIT  # u_max [N] (Yang & Özgüner 2019, table 1)
     force_rate_limit: float = inf  # largest change of the layer's braking force [N per step]
     reaction_time: float = 0.0  # longest time [s] until the vehicle follows a command
+    actuator: Actuator = field(default_factory=Actuator)  # the worst one that the ego may have
 
     def __post_init__(self) -> None:
         require_positive("walking_acceleration", self.walking_acceleration, "m/s^2")
@@ -87,6 +90,16 @@ class SafetyParameters:
         require_brake(self.force_limit, self.reaction_time)
         rate = self.force_rate_limit
         require(rate > 0.0, "force_rate_limit", rate, "a number > 0 [N per step]")
+
+    @property
+    def dead_time(self) -> float:
+        """The longest time [s] until an actuator begins to follow a command."""
+        return max(self.reaction_time, self.actuator.drive.delay, self.actuator.brake.delay)
+
+    @property
+    def brake_force(self) -> float:
+        """The largest braking force [N] that acts in the end."""
+        return min(self.force_limit, self.actuator.brake.limit)
 
     @property
     def worst(self) -> WorstMotion:
@@ -129,7 +142,7 @@ class SafetyLayer:
                 fastest_decay=max(0.0, model.decay),
                 gain=model.speed_per_force,
                 braking_gain=model.speed_per_force * ((1.0 - exp(-z)) / z if z > 0.0 else 1.0),
-                force_limit=p.force_limit,
+                force_limit=p.brake_force,
                 force_rate_limit=p.force_rate_limit,
             ),
             people=Walking(
@@ -140,13 +153,17 @@ class SafetyLayer:
             half_width=p.width / 2.0,
             body_radius=p.body_radius,
             margin=p.margin,
+            lagging=Lagging.of(p.actuator, dt),
         )
         self._errors = np.full(0, p.position_error)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
-        self._commands = past_commands(p.reaction_time, dt)
-        self.memory = (packed(self._limits), self._commands, self._boxes)
-        # Largest number of steps until full braking acts
-        self._not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit
+        self._commands, self._acting = past_commands(p.dead_time, dt), np.zeros(3)
+        self.memory = (packed(self._limits), self._commands, self._boxes, self._acting)
+        # Largest number of steps until full braking acts; a lag lacks no more than this delay
+        drive, brake = p.actuator.drive, p.actuator.brake
+        lags = (max(drive.lag, brake.lag) + brake.lag) / dt
+        rate = min(p.force_rate_limit, dt * min(drive.rate, brake.rate))
+        self._not_yet = len(self._commands) + 2.0 * p.brake_force / rate + lags
 
     def reach(self, speed: float) -> float:
         """Return the longest distance [m] until the front stops, after any force now.
@@ -172,7 +189,7 @@ class SafetyLayer:
 
     def reset(self) -> None:
         """Forget the forces of the past."""
-        self._commands[:] = 0.0
+        self._commands[:] = self._acting[:] = 0.0
 
     def filter(
         self,
@@ -215,7 +232,7 @@ def largest_safe_force(
     speed: float,
     front: tuple[Array, float],
     people: tuple[Array, Array, Array, Array],
-    memory: tuple[Array, Array, Array],
+    memory: tuple[Array, Array, Array, Array],
 ) -> tuple[float, int]:
     """Find the largest safe force up to ``force`` [N], and remember it as the last command.
 
@@ -226,15 +243,16 @@ def largest_safe_force(
         people: Positions (n, 2) [m], velocities (n, 2) [m/s], largest errors of the positions
             (n,) [m] or more, and kerbs (n, 3) or none; see :meth:`SafetyLayer.filter`.
         memory: Packed :class:`Limits`; past forces (delay + 1,) [N], the latest last, changed;
-            scratch (longest stop + 1, 9).
+            scratch (longest stop + 1, 9); bounds (3,) [N] of the forces that act, changed.
 
     Returns:
         Force [N]; 0 if it is the controller's, 1 if the layer acts, 2 if the layer acts although no
         braking is certain to be enough.
     """
-    numbers, commands, boxes = memory
+    numbers, commands, boxes, acting = memory
     c, v = unpacked(numbers), speed if speed > STANDSTILL else 0.0
-    verdict, safe, scratch = LETS_THROUGH, force, (commands, boxes)
+    advance_bound(max(commands.max(), -c.ego.force_limit), acting, c.lagging)
+    verdict, safe, scratch = LETS_THROUGH, force, (commands, boxes, acting)
     if people[0].shape[0] > 0 and not is_safe(force, v, front, people, c, scratch, SLACK):
         verdict = ACTS
         safe = max(-c.ego.force_limit, commands[-1] - c.ego.force_rate_limit)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from controller._jit import Array, inner
+from controller.safety.actuator_bound import Lagging, bound_step
 
 _BETWEEN = 3  # number of poses of the front in a bend, besides the last, that a box encloses
 
@@ -38,12 +39,13 @@ class Limits(NamedTuple):
     half_width: float  # half width of the ego [m]
     body_radius: float  # radius R [m] of a person's body
     margin: float  # least distance [m] of the front to a body
+    lagging: Lagging = Lagging()  # lags of the ego's actuator
 
 
 def packed(limits: Limits) -> Array:
     """Return all numbers of ``limits`` in one array, in which kernels receive them."""
-    time_step, ego, people, *distances = limits
-    return np.array([time_step, *ego, *people, *distances])
+    time_step, ego, people, *distances, lagging = limits
+    return np.array([time_step, *ego, *people, *distances, *lagging])
 
 
 @inner
@@ -51,7 +53,8 @@ def unpacked(numbers: Array) -> Limits:
     """Return the limits that :func:`packed` has put into ``numbers``."""
     n = numbers
     ego = EgoMotion(n[1], n[2], n[3], n[4], n[5], n[6])
-    return Limits(n[0], ego, Walking(n[7], n[8], n[9]), n[10], n[11], n[12])
+    lagging = Lagging(n[13], n[14], n[15], n[16], n[17])
+    return Limits(n[0], ego, Walking(n[7], n[8], n[9]), n[10], n[11], n[12], lagging)
 
 
 @inner
@@ -149,8 +152,7 @@ def _stop(
     way: Array,
     spacing: float,
     c: Limits,
-    commands: Array,
-    boxes: Array,
+    memory: tuple[Array, Array, Array],
 ) -> tuple[int, float]:
     """Fill the rectangles that hold the front at each instant of a stop.
 
@@ -159,22 +161,29 @@ def _stop(
     force. Row j is for the end of step j - 1 and the start of step j. Its column 8 is the clearance
     that both steps need, or -1 if the ego stands in both.
 
+    The memory is as for :func:`is_safe`.
+
     Returns:
         Number of steps until the ego stands, -1 if it does not stop; largest travel [m].
     """
+    commands, boxes, acting = memory
     dt, delay = c.time_step, commands.shape[0] - 1
+    state = acting[0], acting[1], acting[2]
     low = high = 0.0
     slowest = fastest = speed
     _sweep(way, spacing, 0.0, 0.0, c.half_width, boxes[0])
     boxes[0, 8] = -1.0
     for j in range(boxes.shape[0] - 1):
-        if fastest <= 0.0 and j > delay and _strongest(j, force, commands, c) <= 0.0:
-            return j, high
         f = _strongest(j, force, commands, c)
-        after = max(
-            0.0, c.ego.slowest_decay * fastest + f * (c.ego.gain if f > 0.0 else c.ego.braking_gain)
-        )
+        driven, braked, ends, state = bound_step(f, state, c.lagging)
+        stands = fastest <= 0.0 and ends[0] <= 0.0
+        if stands and j > delay:
+            return j, high
+        gained = driven * c.ego.gain - braked * c.ego.braking_gain
+        after = max(0.0, c.ego.slowest_decay * fastest + gained)
         travel = 0.5 * dt * (fastest + max(fastest, after))
+        if not stands:  # the force falls within the step: its speed is above the straight line
+            travel += 0.125 * dt * c.ego.gain * (ends[0] - ends[1])
         clearance = _clearance(travel, c) if travel > 0.0 else -1.0
         _sweep(way, spacing, low, high + travel, c.half_width, boxes[j + 1])
         boxes[j, 8], boxes[j + 1, 8] = max(boxes[j, 8], clearance), clearance
@@ -292,7 +301,7 @@ def is_safe(
     front: tuple[Array, float],
     people: tuple[Array, Array, Array, Array],
     c: Limits,
-    memory: tuple[Array, Array],
+    memory: tuple[Array, Array, Array],
     slack: float,
 ) -> bool:
     """Return whether the ego can stop after ``force`` without its front hitting a person.
@@ -303,12 +312,13 @@ def is_safe(
         front: Poses (k, 4) of the front ahead, and the distance [m] between them.
         people: Positions (n, 2), velocities (n, 2), errors (n,) or more, and kerbs (n, 3) or none.
         c: Limits of the ego's and people's motion.
-        memory: Forces of the past, and the rectangles, which are overwritten.
+        memory: Forces of the past, the rectangles, which are overwritten, and bounds of the
+            forces that act.
         slack: Distance [m] added to the clearance.
     """
     position, velocity, errors, kerbs = people
-    (way, spacing), (commands, boxes) = front, memory
-    steps, travel = _stop(force, speed, way, spacing, c, commands, boxes)
+    (way, spacing), boxes = front, memory[1]
+    steps, travel = _stop(force, speed, way, spacing, c, memory)
     if steps < 0:
         return False
     widest = 0.0

@@ -7,16 +7,18 @@ steps of SUMO, and what is known of it is up to one step old. The distance is th
 step by step instead of by the formula, and holds for each of them (docs/safety.md has the theorem).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from controller._jit import Array, inner, kernel
+from controller.actuator import Actuator
 from controller.defaults import FORCE_LIMIT
 from controller.driving_constants import EMERGENCY_BRAKING, RESPONSE, RESTORING
 from controller.model import LongitudinalModel
 from controller.parameters import require_not_negative, require_positive
+from controller.safety.actuator_bound import Lagging, advance_bound, bound_step
 from controller.safety.layer import (
     LONGEST_STOP,
     RESOLUTION,
@@ -55,11 +57,17 @@ class VehicleLimits:
     margin: float = 1.0  # least gap [m] (giveway's own)
     force_limit: float = FORCE_LIMIT  # u_max [N] (Yang & Özgüner 2019, table 1)
     reaction_time: float = 0.0  # longest time [s] until the vehicle follows a command
+    actuator: Actuator = field(default_factory=Actuator)  # the worst one that the ego may have
 
     def __post_init__(self) -> None:
         require_positive("response", self.response, "m/s^2")
         require_not_negative("margin", self.margin, "m")
         require_brake(self.force_limit, self.reaction_time)
+
+    @property
+    def dead_time(self) -> float:
+        """The longest time [s] until an actuator begins to follow a command."""
+        return max(self.reaction_time, self.actuator.drive.delay, self.actuator.brake.delay)
 
 
 class VehicleLayer:
@@ -76,16 +84,18 @@ class VehicleLayer:
     REASON: Final = "vehicle ahead"
 
     def __init__(self, model: LongitudinalModel, limits: VehicleLimits) -> None:
-        dt = model.time_step
-        hardest = limits.force_limit / model.mass
+        dt, self._actuator = model.time_step, limits.actuator
+        hardest = min(limits.force_limit, limits.actuator.brake.limit) / model.mass
         response = min(limits.response, hardest)
-        self._numbers = np.array([dt, model.mass, model.friction, response, hardest, limits.margin])
-        self._commands = past_commands(limits.reaction_time, dt)
+        self._lagging = Lagging.of(limits.actuator, dt)
+        vehicle = [dt, model.mass, model.friction, response, hardest, limits.margin]
+        self._numbers = np.array([*vehicle, *self._lagging])
+        self._commands, self._acting = past_commands(limits.dead_time, dt), np.zeros(3)
         self.restores = False
 
     def reset(self) -> None:
         """Forget the past."""
-        self._commands[:] = 0.0
+        self._commands[:] = self._acting[:] = 0.0
         self.restores = False
 
     def filter(self, force: float, speed: float, ahead: VehicleAhead | None) -> float:
@@ -102,10 +112,11 @@ class VehicleLayer:
             self.restores = False
             return force
         restores = self.restores or ahead.new
+        asked = self._actuator.acting(force)
         safe, self.restores = safe_following_force(
-            force, speed, ahead, restores, self._numbers, self._commands
+            asked, speed, ahead, restores, self._numbers, (self._commands, self._acting)
         )
-        return float(safe)
+        return force if safe == asked else self._actuator.command(float(safe))
 
     def applied(self, force: float) -> None:
         """Remember the force [N] that acts in the step from now on.
@@ -114,7 +125,10 @@ class VehicleLayer:
             force: Force [N]; at most the one that :meth:`filter` has returned.
         """
         self._commands[:-1] = self._commands[1:]
-        self._commands[-1] = force
+        self._commands[-1] = self._actuator.acting(force)
+        _, mass, _, _, hardest, _ = self._numbers[:6]
+        strongest = max(self._commands.max(), -mass * hardest)
+        advance_bound(strongest, self._acting, self._lagging)
 
 
 @kernel
@@ -124,7 +138,7 @@ def safe_following_force(
     ahead: VehicleAhead,
     restores: bool,
     numbers: Array,
-    commands: Array,
+    memory: tuple[Array, Array],
 ) -> tuple[float, bool]:
     """Find the largest force up to ``force`` [N] that keeps the safe distance, or restores it.
 
@@ -134,24 +148,25 @@ def safe_following_force(
         ahead: Vehicle ahead.
         restores: Whether the safe distance was too small before, or the vehicle ahead is new.
         numbers: Time step [s], mass [kg], friction [N.s/m], deceleration of the response and
-            largest one of the ego [m/s^2], and margin [m].
-        commands: Past forces (delay + 1,) [N], the latest last.
+            largest one of the ego [m/s^2], margin [m], and fields of :class:`Lagging`.
+        memory: Past forces (delay + 1,) [N], the latest last; bounds (3,) [N] of the forces that
+            act, see :func:`bound_step`.
 
     Returns:
         The force, and whether the safe distance is still too small.
     """
-    _, mass, alpha, response, hardest, margin = numbers
-    friction = helping_friction(alpha, commands)
-    if keeps_behind(force, speed, ahead, numbers, commands):
+    mass, alpha, response, hardest, margin = numbers[1:6]
+    friction = helping_friction(alpha, memory[0], numbers)
+    if keeps_behind(force, speed, ahead, numbers, memory):
         return force, False
     braking = max(friction * speed - mass * response, -mass * hardest)
-    safe = keeps_behind(braking, speed, ahead, numbers, commands)
+    safe = keeps_behind(braking, speed, ahead, numbers, memory)
     if safe and not restores:
-        return _largest(braking, force, speed, ahead, numbers, commands), False
+        return _largest(braking, force, speed, ahead, numbers, memory), False
     gentle = max(RESTORING, _URGENCY * needed_behind(speed, ahead, margin))
     restoring = min(force, max(friction * speed - mass * gentle, -mass * hardest))
-    if keeps_behind(restoring, speed, ahead, numbers, commands):
-        return _largest(restoring, force, speed, ahead, numbers, commands), False
+    if keeps_behind(restoring, speed, ahead, numbers, memory):
+        return _largest(restoring, force, speed, ahead, numbers, memory), False
     return restoring, True
 
 
@@ -162,12 +177,12 @@ def _largest(
     speed: float,
     ahead: VehicleAhead,
     numbers: Array,
-    commands: Array,
+    memory: tuple[Array, Array],
 ) -> float:
     """The largest force [N] between a safe and an unsafe one, see :func:`keeps_behind`."""
     while unsafe - safe > RESOLUTION:
         middle = 0.5 * (safe + unsafe)
-        if keeps_behind(middle, speed, ahead, numbers, commands):
+        if keeps_behind(middle, speed, ahead, numbers, memory):
             safe = middle
         else:
             unsafe = middle
@@ -176,7 +191,11 @@ def _largest(
 
 @kernel
 def keeps_behind(
-    force: float, speed: float, ahead: VehicleAhead, numbers: Array, commands: Array
+    force: float,
+    speed: float,
+    ahead: VehicleAhead,
+    numbers: Array,
+    memory: tuple[Array, Array],
 ) -> bool:
     """Return whether the ego stays behind a vehicle that brakes as hard as it can.
 
@@ -185,36 +204,46 @@ def keeps_behind(
         speed: Speed of the ego [m/s].
         ahead: Vehicle ahead.
         numbers: Numbers of the ego, as for :func:`safe_following_force`.
-        commands: Past forces (delay + 1,) [N], the latest last.
+        memory: Past forces [N] and bounds of those that act, as there.
     """
-    dt, mass, friction, response, _, margin = numbers
+    dt, mass, friction, response, hardest, margin = numbers[:6]
+    c = Lagging(numbers[6], numbers[7], numbers[8], numbers[9], numbers[10])
+    lags = c.drive_mean > 0.0 or c.brake_mean > 0.0 or c.fall > 0.0
+    commands, acting = memory
+    state = acting[0], acting[1], acting[2]
     delay, v, travel = commands.shape[0] - 1, speed, 0.0
     held = delay + max(1, int(np.ceil((ahead.step - ahead.age) / dt - WHOLE_STEPS)))
-    acceleration = (force - helping_friction(friction, commands) * speed) / mass
+    force = max(force, -mass * hardest)
+    acceleration = (force - helping_friction(friction, commands, numbers) * speed) / mass
     rear = ahead.gap - ahead.speed * ahead.age  # its place [m] at the last news
     for i in range(int(LONGEST_STOP / dt)):
+        strongest = -response
         if i < held:
             # Within the reaction time any of the commands since then may act.
             strongest = acceleration
             for k in range(i + 1, delay + 1):
                 strongest = max(strongest, commands[k] / mass)
-            after = max(v + strongest * dt, 0.0)
-        else:
-            after = max(v - response * dt, 0.0)
+        driven, braked, ends, state = bound_step(mass * strongest, state, c)
+        if lags:
+            strongest = (driven - braked) / mass
+        after = max(v + strongest * dt, 0.0)
         travel += max(v, after) * dt
+        if lags:
+            travel += 0.125 * dt * dt * (ends[0] - ends[1]) / mass
         v = after
         worst = rear + braking_travel(ahead, ahead.age + (i + 1) * dt, dt)
         if travel > worst - margin - SLACK:
             return False
-        if v <= 0.0 and i >= held - 1:
+        if v <= 0.0 and i >= held - 1 and (not lags or (i >= held and ends[1] <= 0.0)):
             return True
     return False
 
 
 @inner
-def helping_friction(friction: float, commands: Array) -> float:
+def helping_friction(friction: float, commands: Array, numbers: Array) -> float:
     """The friction [N.s/m] that helps to brake; 0 if a force acts late, at another speed."""
-    return friction if commands.shape[0] == 1 else 0.0
+    late = commands.shape[0] > 1 or numbers[7] > 0.0 or numbers[9] > 0.0 or numbers[10] > 0.0
+    return 0.0 if late else friction
 
 
 @inner

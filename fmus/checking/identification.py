@@ -7,7 +7,7 @@ driven by an acceleration, a speed or pedals, this includes the inverse map.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
@@ -23,7 +23,7 @@ from fmus.checking.model_fit.measurements import (
     Measurements,
     sensor_lag,
 )
-from fmus.checking.model_fit.prediction import position_errors, speed_errors
+from fmus.checking.model_fit.prediction import acting_force, position_errors, speed_errors
 from fmus.checking.model_fit.remarks import estimate_remarks, resistance_remarks, side_remarks
 from fmus.checking.model_fit.selection import identify_sides
 from fmus.checking.model_fit.side_models import HEAVIEST, poverty, side_model
@@ -195,6 +195,13 @@ def modelled(
         drive=sides[0],
         brake=sides[1],
     )
+    acting = replace(validation, force=acting_force(validation, model))
+    errors = [
+        position_errors(acting, model.mass, model.friction, horizon, exact=exact)
+        for exact in (False, True)  # the layer's promise holds for both
+    ]
+    error = min(float(np.quantile(one, 0.95)) if one.size else 0.0 for one in errors)
+    model = model.model_copy(update={"sides_error": error})
     return Identification(
         model=model,
         intervals=common.intervals,

@@ -21,6 +21,7 @@ _COMMENTS = {
     "r_squared": "of the speed's change per step, in a drive that was not fitted",
     "speed_error": "[m/s] of the MPC's prediction, one step ahead",
     "position_error": "[m] of it at the horizon: 95 % are smaller",
+    "sides_error": "[m] the same of the prediction by [model.drive] and [model.brake]",
     "horizon": "[s]",
     "time_step": "[s] of the controller",
 }

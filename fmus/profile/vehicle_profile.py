@@ -177,6 +177,8 @@ class FittedModel(Table):
     position_error: float = Field(ge=0, le=1e4)
     horizon: float = Field(ge=1e-3, le=1e3)  # [s] horizon of position_error
     time_step: float = Field(gt=0)  # [s] time step of the fit
+    # [m] position_error of the prediction by `drive` and `brake`, or None if it is not known
+    sides_error: float | None = Field(None, ge=0, le=1e4)
     drive: SideModel | None = None  # model for driving forces, or None if it is not known
     brake: SideModel | None = None  # model for braking forces, or None if it is not known
 

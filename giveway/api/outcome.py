@@ -9,7 +9,7 @@ from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.counterfactual.counterfactual import Twin
 from giveway.cosimulation.counterfactual.follow_up import Followed
 from giveway.cosimulation.loop import Loop
-from giveway.ego.vehicle import model_margin
+from giveway.ego.vehicle_model import model_margin
 from giveway.journal.recorder import Recorder
 from giveway.measures import unreached
 from giveway.metrics import delays

@@ -26,7 +26,7 @@ from giveway.config import EgoRunConfig
 from giveway.config.option import LANE, Section
 from giveway.config.tables.controllers import PaperPidOptions, PlannerOptions
 from giveway.ego.plug_in import plugged_in
-from giveway.ego.vehicle import model_margin
+from giveway.ego.vehicle_model import actuator_of, model_margin
 from giveway.errors import ControlError, retold
 
 if TYPE_CHECKING:
@@ -133,7 +133,8 @@ def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
         safe_distance=regulation.safe_distance + margin,
         manoeuvres=manoeuvres_of(own, margin),
     )
-    return PlanningController(Planner(_model(config, time_step), parameters))
+    actuator = actuator_of(config, time_step)
+    return PlanningController(Planner(_model(config, time_step), parameters, actuator))
 
 
 def _model(config: EgoRunConfig, time_step: float) -> LongitudinalModel:
@@ -142,7 +143,9 @@ def _model(config: EgoRunConfig, time_step: float) -> LongitudinalModel:
 
 _CONTROLLERS: dict[str, Callable[[EgoRunConfig, float], Controller]] = {
     "mpc": _planning,
-    "pid-tuned": lambda config, h: SpeedController(None, _tuned_pid(config, h)),
+    "pid-tuned": lambda config, h: SpeedController(
+        None, _tuned_pid(config, h), actuator_of(config, h)
+    ),
     "mpc-paper": _paper_mpc,
     "pid-paper": lambda config, h: SpeedController(None, _pid(config, h)),
 }

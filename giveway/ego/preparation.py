@@ -3,14 +3,15 @@
 from contextlib import ExitStack
 from math import sqrt
 
-from controller import Controller, SafetyParameters
+from controller import Actuator, Controller, SafetyParameters
 from fmus import FmuError
 from giveway.config import EgoRunConfig
 from giveway.config.files.presets import crowd_of, expected_of
 from giveway.ego.foresight.predictors import predictor_of
 from giveway.ego.people_assumed import people_at_worst
 from giveway.ego.recorded_ego import NoController, RecordedVehicle
-from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
+from giveway.ego.vehicle import open_for
+from giveway.ego.vehicle_model import actuator_of, model_margin
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import VehicleError, retold
 from giveway.run_data.tracks import EgoTrack
@@ -76,5 +77,5 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         margin=_MARGIN + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,
         force_limit=config.vehicle.force_limit,
-        reaction_time=identified_reaction_time(config, time_step),
+        actuator=actuator_of(config, time_step) or Actuator(),
     )

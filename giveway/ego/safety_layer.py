@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from controller import (
+    Actuator,
     Decision,
     LongitudinalModel,
     SafetyLayer,
@@ -16,7 +17,7 @@ from controller import (
 from controller.kernels import largest_safe_force
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.kerbs import NO_KERBS
-from giveway.ego.vehicle import identified_reaction_time
+from giveway.ego.vehicle_model import actuator_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath, body_pose, segment_at
@@ -45,6 +46,7 @@ class EgoSafetyLayer:
         shape: VehicleShape,
         time_step: float,
     ) -> None:
+        self._actuator = limits.actuator
         model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)
         self._layer = SafetyLayer(model, replace(limits, width=shape.width))
         self._way = path.vertices, path.stations, path.headings
@@ -76,7 +78,7 @@ class EgoSafetyLayer:
             self._way,
             (front, self._length, layer.reach(speed)),
             self._poses,
-            decision.force,
+            self._actuator.acting(decision.force),
             speed,
             (
                 crowd.position,
@@ -88,11 +90,12 @@ class EgoSafetyLayer:
         )
         if not verdict:
             return None
+        safe = self._actuator.command(safe)
         return decision._replace(force=safe, acting="safety", reason=layer.REASONS[verdict])
 
     def applied(self, force: float) -> None:
         """Remember a force [N] that acts in this step instead of the layer's."""
-        self._layer.memory[1][-1] = force
+        self._layer.memory[1][-1] = self._actuator.acting(force)
 
 
 def vehicle_layer_of(config: EgoRunConfig, time_step: float) -> VehicleLayer | None:
@@ -109,7 +112,7 @@ def vehicle_layer_of(config: EgoRunConfig, time_step: float) -> VehicleLayer | N
         LongitudinalModel(vehicle.mass, vehicle.friction, time_step),
         VehicleLimits(
             force_limit=vehicle.force_limit,
-            reaction_time=identified_reaction_time(config, time_step),
+            actuator=actuator_of(config, time_step) or Actuator(),
         ),
     )
 

@@ -14,13 +14,11 @@ from fmus import (
     FmuUnsuitableError,
     Vehicle,
     VehicleProfile,
-    bundled_fmu,
     choose_profile,
     describe,
     is_bundled,
     open_vehicle,
     prepare,
-    read_profile,
 )
 from fmus.checking import (
     convergence,
@@ -31,10 +29,10 @@ from fmus.checking import (
     told_of,
     too_weak,
 )
-from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.tables.basics import BUNDLED_VEHICLES, DEFAULT_SPEED, EXACT, VehicleConfig
+from giveway.config.tables.basics import DEFAULT_SPEED, EXACT, VehicleConfig
 from giveway.config.tables.controllers import PaperPidOptions
+from giveway.ego.vehicle_model import fmu_path, is_coarse, model_margin, model_of, profile_of
 from giveway.errors import VehicleError, retold
 from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EGO_COLUMNS
@@ -45,12 +43,6 @@ _SAME_STEP = 1e-6  # relative tolerance for two equal step sizes
 _OTHER_SIZE = 2.0  # ratio of masses from which the defaults for a car no longer fit
 # FMUs that passed the self-check in this process
 _sound: set[tuple[str, str, float, float, float, float, float | None]] = set()
-
-
-def fmu_path(settings: VehicleConfig) -> Path:
-    """The .fmu file that a configuration names."""
-    version = BUNDLED_VEHICLES.get(settings.fmu)
-    return Path(settings.fmu) if version is None else bundled_fmu(version)
 
 
 def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
@@ -64,7 +56,7 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
         VehicleError: one cannot be driven.
     """
     for config in egos:
-        path, profile = fmu_path(config.vehicle), _profile(config.vehicle)
+        path, profile = fmu_path(config.vehicle), profile_of(config.vehicle)
         with retold(FmuError, VehicleError):
             prepare(path, step_size=time_step, profile=profile)
         taken = {ROAD_GRADE[0], *(column.name for column in EGO_COLUMNS)}
@@ -95,7 +87,7 @@ def open_for(
         FmuError: it cannot be loaded, its steps do not converge, or it goes the wrong way.
     """
     settings = config.vehicle
-    path, profile = fmu_path(settings), _profile(settings)
+    path, profile = fmu_path(settings), profile_of(settings)
     ours = is_bundled(path)
     start_values: dict[str, Any] = {}
     if ours and profile is None:
@@ -206,56 +198,6 @@ def _without_bound(profile: VehicleProfile) -> VehicleProfile:
     return profile.model_copy(update={"limits": limits})
 
 
-def model_margin(config: EgoRunConfig, time_step: float) -> float:
-    """The distance [m] kept in addition to the safe distance, for the identified model's error.
-
-    If the horizon is longer than that of the fit, the distance grows with its square, as does the
-    distance driven under an unmodelled acceleration.
-
-    Args:
-        config: Configuration of the ego.
-        time_step: Control step of the co-simulation [s].
-
-    Raises:
-        VehicleError: the profile cannot be read.
-    """
-    model = _model(config)
-    if model is None:
-        return 0.0
-    return model.position_error * max(1.0, config.model_steps * time_step / model.horizon) ** 2
-
-
-def identified_reaction_time(config: EgoRunConfig, time_step: float) -> float:
-    """The dead time plus the lag [s] of the actuator from the profile; 0 without a model.
-
-    Args:
-        config: Configuration of the ego.
-        time_step: Control step of the co-simulation [s].
-
-    Raises:
-        VehicleError: the profile or the FMU cannot be read.
-    """
-    model = driven_model(config, time_step)
-    return 0.0 if model is None else model.delay + model.lag
-
-
-def driven_model(config: EgoRunConfig, time_step: float) -> FittedModel | None:
-    """The identified model, with the delay of the FMU's own steps in its dead times.
-
-    Args:
-        config: Configuration of the ego.
-        time_step: Control step of the co-simulation [s].
-
-    Raises:
-        VehicleError: the profile or the FMU cannot be read.
-    """
-    if _model(config) is None:
-        return None
-    with retold(FmuError, VehicleError):
-        path, profile = fmu_path(config.vehicle), _profile(config.vehicle)
-        return prepare(path, step_size=time_step, profile=profile).fitted
-
-
 def model_remark(config: EgoRunConfig, time_step: float) -> str:
     """The remark on the identified vehicle model; empty if no model was identified.
 
@@ -263,7 +205,7 @@ def model_remark(config: EgoRunConfig, time_step: float) -> str:
         config: Configuration of the ego.
         time_step: Control step of the co-simulation [s].
     """
-    model = _model(config)
+    model = model_of(config)
     if model is None:
         return ""
     settings = config.vehicle
@@ -273,6 +215,8 @@ def model_remark(config: EgoRunConfig, time_step: float) -> str:
     )
     if (settings.mass, settings.friction) != (model.mass, model.friction):
         text += f", overruled by M = {settings.mass:g} kg, alpha = {settings.friction:g} N.s/m"
+    if is_coarse(settings):
+        text += f", coarsely, as no profile has its [model]: giveway fmu identify {settings.fmu}"
     if config.optimises:
         margin = model_margin(config, time_step)
         text += f"; the MPC keeps {margin:.2g} m more than the safe distance for its errors"
@@ -282,44 +226,11 @@ def model_remark(config: EgoRunConfig, time_step: float) -> str:
 
 
 def _other_size(config: EgoRunConfig) -> str:
-    """The advice on flags for a vehicle of another size than the default car; empty for a car.
-
-    Forces that suit a car of 1000 kg hardly brake a truck.
-    """
-    usual = RunConfig()
-    ratio = config.vehicle.mass / usual.vehicle.mass
-    if 1.0 / _OTHER_SIZE < ratio < _OTHER_SIZE:
+    """The advice on the gain of the paper's PID for a vehicle of another size; empty for a car."""
+    ratio, own = config.vehicle.mass / RunConfig().vehicle.mass, config.own_options
+    default = PaperPidOptions().proportional_gain
+    usual = isinstance(own, PaperPidOptions) and own.proportional_gain == default
+    if not usual or 1.0 / _OTHER_SIZE < ratio < _OTHER_SIZE:
         return ""
-    settings = [
-        ("--vehicle-force-limit ", config.vehicle.force_limit, usual.vehicle.force_limit),
-        (
-            "--vehicle-force-rate-limit ",
-            config.vehicle.force_rate_limit,
-            usual.vehicle.force_rate_limit,
-        ),
-    ]
-    own = config.own_options
-    if isinstance(own, PaperPidOptions):
-        default = PaperPidOptions().proportional_gain
-        settings.append(("--set proportional_gain=", own.proportional_gain, default))
-    flags = [
-        f"{flag}{float(f'{ratio * default:.2g}'):.10g}"
-        for flag, value, default in settings
-        if value == default
-    ]
-    if not flags:
-        return ""
-    return (
-        f"; forces and gains that are still those of {usual.vehicle.mass:g} kg would be, for the "
-        f"same accelerations, {' '.join(flags)}"
-    )
-
-
-def _model(config: EgoRunConfig) -> FittedModel | None:
-    with retold(FmuError, VehicleError):
-        profile = _profile(config.vehicle)
-    return None if profile is None else profile.model
-
-
-def _profile(settings: VehicleConfig) -> VehicleProfile | None:
-    return read_profile(Path(settings.profile)) if settings.profile else None
+    gain = float(f"{ratio * default:.2g}")
+    return f"; for the same accelerations the PID needs --set proportional_gain={gain:.10g}"

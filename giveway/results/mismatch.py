@@ -1,12 +1,15 @@
 """The check whether a vehicle behaved as its controller's model predicts."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from fmus.checking.manoeuvres import Trace
 from fmus.checking.model_fit.common_model import fit_common
 from fmus.checking.model_fit.estimation import Estimate
 from fmus.checking.model_fit.measurements import Measurements
-from fmus.checking.model_fit.prediction import position_errors
+from fmus.checking.model_fit.prediction import acting_force, position_errors
+from giveway.ego.vehicle_model import driven_model
 from giveway.results.ego_result import EgoResult
 from giveway.run_data.tracks import EgoTrack
 
@@ -28,7 +31,12 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         return ""  # only an optimising controller has a model
     mass, friction = config.vehicle.mass, config.vehicle.friction
     trace = _trace(ego.track, time_step)
-    errors = position_errors(trace, mass, friction, config.model_steps)
+    model = driven_model(config, time_step)
+    acting = trace
+    if model is not None:
+        mass, friction = model.mass, model.friction
+        acting = replace(trace, force=acting_force(trace, model))
+    errors = position_errors(acting, mass, friction, config.model_steps)
     error = float(np.percentile(errors, 95)) if errors.size else 0.0
     if not error > max(_TOLERATED, 1.5 * margin):
         return ""
@@ -42,8 +50,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
     if margin > 0.0:  # the vehicle has been identified already
         return (
             f"{missed}, {margin:.2g} m as identified: at forces that do not arrive, or too late; "
-            f"see its limits with: giveway fmu check {fmu}{named}, and keep to them by "
-            "--vehicle-force-limit"
+            f"see its limits with: giveway fmu check {fmu}{named}"
         )
     return (
         f"{missed}{_fitting(trace)}; match them with: giveway fmu identify {fmu}{named} "

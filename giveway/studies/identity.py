@@ -14,7 +14,7 @@ from giveway._environment import ROOMS
 from giveway.config import RunConfig
 from giveway.config.files.foreign_code import code_hashes
 from giveway.config.files.presets import is_preset_file
-from giveway.ego.vehicle import fmu_path
+from giveway.ego.vehicle_model import fmu_path
 from giveway.errors import ConfigError, GivewayError
 from giveway.plug_ins.finding import is_fmu, shown
 from giveway.recordings.clips import clip_files

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from late_plants import LatePlant, actuators, weak
 
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
 from controller.safety.worst_motion import RECORDED
@@ -135,11 +136,13 @@ def drive(
     plant=None,
     hardest=A_MAX,
     kept=slice(None),
+    command=float,
     **parameters,
 ):
     """The reasons given while the ego drove; fails where its front got into one of ``kept``.
 
-    ``hardest`` is how hard everybody, or each, accelerates at most.
+    ``hardest`` is how hard everybody, or each, accelerates at most, and ``command`` what is sent
+    to the plant for the layer's force.
     """
     rng = np.random.default_rng(seed)
     limits = SafetyParameters(position_error=noise, **(SIMULATED | parameters))
@@ -157,7 +160,7 @@ def drive(
         reasons.append(safe.reason)
         a = accelerations(rng, mood, x, v, road, plant)
         before, moving = plant.travel, plant.speed
-        plant.step(safe.force)
+        plant.step(command(safe.force))
         x_next, v_next = walk(x, v, a, dt, hardest)
         if moving > 1e-9 or plant.travel > before:
             among = x[kept], x_next[kept], v[kept]
@@ -201,6 +204,16 @@ def test_when_its_own_braking_is_rate_limited_too(seed):
 def test_when_the_vehicle_obeys_late_too(seed, delay):
     """It may be as late as is said, or sooner."""
     reasons = drive(seed, plant=Plant(0.0, delay=delay), reaction_time=0.2)
+    assert "unavoidable" not in reasons
+
+
+@settings(max_examples=25)
+@given(seed=seeds, actuator=actuators, limit=st.sampled_from([np.inf, 4000.0]))
+def test_with_any_actuator_within_what_its_profile_says(seed, actuator, limit):
+    """Dead time, lag and rate of both sides may be as bad as is said, or better."""
+    actuator = weak(actuator, limit)
+    plant = LatePlant(0.0, actuator, seed)
+    reasons = drive(seed, plant=plant, actuator=actuator, command=actuator.command)
     assert "unavoidable" not in reasons
 
 

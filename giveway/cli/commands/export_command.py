@@ -16,7 +16,7 @@ from giveway.config.files.loading import load
 from giveway.config.option import LANE
 from giveway.cosimulation.preflight import control_step
 from giveway.ego.controllers import make_controller
-from giveway.ego.vehicle import model_margin
+from giveway.ego.vehicle_model import model_margin
 from giveway.errors import ConfigError, ControlError, ResultsError, retold
 from giveway.scenario_files import read_scenario
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from fmus import FmuError, read_profile
 from giveway.config.files.declared import with_declared
+from giveway.config.files.identified import IDENTIFIED, identified_vehicle
 from giveway.config.files.layers import Layer, build_config, merge, read_toml, undotted
 from giveway.config.files.presets import parameters_of
 from giveway.config.files.trust import require_trusted
@@ -56,7 +57,7 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
 
 
 def _identified(layers: Sequence[Layer]) -> list[Layer]:
-    """Return the lowest layer: the identified parameters in the profile of the run's vehicle.
+    """Return the lowest layer: what the profile of the run's vehicle says of [vehicle].
 
     Raises:
         VehicleError: the profile cannot be used.
@@ -69,16 +70,16 @@ def _identified(layers: Sequence[Layer]) -> list[Layer]:
 
 
 def _model_of(config: RunConfig) -> dict[str, float]:
-    return {"mass": config.vehicle.mass, "friction": config.vehicle.friction}
+    return {key: getattr(config.vehicle, key) for key in IDENTIFIED}
 
 
 def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfig:
     """Return ``config`` with the FMU's parameters in each entry of ``egos`` that names an FMU.
 
     Args:
-        config: Configuration of the run. Its vehicle's M and alpha may come from its profile.
-        set_model: M and alpha without that profile, since one FMU's identified parameters do not
-            hold for another FMU.
+        config: Configuration of the run. M, alpha and limits may come from the vehicle's profile.
+        set_model: M, alpha and limits without that profile, since those of one FMU do not hold for
+            another FMU.
     """
     identified = {} if _model_of(config) == set_model else set_model
     entries = []
@@ -93,10 +94,10 @@ def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfi
 
 
 def _model_in(profile: object) -> dict[str, float]:
-    """Return the identified M and alpha of a profile; empty if they have not been identified."""
+    """Return what a profile says of [vehicle]; empty if the vehicle has not been identified."""
     with retold(FmuError, VehicleError):
         model = read_profile(Path(str(profile))).model
-    return {} if model is None else {"mass": model.mass, "friction": model.friction}
+    return {} if model is None else identified_vehicle(model)
 
 
 def _with_one_ego(config: RunConfig, layers: Sequence[Layer]) -> RunConfig:

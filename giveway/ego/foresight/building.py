@@ -35,6 +35,7 @@ def foresight_of(
         waiting.clearance,
         config.vehicle.acceleration_limit,
         None if waiting.safety is None else waiting.safety.worst,
+        0.0 if waiting.safety is None else waiting.safety.actuator.reaction_time,
     )
     return CrowdForesight(
         predictor, path, ego, horizon=waiting.horizon, time_step=time_step, estimator=estimator

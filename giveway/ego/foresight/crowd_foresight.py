@@ -74,6 +74,7 @@ class EgoAssumptions(NamedTuple):
     clearance: float  # distance [m] that the safety layer keeps to pedestrians' bodies
     braking: float  # largest deceleration [m/s^2]
     worst: WorstMotion | None  # motion that the safety layer assumes; None without such a layer
+    late: float = 0.0  # time [s] by which the brake acts later than in the next step
 
 
 class CrowdForesight:
@@ -104,7 +105,7 @@ class CrowdForesight:
         every = round(predictor.time_step / time_step)
         self._predictor, self._every = predictor, every
         self._way = path.vertices, path.stations, path.headings
-        shape, half_width, clearance, braking, worst = ego
+        shape, half_width, clearance, braking, worst, late = ego
         self._view = tuple(View(shape.length, shape.width, half_width, time_step, every))
         walking = predictor.parameters
         able = worst or WorstMotion(walking.max_acceleration, walking.max_speed)
@@ -116,6 +117,7 @@ class CrowdForesight:
             braking,
             worst is not None,
             min(able.setting_out, able.acceleration),
+            late,
         )
         self._alarm = tuple(self._limits)
         self._clearance, self._off = clearance, 0.0

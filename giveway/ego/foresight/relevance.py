@@ -91,6 +91,7 @@ class Nearby:
         self._wanted = config.vehicle.speed_max if isinstance(wanted, str) else wanted
         self._behind, self._ahead = shape.length, config.regulation.safe_distance
         self._half_width, self._time_step = half_width, time_step
+        self._late = 0.0 if safety is None else safety.actuator.reaction_time
         self._body = 0.0 if safety is None else safety.body_radius
         self._lunge = 0.0 if safety is None else safety.walking_acceleration
 
@@ -104,7 +105,7 @@ class Nearby:
         """
         path, span = self._path, self._span
         reach = min(speed * span + self._gain, max(speed, self._wanted) * span)
-        stop = self._time_step + speed / self._strongest
+        stop = self._time_step + self._late + speed / self._strongest
         ahead = max(self._ahead, speed * speed / (2.0 * COMFORTABLE) + AT_REST - reach)
         margin = max(MARGIN, self._body + self._lunge / 2.0 * stop * stop)
         mask = np.empty(len(crowd), dtype=np.bool_)

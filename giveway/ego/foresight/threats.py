@@ -41,6 +41,7 @@ class Alarm(NamedTuple):
     braking: float  # largest deceleration [m/s^2] of the ego
     heeded: bool  # whether there is a safety layer that would act
     setting_out: float = np.inf  # largest acceleration [m/s^2] from a sidewalk towards the kerb
+    late: float = 0.0  # time [s] by which the brake acts later than in the next step
     kerbs: Array = NO_KERBS  # kerb lines (n, 3), a x + b y = c [m]; 0 for people not on sidewalks
     unaware: NDArray[np.bool_] = ALL_SEE  # marks (n,) of people who may not see the ego
 
@@ -162,7 +163,7 @@ def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
     """The outline of a full braking from ``speed`` [m/s], which acts after ``time_step`` [s]."""
     step = speed * time_step
     # The instant of standstill is included.
-    stop = 1 + int(np.ceil(speed / (alarm.braking * time_step) - _WHOLE))
+    stop = 1 + int(np.ceil(speed / (alarm.braking * time_step) + alarm.late / time_step - _WHOLE))
     # Half of the relative motion in one step, as positions are compared once per step.
     within = 0.5 * (step + alarm.walking_speed * time_step)
     clear = max(
@@ -211,6 +212,11 @@ def is_threat(
         braked = min(max(0.0, t - time_step), o.speed / alarm.braking)
         low = o.speed * braked - 0.5 * alarm.braking * braked * braked
         high = low + o.step + 0.5 * time_step * alarm.braking * braked  # by forward Euler
+        if alarm.late > 0.0:
+            braked = min(max(0.0, t - time_step - alarm.late), o.speed / alarm.braking)
+            high = o.speed * braked - 0.5 * alarm.braking * braked * braked
+            high += o.speed * (min(t, alarm.late) + time_step)
+            high += 0.5 * time_step * alarm.braking * braked
         reach = o.clear + 0.5 * alarm.walking_acceleration * t * t
         ahead = x + w_x * t
         off = max(0.0, low - ahead, ahead - high)

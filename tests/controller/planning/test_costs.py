@@ -39,7 +39,7 @@ def weights(**changes):
 def aimed(speed, before, wanted, slowest, fastest, *, jerk=8.0, horizon=60):
     m = Manoeuvre.empty(horizon)
     motion = (m.distance[None], m.speed[None], m.acceleration[None])
-    aim(speed, before, np.array([[wanted, slowest]]), fastest, jerk, DT, motion)
+    aim(speed, before, np.array([[wanted, slowest]]), fastest, (jerk, jerk), DT, motion)
     return m
 
 

@@ -28,7 +28,7 @@ DT = 0.05
 def aimed(speed, before, wanted, slowest, fastest, *, jerk=8.0, horizon=60):
     m = Manoeuvre.empty(horizon)
     motion = (m.distance[None], m.speed[None], m.acceleration[None])
-    aim(speed, before, np.array([[wanted, slowest]]), fastest, jerk, DT, motion)
+    aim(speed, before, np.array([[wanted, slowest]]), fastest, (jerk, jerk), DT, motion)
     return m
 
 
@@ -106,7 +106,9 @@ def test_a_shifted_plan_begins_at_the_speed_that_is():
 def test_at_the_end_of_the_way_the_stop_is_comfortable(speed, room, fastest):
     assume(speed**2 / 3.0 + 0.7 * speed <= room)  # such a stop is possible
     m = Manoeuvre.empty(400)
-    approach(speed, 0.0, room, (2.5, fastest, 8.0), DT, (m.distance, m.speed, m.acceleration))
+    approach(
+        speed, 0.0, room, (2.5, fastest, (8.0, 8.0)), DT, (m.distance, m.speed, m.acceleration)
+    )
     assert np.allclose(np.diff(m.distance), DT * m.speed[:-1])
     assert m.distance[-1] <= room + 0.05
     assert m.speed.max() <= max(speed, fastest) + 0.05

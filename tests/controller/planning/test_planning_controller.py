@@ -76,7 +76,7 @@ def room_for_a_stop(speed, weights):
     m = Manoeuvre.empty(N)
     hardest = min(ManoeuvreParameters().accelerations)
     motion = (m.distance[None], m.speed[None], m.acceleration[None])
-    aim(speed, 0.0, np.array([[hardest, 0.0]]), V_R, 8.0, DT, motion)
+    aim(speed, 0.0, np.array([[hardest, 0.0]]), V_R, (8.0, 8.0), DT, motion)
     return max(s + stopping_need(v, weights) for s, v in zip(m.distance, m.speed, strict=True))
 
 

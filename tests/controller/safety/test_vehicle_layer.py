@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from late_plants import LatePlant, actuators
 
 from controller import LongitudinalModel, ParameterError, VehicleAhead, VehicleLayer, VehicleLimits
 from controller.driving_constants import EMERGENCY_BRAKING, RESPONSE, RESTORING
@@ -91,6 +92,27 @@ def test_no_vehicle_that_brakes_is_hit(speed, its_speed, substeps, delay, accele
     if min(forces) >= 0.0 and delay == 0:
         friction = MODEL.friction * speed / MODEL.mass
         assert max(drive.decelerations) <= max(RESPONSE, friction) * 1.001
+
+
+@settings(max_examples=20)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    actuator=actuators,
+    substeps=st.sampled_from([1, 2, 10]),
+    accelerations=accelerations,
+    forces=st.lists(st.floats(-FULL, FULL), min_size=1, max_size=7),
+)
+def test_nor_with_any_actuator_within_its_profile(seed, actuator, substeps, accelerations, forces):
+    drive = Drive(200.0, 0.0, 15.0, substeps)
+    layer = VehicleLayer(MODEL, VehicleLimits(actuator=actuator))
+    plant = LatePlant(0.0, actuator, seed)
+    for i in range(len(accelerations) * 20):
+        force = layer.filter(forces[i % len(forces)], plant.speed, drive.ahead())
+        layer.applied(force)
+        drive.step(0.0, accelerations[i // 20])  # moves the vehicle ahead
+        plant.step(force)
+        drive.front, drive.speed = plant.travel, plant.speed
+        assert drive.rear + drive.its_speed * drive.age * DT - drive.front > LIMITS.margin - 0.001
 
 
 @pytest.mark.parametrize("substeps", [1, 2, 10, 20])

@@ -11,7 +11,7 @@ import giveway as library
 from giveway.config.files.layers import Layer, read_toml
 from giveway.config.files.loading import load
 from giveway.ego.controllers import make_controller
-from giveway.ego.vehicle import model_margin
+from giveway.ego.vehicle_model import model_margin
 from giveway.errors import ConfigError, VehicleError
 
 H = 0.05  # [s]

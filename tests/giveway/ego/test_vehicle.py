@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from giveway.config import EgoRunConfig
-from giveway.ego.vehicle import driven_model, model_remark
+from giveway.ego.vehicle import model_remark
+from giveway.ego.vehicle_model import driven_model
 
 PROFILE = """
 [inputs.force]
@@ -42,14 +43,13 @@ def test_a_car_keeps_the_defaults(remark, mass):
 
 def test_a_truck_gets_the_same_accelerations(remark):
     assert remark(18_000.0).endswith(
-        "for the same accelerations, --vehicle-force-limit 140000 --vehicle-force-rate-limit 18000 "
-        "--set proportional_gain=43000"
+        "for the same accelerations the PID needs --set proportional_gain=43000"
     )
 
 
 def test_what_has_been_set_is_not_advised(remark):
     text = remark(18_000.0, force_limit=1e5, force_rate_limit=18_000.0)
-    assert text.endswith("for the same accelerations, --set proportional_gain=43000")
+    assert text.endswith("for the same accelerations the PID needs --set proportional_gain=43000")
 
 
 def test_the_fmus_own_steps_are_part_of_the_dead_time(tmp_path):

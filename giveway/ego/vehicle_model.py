@@ -1,0 +1,174 @@
+"""What is known of an ego's vehicle: its profile's model, or one that is found before the run."""
+
+from hashlib import sha256
+from math import inf
+from pathlib import Path
+
+from controller import Actuator, ActuatorSide
+from fmus import (
+    FmuError,
+    VehicleProfile,
+    bundled_fmu,
+    choose_profile,
+    is_bundled,
+    prepare,
+    read_profile,
+)
+from fmus.checking import coarse, opener_of
+from fmus.profile.vehicle_profile import FittedModel, SideModel
+from giveway.config import EgoRunConfig
+from giveway.config.files.identified import identified_vehicle
+from giveway.config.tables.basics import BUNDLED_VEHICLES, VehicleConfig
+from giveway.errors import VehicleError, retold
+
+_NEAR = 0.1  # deviation of M, as a share, up to which the default car's flags suit a vehicle
+_LATE = 0.05  # lag plus dead time [s] up to which they do
+# Coarse models by hash of the FMU, profile and step; those that are driven, by FMU and profile
+_coarse: dict[tuple[str, str, float], FittedModel] = {}
+_found: dict[tuple[str, str], FittedModel] = {}
+
+
+def fmu_path(settings: VehicleConfig) -> Path:
+    """The .fmu file that a configuration names."""
+    version = BUNDLED_VEHICLES.get(settings.fmu)
+    return Path(settings.fmu) if version is None else bundled_fmu(version)
+
+
+def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
+    """Return the configuration with what a quick identification finds of an unknown vehicle.
+
+    An FMU that is not giveway's, and whose profile has no [model], is driven for some seconds. If
+    it is no car like the default one, M, alpha and the limits are those that are found, except for
+    those that are set; it is then driven with its lag and dead time. An FMU that fails is left to
+    the run, which keeps the rows up to the failure.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+    """
+    settings, usual = config.vehicle, VehicleConfig()
+    path = fmu_path(settings)
+    _found.pop((settings.fmu, settings.profile), None)
+    known = (settings.mass, settings.friction) != (usual.mass, usual.friction)
+    if known or is_bundled(path) or model_of(config) is not None:
+        return config
+    try:
+        profile = choose_profile(path, profile_of(settings))
+        key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
+        if key not in _coarse:
+            opener = opener_of(path, step_size=time_step, profile=profile)
+            _coarse[key] = coarse(opener, path=path, profile=profile)
+    except FmuError:
+        return config
+    model = _coarse[key]
+    if _is_usual(model):
+        return config
+    _found[settings.fmu, settings.profile] = model
+    update = {
+        name: value
+        for name, value in identified_vehicle(model).items()
+        if getattr(settings, name) == getattr(usual, name)
+    }
+    return config.model_copy(update={"vehicle": settings.model_copy(update=update)})
+
+
+def _is_usual(model: FittedModel) -> bool:
+    """Return whether a model is so near the default car that this one's flags suit it."""
+    usual = VehicleConfig()
+    sides = [side for side in (model.drive, model.brake) if side is not None]
+    strong = all(side.limit is None or side.limit > usual.acceleration_limit for side in sides)
+    quick = all(side.lag + side.delay <= _LATE and side.rate is None for side in sides)
+    return strong and quick and abs(model.mass / usual.mass - 1.0) <= _NEAR
+
+
+def model_margin(config: EgoRunConfig, time_step: float) -> float:
+    """The distance [m] kept in addition to the safe distance, for the identified model's error.
+
+    If the horizon is longer than that of the fit, the distance grows with its square, as does the
+    distance driven under an unmodelled acceleration.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+
+    Raises:
+        VehicleError: the profile cannot be read.
+    """
+    model = model_of(config)
+    if model is None:
+        return 0.0
+    error = model.position_error if model.sides_error is None else model.sides_error
+    return error * max(1.0, config.model_steps * time_step / model.horizon) ** 2
+
+
+def actuator_of(config: EgoRunConfig, time_step: float) -> Actuator | None:
+    """The actuator of the ego's vehicle as its profile describes it; None without a model.
+
+    ``[vehicle] force_limit`` may only lower the profile's limits.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+
+    Raises:
+        VehicleError: the profile or the FMU cannot be read.
+    """
+    model = driven_model(config, time_step)
+    if model is None:
+        return None
+    common = SideModel(mass=model.mass, lag=model.lag, delay=model.delay)
+    mass, most = config.vehicle.mass, config.vehicle.force_limit
+
+    def side(known: SideModel | None) -> ActuatorSide:
+        found = known or common
+        scale = found.mass / model.mass
+        return ActuatorSide(
+            scale=scale,
+            lag=found.lag,
+            delay=found.delay,
+            limit=min(inf if found.limit is None else found.limit * mass, most / scale),
+            power_from=found.power_from or inf,
+            rate=inf if found.rate is None else found.rate * mass,
+        )
+
+    return Actuator(side(model.drive), side(model.brake))
+
+
+def driven_model(config: EgoRunConfig, time_step: float) -> FittedModel | None:
+    """The identified model, with the delay of the FMU's own steps in its dead times.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+
+    Raises:
+        VehicleError: the profile or the FMU cannot be read.
+    """
+    with retold(FmuError, VehicleError):
+        path, profile = fmu_path(config.vehicle), profile_of(config.vehicle)
+        if profile is None or profile.model is None:
+            return model_of(config)
+        return prepare(path, step_size=time_step, profile=profile).fitted
+
+
+def model_of(config: EgoRunConfig) -> FittedModel | None:
+    """The model in the profile, or the coarse one, or None.
+
+    Raises:
+        VehicleError: the profile cannot be read.
+    """
+    with retold(FmuError, VehicleError):
+        profile = profile_of(config.vehicle)
+    if profile is None or profile.model is None:
+        return _found.get((config.vehicle.fmu, config.vehicle.profile))
+    return profile.model
+
+
+def profile_of(settings: VehicleConfig) -> VehicleProfile | None:
+    """The profile that a configuration names, or None."""
+    return read_profile(Path(settings.profile)) if settings.profile else None
+
+
+def is_coarse(settings: VehicleConfig) -> bool:
+    """Return whether the vehicle is driven with a coarse model."""
+    return (settings.fmu, settings.profile) in _found
