@@ -181,7 +181,7 @@ def assemble(
         gaps, first, count = exchange.gaps, len(network.signals), len(network.gap_crossings)
         sidewalks = network.sidewalks(gaps.kerbs)
         swept = swept_near(sumo, gaps.ends, sidewalks)
-        model = HeldAtKerb(model, first, count, sidewalks, swept)
+        model = HeldAtKerb(model, first, count, sidewalks, swept, gaps.areas)
         gaps.free = model.free
     yielding = None
     if config.traffic.yielding and (added or walkers or egos):

@@ -155,6 +155,19 @@ class GapAcceptance:
         return shapely.MultiPoint(self.ends).buffer(_QUEUE)
 
     @property
+    def areas(self) -> shapely.Geometry:
+        """The crossings with margins at their sides and ends."""
+        return shapely.union_all(
+            [
+                shapely.LineString(crossing.ends).buffer(
+                    crossing.width / 2.0 + ASIDE, cap_style="square"
+                )
+                for crossing in self._crossings
+                if crossing is not None
+            ]
+        )
+
+    @property
     def waiting(self) -> Waiting:
         """The people who wait for a gap."""
         stays = self.held.copy()

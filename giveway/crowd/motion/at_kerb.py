@@ -2,7 +2,7 @@
 
 Other people and passing vehicles would push them onto the roadway, where vehicles stop for them
 while they wait for the vehicles. Those who have come to the kerb stand there, and give way to
-others slowly.
+others slowly. Those who do not cross are not pushed onto a crossing either: they slide along it.
 """
 
 import numpy as np
@@ -13,6 +13,7 @@ from giveway.crowd.motion.beside_cars import keep_off
 from giveway.crowd.motion.neighbours import AroundModel
 from giveway.geometry.kernel import Array
 from pedestrian_model import (
+    OFF_WALKWAYS,
     OPEN_GROUND,
     Crowd,
     PedestrianModel,
@@ -25,6 +26,7 @@ _AT_KERB = 0.4  # distance [m] to the way-point at the kerb within which people 
 _SHUFFLES = 0.3  # share of their motion that people who stand make, as others push; own choice
 _STEPS_BACK = 2.0  # speed [m/s] at which people step back from cars that turn; own choice
 _SOON = 3.0  # time [s] before a car's arrival from which on they do; own choice
+_ON_EDGE = 0.02  # distance [m] to the edge of a sidewalk within which people are on it
 _NEAR = 5.0  # distance [m] to a car within which they do so, too; own choice
 
 NOWHERE: shapely.Geometry = shapely.Polygon()
@@ -41,6 +43,7 @@ class HeldAtKerb(AroundModel):
         sidewalks: Sidewalks and walkingareas around the kerbs.
         swept: Place beside the kerbs over which cars pass as they turn. People who do not cross
             step back from it.
+        crossings: The crossings. People who do not cross do not leave the sidewalk for them.
 
     Attributes:
         free: Place that people who wait for a gap do not leave.
@@ -55,12 +58,13 @@ class HeldAtKerb(AroundModel):
         count: int,
         sidewalks: shapely.Geometry,
         swept: shapely.Geometry = NOWHERE,
+        crossings: shapely.Geometry = NOWHERE,
     ) -> None:
         super().__init__(model)
         self._first, self._count = first, count
         self.free = sidewalks - swept if swept.intersects(sidewalks) else sidewalks
-        self._swept = swept & sidewalks
-        shapely.prepare((self.free, self._swept))
+        self._swept, self._crossings = swept & sidewalks, crossings - self.free
+        shapely.prepare((self.free, self._swept, self._crossings))
 
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
@@ -71,9 +75,7 @@ class HeldAtKerb(AroundModel):
         for_gap = (signal >= self._first) & (signal < self._first + self._count)
         rows = np.flatnonzero(for_gap & surroundings.closed[signal])
         before = crowd.position[rows]
-        aside = np.empty(0, dtype=np.intp)
-        if not self._swept.is_empty:
-            aside, places = self._not_crossing(crowd, at), crowd.position.copy()
+        aside, places = self._not_crossing(crowd, at), crowd.position.copy()
         self._model.advance(crowd, vehicles, surroundings)
         if len(rows):
             self._stand(crowd, rows, before)
@@ -85,16 +87,29 @@ class HeldAtKerb(AroundModel):
             most = _STEPS_BACK * self.time_step
             radius = self.parameters.body_radius
             keep_off(crowd.position, crowd.velocity, vehicles, radius, most)
-        if len(aside):
+        self._keep_from_crossings(crowd, aside, places)
+        if not self._swept.is_empty:
             self._step_back(crowd, aside, places, vehicles)
 
     def _not_crossing(self, crowd: Crowd, at: NDArray[np.int64]) -> NDArray[np.intp]:
         """Return the rows of people who are not on a crossing, and do not go onto it now."""
         signal, first, count = crowd.waypoint_signal, self._first, self._count
         goes = (signal[at] >= first + count) & (signal[at] < first + 2 * count)
+        goes |= signal[at] == OFF_WALKWAYS
         last = signal[at - 1]
         goes |= (crowd.waypoint_index > 0) & (last >= first) & (last < first + 2 * count)
         return np.flatnonzero(~goes)
+
+    def _keep_from_crossings(self, crowd: Crowd, rows: NDArray[np.intp], before: Array) -> None:
+        """Let people who were pushed onto a crossing slide along its kerb instead."""
+        rows = rows[shapely.contains_xy(self._crossings, crowd.position[rows])]
+        came = shapely.dwithin(shapely.points(before[rows]), self.free, _ON_EDGE)
+        rows = rows[came]
+        if not len(rows):
+            return
+        ways = shapely.shortest_line(shapely.points(crowd.position[rows]), self.free)
+        crowd.position[rows] = shapely.get_coordinates(ways).reshape(-1, 2, 2)[:, 1]
+        crowd.velocity[rows] = (crowd.position[rows] - before[rows]) / self.time_step
 
     def _step_back(
         self, crowd: Crowd, rows: NDArray[np.intp], before: Array, vehicles: Vehicles

@@ -83,3 +83,24 @@ def test_who_does_not_cross_steps_back_from_where_cars_turn(near: bool) -> None:
     assert bool(y[1] <= -0.5) is near
     assert y[2] > -0.4
     assert y[3] < -0.5
+
+
+def test_who_does_not_cross_is_not_pushed_onto_a_crossing() -> None:
+    """People who walk along the sidewalk meet in front of a crossing; one of them crosses."""
+    crossing = shapely.box(-2.0, -1.0, 2.0, 7.0)
+    crowd = Crowd.create(
+        [(-2.0, -0.05), (2.0, -0.1), (0.0, -0.5)],
+        [(1.2, 0.4), (-1.2, 0.4), (0.0, 0.0)],
+        1.2,
+        [[(4.0, 0.1)], [(-4.0, 0.1)], [(0.0, -0.2), (0.0, 9.0)]],
+        signals=[[-1], [-1], [1, -1]],
+    )
+    held = HeldAtKerb(CrowdModel(SIM, STEP), 0, 1, SIDEWALK, crossings=crossing)
+    highest = np.full(3, -np.inf)
+    for _ in range(60):
+        held.advance(crowd, Vehicles.empty(), Surroundings(closed=np.array([True, False])))
+        on = np.abs(crowd.position[:, 0]) < 2.0
+        highest = np.where(on, np.maximum(highest, crowd.position[:, 1]), highest)
+    assert (highest[:2] <= 0.0).all()
+    assert highest[2] > 0.5
+    assert (np.abs(crowd.position[:2, 0]) > 0.5).all()  # they pass
