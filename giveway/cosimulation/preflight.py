@@ -9,6 +9,7 @@ from giveway.config.files.foreign_code import require_code
 from giveway.config.files.presets import require_steady_preset
 from giveway.crowd.zone import Zone
 from giveway.ego.vehicle import require_vehicles
+from giveway.ego.vehicle_model import with_coarse_model
 from giveway.errors import ConfigError
 from giveway.measures import require_pedpy
 from giveway.metrics.plugged_in import metric_columns
@@ -59,6 +60,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     _require_distinct(egos)
     time_step = control_step(config, files)
     require_vehicles(egos, time_step)
+    egos = tuple(with_coarse_model(ego, time_step) for ego in egos)
     require_code(config, time_step)
     metric_columns(config)  # raises an error if the columns are not sound
     if config.crowd.recorded:

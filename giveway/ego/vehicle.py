@@ -30,9 +30,16 @@ from fmus.checking import (
     too_weak,
 )
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.tables.basics import DEFAULT_SPEED, EXACT, VehicleConfig
+from giveway.config.tables.basics import DEFAULT_SPEED, EXACT
 from giveway.config.tables.controllers import PaperPidOptions
-from giveway.ego.vehicle_model import fmu_path, is_coarse, model_margin, model_of, profile_of
+from giveway.ego.vehicle_model import (
+    fmu_path,
+    is_coarse,
+    is_told,
+    model_margin,
+    model_of,
+    profile_of,
+)
 from giveway.errors import VehicleError, retold
 from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EGO_COLUMNS
@@ -181,11 +188,10 @@ def _require_convergence(
 
 def _told_mass(config: EgoRunConfig, profile: VehicleProfile) -> float | None:
     """Return the mass [kg] that a flag or the configuration tells, or None."""
-    mass, given = config.vehicle.mass, config.vehicle.model_fields_set
+    mass = config.vehicle.mass
     if profile.model is not None:
         return None if mass == profile.model.mass else mass
-    chosen = "mass" in given and given != set(VehicleConfig.model_fields)
-    return mass if chosen or mass != VehicleConfig().mass else None
+    return mass if is_told(config.vehicle, "mass") and not is_coarse(config.vehicle) else None
 
 
 def _without_bound(profile: VehicleProfile) -> VehicleProfile:

@@ -46,10 +46,10 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
         config: Configuration of the ego.
         time_step: Control step of the co-simulation [s].
     """
-    settings, usual = config.vehicle, VehicleConfig()
+    settings = config.vehicle
     path = fmu_path(settings)
     _found.pop((settings.fmu, settings.profile), None)
-    known = (settings.mass, settings.friction) != (usual.mass, usual.friction)
+    known = is_told(settings, "mass") or is_told(settings, "friction")
     if known or is_bundled(path) or model_of(config) is not None:
         return config
     try:
@@ -67,9 +67,16 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
     update = {
         name: value
         for name, value in identified_vehicle(model).items()
-        if getattr(settings, name) == getattr(usual, name)
+        if not is_told(settings, name)
     }
     return config.model_copy(update={"vehicle": settings.model_copy(update=update)})
+
+
+def is_told(settings: VehicleConfig, key: str) -> bool:
+    """Return whether a flag or a file sets a key of [vehicle]; whole files have defaults, too."""
+    given = settings.model_fields_set
+    chosen = key in given and given != set(VehicleConfig.model_fields)
+    return bool(chosen or getattr(settings, key) != getattr(VehicleConfig(), key))
 
 
 def _is_usual(model: FittedModel) -> bool:

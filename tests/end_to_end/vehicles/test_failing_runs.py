@@ -160,7 +160,8 @@ def test_the_diverging_fmu_of_a_real_tool_is_no_success(giveway, tmp_path):
 @pytest.mark.parametrize(
     ("options", "note"),
     [
-        ({"values": {"mass": 2000.0}}, "does not answer as the controller's M = 1000 kg"),
+        ({"values": {"mass": 2000.0}}, r"identified M = 2\d\d\d kg, .* coarsely"),
+        ({"values": {"mass": 3000.0}}, r"identified M = [23]\d\d\d kg, .* coarsely"),
         ({"initial": ()}, "no parameter for the initial speed: driven up to 4"),
     ],
 )
@@ -169,13 +170,12 @@ def test_a_run_that_goes_on_notes_what_is_odd(zoo, giveway, options, note):
     words = ("--time-limit", 8, "--profile", car.with_suffix(".toml"))
     done = giveway(*WORDS, "--vehicle", car, *words)
     assert done.returncode == 0, done.stderr
-    assert note in " ".join(done.stdout.split())
+    assert re.search(note, " ".join(done.stdout.split()))
 
 
 @pytest.mark.parametrize(
     ("options", "flags", "said"),
     [
-        ({"values": {"mass": 3000.0}}, (), r"8000 N brake it with 2\.\d m/s2 .* expected 3 m/s2"),
         (
             {"spoken": {"speed": (1 / 3.6, 0.0)}, "initial": (), "outputs": ("speed",)},
             (),

@@ -39,14 +39,19 @@ def test_a_car_as_the_controller_thinks_is_not_remarked(remarks):
 
 
 def test_a_heavier_car_is_told_with_what_it_is(remarks):
-    (remark,) = remarks(HEAVY)
+    told = {"mass": 1000.0, "friction": 100.0}
+    (remark,) = remarks({"mass": 1400.0, "friction": 40.0}, told)
     assert "the controller's M = 1000 kg, alpha = 100 N.s/m" in remark
     mass, friction = map(
         float, re.search(r"M = ([\d.]+) kg and alpha = ([\d.]+) N\.s/m fit", remark).groups()
     )
-    assert mass == pytest.approx(1600.0, rel=0.02)
+    assert mass == pytest.approx(1400.0, rel=0.02)
     assert friction == pytest.approx(40.0, abs=20.0)
     assert "giveway fmu identify" in remark
+
+
+def test_a_heavier_car_of_which_nothing_is_told_is_identified_before(remarks):
+    assert remarks(HEAVY) == []
 
 
 def test_the_controller_that_is_told_so_is_content(remarks):
