@@ -20,7 +20,7 @@ _LONGEST = 5.0  # longest lag or dead time [s] of a vehicle that can be driven
 
 @dataclass(frozen=True, slots=True)
 class ActuatorSide:
-    """How a vehicle answers to the forces of one sign.
+    """The answer of a vehicle to the forces of one sign.
 
     Raises:
         ParameterError: a value is not finite or out of range.

@@ -40,8 +40,8 @@ def bound_step(
 
     Args:
         command: Largest force [N] that has passed the dead time in this step.
-        state: Bounds [N] of the force that has passed the rate limit, and of the driving and the
-            braking force that act: from above, above and below.
+        state: Upper bound [N] of the force that has passed the rate limit, upper bound of the
+            driving force that acts, and lower bound of the braking force that acts.
         c: Lags and rate of the actuator.
 
     Returns:

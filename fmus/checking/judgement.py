@@ -28,7 +28,7 @@ ROAD: Final = KnownMass(CLASS_MASSES["passenger"][0], 44000.0, "cars to lorries 
 
 @dataclass(frozen=True)
 class Told:
-    """What is told of a vehicle.
+    """The facts that are told of a vehicle.
 
     Attributes:
         drive: Mass that drives, or None if nothing is told.

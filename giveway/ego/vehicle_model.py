@@ -1,4 +1,4 @@
-"""What is known of an ego's vehicle: its profile's model, or one that is found before the run."""
+"""The model of an ego's vehicle: that of its profile, or one that is found before the run."""
 
 from hashlib import sha256
 from math import inf
