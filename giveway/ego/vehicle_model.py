@@ -23,6 +23,7 @@ from giveway.errors import VehicleError, retold
 
 _NEAR = 0.1  # deviation of M, as a share, up to which the default car's flags suit a vehicle
 _LATE = 0.05  # lag plus dead time [s] up to which they do
+_QUICK = 1.0  # time [s] that a step may take in a quick identification
 # Coarse models by hash of the FMU, profile and step; those that are driven, by FMU and profile
 _coarse: dict[tuple[str, str, float], FittedModel] = {}
 _found: dict[tuple[str, str], FittedModel] = {}
@@ -53,7 +54,7 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
     if known or is_bundled(path) or model_of(config) is not None:
         return config
     try:
-        profile = choose_profile(path, profile_of(settings))
+        profile = _impatient(choose_profile(path, profile_of(settings)))
         key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
         if key not in _coarse:
             opener = opener_of(path, step_size=time_step, profile=profile)
@@ -70,6 +71,14 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
         if not is_told(settings, name)
     }
     return config.model_copy(update={"vehicle": settings.model_copy(update=update)})
+
+
+def _impatient(profile: VehicleProfile) -> VehicleProfile:
+    """Return the profile with a short time limit of steps: an FMU that hangs is left to the run."""
+    limit = min(profile.fmu.step_timeout, _QUICK)
+    return profile.model_copy(
+        update={"fmu": profile.fmu.model_copy(update={"step_timeout": limit})}
+    )
 
 
 def is_told(settings: VehicleConfig, key: str) -> bool:

@@ -52,11 +52,11 @@ def test_a_function_has_an_entry_for_c_and_numbas_helpers_none(monkeypatch):
 
     monkeypatch.setattr(codegen.CPUCodeLibrary, "add_ir_module", add)
 
-    @cfunc("float64(float64)")
-    def at_least_one(x):
-        return max(1.0, x)
+    @cfunc("int16(int16, int16)")  # of no other function in the process
+    def at_least_one(x, one):
+        return max(one, x)
 
-    assert at_least_one.ctypes(3.5) == 3.5
+    assert at_least_one.ctypes(3, 1) == 3
     assert any("ol_max" in name for name in made)
     (entry,) = (name for name in made if name.startswith("cfunc."))
     assert "at_least_one" in entry
