@@ -34,6 +34,7 @@ from giveway.config.tables.basics import DEFAULT_SPEED, EXACT
 from giveway.config.tables.controllers import PaperPidOptions
 from giveway.ego.vehicle_model import (
     fmu_path,
+    impatient,
     is_coarse,
     is_told,
     model_margin,
@@ -151,7 +152,7 @@ def _require_sound(
         if profile.fmu.self_check:
             _require_convergence(path, profile, time_step, force, speed)
         answers = measure(
-            opener_of(path, step_size=time_step, profile=_without_bound(profile)),
+            opener_of(path, step_size=time_step, profile=impatient(_without_bound(profile))),
             brake_force=vehicle.force_limit,
         )
     except (FmuStartCrashError, FmuUnsuitableError):

@@ -23,7 +23,7 @@ from giveway.errors import VehicleError, retold
 
 _NEAR = 0.1  # deviation of M, as a share, up to which the default car's flags suit a vehicle
 _LATE = 0.05  # lag plus dead time [s] up to which they do
-_QUICK = 1.0  # time [s] that a step may take in a quick identification
+_QUICK = 1.5  # time [s] that a step may take before a run
 # Coarse models by hash of the FMU, profile and step; those that are driven, by FMU and profile
 _coarse: dict[tuple[str, str, float], FittedModel] = {}
 _found: dict[tuple[str, str], FittedModel] = {}
@@ -54,7 +54,7 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
     if known or is_bundled(path) or model_of(config) is not None:
         return config
     try:
-        profile = _impatient(choose_profile(path, profile_of(settings)))
+        profile = impatient(choose_profile(path, profile_of(settings)))
         key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
         if key not in _coarse:
             opener = opener_of(path, step_size=time_step, profile=profile)
@@ -73,8 +73,12 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
     return config.model_copy(update={"vehicle": settings.model_copy(update=update)})
 
 
-def _impatient(profile: VehicleProfile) -> VehicleProfile:
-    """Return the profile with a short time limit of steps: an FMU that hangs is left to the run."""
+def impatient(profile: VehicleProfile) -> VehicleProfile:
+    """Return the profile with a short time limit of steps, as an FMU that hangs is left to the run.
+
+    Args:
+        profile: Profile of the vehicle.
+    """
     limit = min(profile.fmu.step_timeout, _QUICK)
     return profile.model_copy(
         update={"fmu": profile.fmu.model_copy(update={"step_timeout": limit})}
