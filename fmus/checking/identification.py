@@ -45,6 +45,7 @@ VALIDATION = (  # shares of the largest force, each held for HELD; none of them 
     0.05, -0.1, 0.65, -0.5, 0.4, -0.05, 0.0, -0.25,
 )  # fmt: skip
 HELD = 0.6  # [s]
+FEWEST = 20  # smallest number of steps in motion that can be fitted
 
 
 class Mpc(NamedTuple):
@@ -167,6 +168,11 @@ def modelled(
                         filtered=filtered)
         for traces, at in ((tests, euler), ([validation], euler), (tests, True))
     )  # fmt: skip
+    if min(measured.acceleration.size, held_out.acceleration.size) < FEWEST:
+        raise FmuOutputError(
+            f"{path}: it hardly moves in the step tests; expected a vehicle that drives off; "
+            "'giveway fmu check' shows what is wrong"
+        )
     estimate = identify_sides(measured, coarse=coarse)
     pressed = [max(float(np.abs(trace.force).max()) for trace in tests) > full
                for full in _full_forces(profile)]  # fmt: skip

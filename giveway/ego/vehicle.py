@@ -152,7 +152,7 @@ def _require_sound(
         if profile.fmu.self_check:
             _require_convergence(path, profile, time_step, force, speed)
         answers = measure(
-            opener_of(path, step_size=time_step, profile=impatient(_without_bound(profile))),
+            opener_of(path, step_size=time_step, profile=impatient(_for_filters(profile))),
             brake_force=vehicle.force_limit,
         )
     except (FmuStartCrashError, FmuUnsuitableError):
@@ -196,12 +196,16 @@ def _told_mass(config: EgoRunConfig, profile: VehicleProfile) -> float | None:
 
 
 def _without_bound(profile: VehicleProfile) -> VehicleProfile:
-    """Return the profile without a bound of the acceleration, which diverging solvers exceed.
+    """Return the profile without a bound of the acceleration, which diverging solvers exceed."""
+    profile = _for_filters(profile)
+    limits = profile.limits.model_copy(update={"acceleration": 1e12})
+    return profile.model_copy(update={"limits": limits})
 
-    A filtered speed lags behind the position when the brakes are fully applied.
-    """
+
+def _for_filters(profile: VehicleProfile) -> VehicleProfile:
+    """Return the profile for full braking, in which a filtered speed lags behind the position."""
     jump = max(profile.limits.position_jump, _FILTERED)
-    limits = profile.limits.model_copy(update={"acceleration": 1e12, "position_jump": jump})
+    limits = profile.limits.model_copy(update={"position_jump": jump})
     return profile.model_copy(update={"limits": limits})
 
 

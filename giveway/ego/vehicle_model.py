@@ -14,7 +14,8 @@ from fmus import (
     prepare,
     read_profile,
 )
-from fmus.checking import coarse, opener_of
+from fmus.checking import coarse, opener_of, without_guards
+from fmus.checking.judgement import ROAD
 from fmus.profile.vehicle_profile import FittedModel, SideModel
 from giveway.config import EgoRunConfig
 from giveway.config.files.identified import identified_vehicle
@@ -23,6 +24,8 @@ from giveway.errors import VehicleError, retold
 
 _NEAR = 0.1  # deviation of M, as a share, up to which the default car's flags suit a vehicle
 _LATE = 0.05  # lag plus dead time [s] up to which they do
+_WEAKEST = 0.3  # [m/s2] limit of driving or braking below which a model is none of a vehicle
+_FITS = 0.5  # share of the variation that a model explains, from which on it is driven with
 _QUICK = 1.5  # time [s] that a step may take before a run
 # Coarse models by hash of the FMU, profile and step; those that are driven, by FMU and profile
 _coarse: dict[tuple[str, str, float], FittedModel] = {}
@@ -57,12 +60,12 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
         profile = impatient(choose_profile(path, profile_of(settings)))
         key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
         if key not in _coarse:
-            opener = opener_of(path, step_size=time_step, profile=profile)
+            opener = opener_of(path, step_size=time_step, profile=without_guards(profile))
             _coarse[key] = coarse(opener, path=path, profile=profile)
     except FmuError:
         return config
     model = _coarse[key]
-    if _is_usual(model):
+    if _is_usual(model) or not _is_vehicle(model):
         return config
     _found[settings.fmu, settings.profile] = model
     update = {
@@ -86,10 +89,8 @@ def impatient(profile: VehicleProfile) -> VehicleProfile:
 
 
 def is_told(settings: VehicleConfig, key: str) -> bool:
-    """Return whether a flag or a file sets a key of [vehicle]; whole files have defaults, too."""
-    given = settings.model_fields_set
-    chosen = key in given and given != set(VehicleConfig.model_fields)
-    return bool(chosen or getattr(settings, key) != getattr(VehicleConfig(), key))
+    """Return whether a key of [vehicle] tells something: it has another value than by default."""
+    return bool(getattr(settings, key) != getattr(VehicleConfig(), key))
 
 
 def _is_usual(model: FittedModel) -> bool:
@@ -99,6 +100,15 @@ def _is_usual(model: FittedModel) -> bool:
     strong = all(side.limit is None or side.limit > usual.acceleration_limit for side in sides)
     quick = all(side.lag + side.delay <= _LATE and side.rate is None for side in sides)
     return strong and quick and abs(model.mass / usual.mass - 1.0) <= _NEAR
+
+
+def _is_vehicle(model: FittedModel) -> bool:
+    """Return whether a model describes a vehicle; others are judged as what the flags tell."""
+    sides = [side for side in (model, model.drive, model.brake) if side is not None]
+    limits = [side.limit for side in (model.drive, model.brake) if side and side.limit]
+    strong = min(limits, default=inf) >= _WEAKEST
+    right = all(ROAD.excess(side.mass) == 1.0 for side in sides)
+    return model.r_squared >= _FITS and right and strong
 
 
 def model_margin(config: EgoRunConfig, time_step: float) -> float:

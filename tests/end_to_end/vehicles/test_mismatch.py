@@ -39,9 +39,8 @@ def test_a_car_as_the_controller_thinks_is_not_remarked(remarks):
 
 
 def test_a_heavier_car_is_told_with_what_it_is(remarks):
-    told = {"mass": 1000.0, "friction": 100.0}
-    (remark,) = remarks({"mass": 1400.0, "friction": 40.0}, told)
-    assert "the controller's M = 1000 kg, alpha = 100 N.s/m" in remark
+    (remark,) = remarks({"mass": 1400.0, "friction": 40.0}, {"mass": 1001.0})
+    assert "the controller's M = 1001 kg, alpha = 100 N.s/m" in remark
     mass, friction = map(
         float, re.search(r"M = ([\d.]+) kg and alpha = ([\d.]+) N\.s/m fit", remark).groups()
     )
