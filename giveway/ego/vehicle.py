@@ -21,6 +21,7 @@ from fmus import (
     prepare,
 )
 from fmus.checking import (
+    Answers,
     convergence,
     judge,
     measure,
@@ -151,18 +152,35 @@ def _require_sound(
     try:
         if profile.fmu.self_check:
             _require_convergence(path, profile, time_step, force, speed)
-        answers = measure(
-            opener_of(path, step_size=time_step, profile=impatient(_for_filters(profile))),
-            brake_force=vehicle.force_limit,
-        )
+        answers, sudden = _answers(path, profile, time_step, vehicle.force_limit)
     except (FmuStartCrashError, FmuUnsuitableError):
         raise  # the run would have no rows, and would wait for a hang again
     except FmuError:
         return
     for finding in judge(answers, told_of(profile, mass), profile):
         if finding.verdict != "pass":
-            raise FmuUnsuitableError(f"{path}: {finding.text}; {finding.remedy}")
+            raise FmuUnsuitableError(sudden or f"{path}: {finding.text}; {finding.remedy}")
     _sound.add(key)
+
+
+def _answers(
+    path: Path, profile: VehicleProfile, time_step: float, force_limit: float
+) -> tuple[Answers, str]:
+    """Measure how an FMU answers, and say if its speed changes as that of no car.
+
+    Raises:
+        FmuError: the FMU fails.
+    """
+    bounded = impatient(_for_filters(profile))
+    try:
+        return measure(
+            opener_of(path, step_size=time_step, profile=bounded), brake_force=force_limit
+        ), ""
+    except FmuOutputError as error:
+        sudden = str(error)
+    unbounded = _without_bound(bounded)
+    opener = opener_of(path, step_size=time_step, profile=unbounded)
+    return measure(opener, brake_force=force_limit), sudden
 
 
 def _require_convergence(
