@@ -44,7 +44,6 @@ class Course(NamedTuple):
     departure: float  # station [m] of the front bumper where the FMU's position is 0
     goal: float  # position [m] of the FMU at which the drive is over
     slope: Slope | None = None  # slope of the path; None if the path is level
-    gives_way: frozenset[str] = frozenset()  # crossings at which it gives way because it turns
 
 
 class Ego:
@@ -62,7 +61,6 @@ class Ego:
         front: Station of the front bumper [m].
         pose: Centre of the front bumper [m] and heading of the body [rad].
         systems: SUMO's ids of the signal systems whose states it needs.
-        gives_way: Lanes of the crossings at which it gives way to people because it turns.
         beside: Marks of the last vehicles, see
             :func:`~giveway.ego.perception.leader.vehicles_in_front`.
     """
@@ -76,7 +74,7 @@ class Ego:
         time_step: float,
         kerbs: Kerbs | None = None,
     ) -> None:
-        path, departure, goal, slope, self.gives_way = course
+        path, departure, goal, slope = course
         config = waiting.config
         regulation, controller = config.regulation, waiting.controller
         self.config, self.id, self.shape, self._controller = config, waiting.id, shape, controller

@@ -164,7 +164,7 @@ class Entrance:
         if slope is not None and not ego.recorded:
             self._remark_on_slope(ego, slope)
         goal = path.length - departure if goal is None else goal
-        course = Course(path, departure, goal, slope, route.gives_way)
+        course = Course(path, departure, goal, slope)
         rules, kerbs = RuleSet.on(route), self._kerbs(route)
         return Ego(ego, course, route.shape, rules, self._time_step, kerbs)
 
@@ -182,8 +182,8 @@ class Entrance:
         network, safety = self._network, route.ego.safety
         if network is None or safety is None or safety.setting_out == math.inf:
             return None
-        width, crossings = route.shape.width, route.crossings
-        kerbs = Kerbs(route.path, width, network.sidewalks, crossings, route.change_of)
+        crossings = self._session.lanes.crossings
+        kerbs = Kerbs(route.path, route.shape.width, network.sidewalks, crossings, route.change_of)
         return kerbs if kerbs else None
 
 

@@ -44,8 +44,7 @@ class CrossingTraffic:
         rows = self._of_background(crossing)
         for ego in self._egos:
             for place in self._on(crossing, ego.id, ego.shape, ego.path):
-                yields = crossing.lane in ego.gives_way
-                rows.append(_row(place, ego.front, ego.vehicle.speed, yields=yields))
+                rows.append(_row(place, ego.front, ego.vehicle.speed, yields=False))
         return Approaches(*np.array(rows, dtype=np.float64).reshape(-1, 6).T)
 
     def _of_background(self, crossing: Crossing) -> list[tuple[float, ...]]:

@@ -1,11 +1,10 @@
 """Giving way at crossings: the ego waits before a crossing for pedestrians with priority.
 
 Pedestrians on a crossing, or at its kerb and about to cross, have priority if the crossing is a
-zebra, if their light is green, or if the ego turns and the network lets it give way to them. Those
-who are still on it when the light changes may finish. This is what the Vienna Convention on Road
-Traffic (1968, art. 21) demands: "give way to pedestrians who are using the crossing or about to use
-it". The ego stops before the crossing, not on it. It does not drive onto a crossing that it could
-not leave because of the vehicle ahead (art. 18.2).
+zebra or their light is green. Those who are still on it when the light changes may finish. This is
+what the Vienna Convention on Road Traffic (1968, art. 21) demands: "give way to pedestrians who are
+using the crossing or about to use it". The ego stops before the crossing, not on it. It does not
+drive onto a crossing that it could not leave because of the vehicle ahead (art. 18.2).
 
 If a stop at a crossing would leave the body on another crossing or in a junction without a light,
 the ego stops before that one. It looks farther ahead for people then. It does so for a limited time
@@ -127,7 +126,7 @@ class Crossings:
         if not route.heeds("crossings"):
             return None
         passages = route.lane_path.passages
-        found = crossings_on(route.path, route.shape, route.crossings)
+        found = crossings_on(route.path, route.shape, route.session.lanes.crossings)
         if not found:
             return None
         return cls(

@@ -18,7 +18,6 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.network.lane_path import LanePath
-from giveway.sumo.network.pedestrian_crossings import Crossing
 from giveway.sumo.session import SumoSession
 from giveway.sumo.signal_plans import ChangeOf, untold
 
@@ -131,27 +130,6 @@ class RouteContext:
         """The junctions on the path at which vehicles may meet."""
         session, passages = self.session, self.lane_path.passages
         return junctions_on(self.path, passages, self.shape.width, session.junctions, session.lanes)
-
-    @cached_property
-    def gives_way(self) -> frozenset[str]:
-        """The lanes of the crossings where the ego gives way to people because it turns.
-
-        Right of way is the network's (StVO, section 9 (3): who turns waits for people on foot).
-        """
-        if not self.heeds("crossings"):
-            return frozenset()
-        inside = {lane for passage in self.lane_path.passages for lane in passage.inside}
-        yielding_to = self.session.junctions.yielding_to
-        lanes = [one.lane for one in self.session.lanes.crossings if not one.system]
-        return frozenset(lane for lane in lanes if not inside.isdisjoint(yielding_to(lane)))
-
-    @cached_property
-    def crossings(self) -> tuple[Crossing, ...]:
-        """The crossings of the network; where the ego gives way as it turns, they are zebras."""
-        return tuple(
-            one._replace(zebra=one.zebra or one.lane in self.gives_way)
-            for one in self.session.lanes.crossings
-        )
 
     def stretches(self, edge: str) -> list[tuple[float, float]]:
         """The intervals of stations [m] in which the path follows an edge, one for each visit.
