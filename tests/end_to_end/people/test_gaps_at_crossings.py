@@ -150,33 +150,3 @@ def test_waiting_people_wait_on_as_an_ego_comes(street: Street) -> None:
     assert (there < 0.0).sum() >= 3  # they still wait
     assert passes - ego[0, 0] < 25.0  # the ego has not waited for them
     assert max(track[-1, 2] for track in walkers.values()) > 3.2  # and cross behind it
-
-
-def test_an_ego_that_turns_lets_them_cross_as_the_network_says(tmp_path: Path) -> None:
-    """She crosses the road into which the ego turns right, at a crossing without priority."""
-    nodes = ("w", -100, 0), ("m", 0, 0), ("e", 100, 0), ("s", 0, -100)
-    nodes = "".join(f'<node id="{name}" x="{x}" y="{y}"/>' for name, x, y in nodes)
-    pairs = ("wm", "mw", "em", "me", "sm", "ms")
-    edges = "".join(f'<edge id="{a}{b}" from="{a}" to="{b}" numLanes="1"/>' for a, b in pairs)
-    (tmp_path / "n.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
-    (tmp_path / "e.edg.xml").write_text(f"<edges>{edges}</edges>")
-    command = ["netconvert", "-n", "n.nod.xml", "-e", "e.edg.xml", "--sidewalks.guess"]
-    command += ["--sidewalks.guess.max-speed", "20", "--crossings.guess", "--no-turnarounds"]
-    call(*command, "-o", "turn.net.xml", folder=tmp_path)
-    (tmp_path / "a.rou.xml").write_text(
-        f"""<routes>{TYPES}<person id="p" depart="0" departPos="85" type="plain">
-        <walk edges="wm me" arrivalPos="20"/></person>
-        <vehicle id="ego" depart="0.5" departPos="20" departSpeed="8"><route edges="wm ms"/>
-        </vehicle></routes>"""
-    )
-    config = tmp_path / "a.sumocfg"
-    config.write_text(
-        """<configuration><net-file value="turn.net.xml"/><route-files value="a.rou.xml"/>
-        <end value="60"/><step-length value="0.2"/></configuration>"""
-    )
-    fcd = walked(config, take_over=("ego",))
-    ego, she = tracks(fcd, "vehicle")["ego"], tracks(fcd, "person")["p"]
-    crosses = she[(she[:, 1] > 95.0) & (she[:, 1] < 102.0)]  # the road is from 96.8 to 103.2 m
-    assert np.diff(crosses[:, 1]).min() > 0.1  # she never stands, and is never pushed back
-    first = ego[np.searchsorted(-ego[:, 2], -94.0), 0]  # its front is on the crossing
-    assert she[np.searchsorted(she[:, 0], first), 1] > 100.0  # she has left its lane
