@@ -61,6 +61,11 @@ class Actuator:
         return self.drive == usual and self.brake == usual
 
     @property
+    def dead_time(self) -> float:
+        """The longest time [s] until either side begins to follow a command."""
+        return max(self.drive.delay, self.brake.delay)
+
+    @property
     def reaction_time(self) -> float:
         """The dead time plus the lag [s] of the brake, after which braking mostly acts."""
         return self.brake.delay + self.brake.lag

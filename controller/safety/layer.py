@@ -33,30 +33,14 @@ _PEOPLE = RECORDED["recorded-99.9"]
 _NO_KERBS = np.zeros((0, 3))
 
 
-def require_brake(force_limit: float, reaction_time: float) -> None:
-    """Make sure that a stop can be computed with this brake.
+def past_commands(dead_time: float, time_step: float) -> Array:
+    """Return a memory (delay + 1,) [N] of the forces that may act within a dead time.
 
     Args:
-        force_limit: Largest braking force [N].
-        reaction_time: Longest time [s] until the vehicle follows a command.
-
-    Raises:
-        ParameterError: a value is not finite or out of range.
-    """
-    require_positive("force_limit", force_limit, "N")
-    require_not_negative("reaction_time", reaction_time, "s")
-    short = reaction_time < LONGEST_STOP
-    require(short, "reaction_time", reaction_time, f"less than {LONGEST_STOP:g} s")
-
-
-def past_commands(reaction_time: float, time_step: float) -> Array:
-    """Return a memory (delay + 1,) [N] of the forces that may act within a reaction time.
-
-    Args:
-        reaction_time: Longest time [s] until the vehicle follows a command.
+        dead_time: Longest time [s] until the vehicle begins to follow a command.
         time_step: Control step [s].
     """
-    return np.zeros(1 + max(ceil(reaction_time / time_step - WHOLE_STEPS), 0))
+    return np.zeros(1 + max(ceil(dead_time / time_step - WHOLE_STEPS), 0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +60,6 @@ class SafetyParameters:
     position_error: float = 0.0  # largest error [m] of a perceived position
     force_limit: float = FORCE_LIMIT  # u_max [N] (Yang & Özgüner 2019, table 1)
     force_rate_limit: float = inf  # largest change of the layer's braking force [N per step]
-    reaction_time: float = 0.0  # longest time [s] until the vehicle follows a command
     actuator: Actuator = field(default_factory=Actuator)  # the worst one that the ego may have
 
     def __post_init__(self) -> None:
@@ -87,14 +70,9 @@ class SafetyParameters:
         require_positive("width", self.width, "m")
         require_not_negative("margin", self.margin, "m")
         require_not_negative("position_error", self.position_error, "m")
-        require_brake(self.force_limit, self.reaction_time)
+        require_positive("force_limit", self.force_limit, "N")
         rate = self.force_rate_limit
         require(rate > 0.0, "force_rate_limit", rate, "a number > 0 [N per step]")
-
-    @property
-    def dead_time(self) -> float:
-        """The longest time [s] until an actuator begins to follow a command."""
-        return max(self.reaction_time, self.actuator.drive.delay, self.actuator.brake.delay)
 
     @property
     def brake_force(self) -> float:
@@ -157,7 +135,7 @@ class SafetyLayer:
         )
         self._errors = np.full(0, p.position_error)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
-        self._commands, self._acting = past_commands(p.dead_time, dt), np.zeros(3)
+        self._commands, self._acting = past_commands(p.actuator.dead_time, dt), np.zeros(3)
         self.memory = (packed(self._limits), self._commands, self._boxes, self._acting)
         # Largest number of steps until full braking acts; a lag lacks no more than this delay
         drive, brake = p.actuator.drive, p.actuator.brake

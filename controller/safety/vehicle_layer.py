@@ -25,7 +25,6 @@ from controller.safety.layer import (
     SLACK,
     WHOLE_STEPS,
     past_commands,
-    require_brake,
 )
 
 _BRAKES = 0.5  # deceleration [m/s^2] from which on the vehicle ahead counts as braking
@@ -56,18 +55,12 @@ class VehicleLimits:
     response: float = RESPONSE  # deceleration [m/s^2] of the response
     margin: float = 1.0  # least gap [m] (giveway's own)
     force_limit: float = FORCE_LIMIT  # u_max [N] (Yang & Özgüner 2019, table 1)
-    reaction_time: float = 0.0  # longest time [s] until the vehicle follows a command
     actuator: Actuator = field(default_factory=Actuator)  # the worst one that the ego may have
 
     def __post_init__(self) -> None:
         require_positive("response", self.response, "m/s^2")
         require_not_negative("margin", self.margin, "m")
-        require_brake(self.force_limit, self.reaction_time)
-
-    @property
-    def dead_time(self) -> float:
-        """The longest time [s] until an actuator begins to follow a command."""
-        return max(self.reaction_time, self.actuator.drive.delay, self.actuator.brake.delay)
+        require_positive("force_limit", self.force_limit, "N")
 
 
 class VehicleLayer:
@@ -90,7 +83,7 @@ class VehicleLayer:
         self._lagging = Lagging.of(limits.actuator, dt)
         vehicle = [dt, model.mass, model.friction, response, hardest, limits.margin]
         self._numbers = np.array([*vehicle, *self._lagging])
-        self._commands, self._acting = past_commands(limits.dead_time, dt), np.zeros(3)
+        self._commands, self._acting = past_commands(limits.actuator.dead_time, dt), np.zeros(3)
         self.restores = False
 
     def reset(self) -> None:

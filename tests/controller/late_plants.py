@@ -20,6 +20,11 @@ sides = st.builds(
 actuators = st.builds(Actuator, drive=sides, brake=sides)
 
 
+def late(delay):
+    """An actuator with this dead time [s] on both sides."""
+    return Actuator(ActuatorSide(delay=delay), ActuatorSide(delay=delay))
+
+
 def weak(actuator, limit):
     """The same actuator, whose brake is limited to ``limit`` [N]."""
     b = actuator.brake

@@ -83,7 +83,10 @@ def test_an_ideal_actuator_is_told_from_others():
     assert Actuator().command(5.0) == Actuator().acting(5.0) == 5.0
 
 
-@pytest.mark.parametrize("wrong", [{"lag": -0.1}, {"delay": 9.0}, {"limit": 0.0}, {"scale": 0.0}])
+@pytest.mark.parametrize(
+    "wrong",
+    [{"lag": -0.1}, {"delay": -0.1}, {"delay": 9.0}, {"limit": 0.0}, {"scale": 0.0}],
+)
 def test_a_value_out_of_range_is_refused(wrong):
     with pytest.raises(ParameterError, match=next(iter(wrong))):
         ActuatorSide(**wrong)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from late_plants import LatePlant, actuators, weak
+from late_plants import LatePlant, actuators, late, weak
 
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
 from controller.safety.worst_motion import RECORDED
@@ -203,7 +203,7 @@ def test_when_its_own_braking_is_rate_limited_too(seed):
 @given(seed=seeds, delay=st.integers(0, 4))
 def test_when_the_vehicle_obeys_late_too(seed, delay):
     """It may be as late as is said, or sooner."""
-    reasons = drive(seed, plant=Plant(0.0, delay=delay), reaction_time=0.2)
+    reasons = drive(seed, plant=Plant(0.0, delay=delay), actuator=late(0.2))
     assert "unavoidable" not in reasons
 
 

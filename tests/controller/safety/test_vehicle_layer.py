@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from late_plants import LatePlant, actuators
+from late_plants import LatePlant, actuators, late
 
 from controller import LongitudinalModel, ParameterError, VehicleAhead, VehicleLayer, VehicleLimits
 from controller.driving_constants import EMERGENCY_BRAKING, RESPONSE, RESTORING
@@ -28,7 +28,7 @@ class Drive:
     """An ego behind a vehicle that SUMO moves: steps of semi-implicit Euler, news once a step."""
 
     def __init__(self, gap: float, speed: float, its_speed: float, substeps: int, delay: int = 0):
-        limits = VehicleLimits(reaction_time=delay * DT)
+        limits = VehicleLimits(actuator=late(delay * DT))
         self.layer = VehicleLayer(MODEL, limits)
         self.rear, self.its_speed, self.substeps = gap, its_speed, substeps
         self.front, self.speed, self.age, self.slows = 0.0, speed, 0, 0.0
@@ -186,7 +186,7 @@ def test_the_deceleration_that_is_needed_behind() -> None:
 
 
 def test_the_past_is_forgotten() -> None:
-    layer = VehicleLayer(MODEL, VehicleLimits(reaction_time=0.2))
+    layer = VehicleLayer(MODEL, VehicleLimits(actuator=late(0.2)))
     layer.applied(FULL)
     layer.reset()
     assert not np.any(layer._commands)
@@ -198,8 +198,6 @@ def test_the_past_is_forgotten() -> None:
         ("response", -1.0),
         ("force_limit", -1.0),
         ("margin", -1.0),
-        ("reaction_time", -1.0),
-        ("reaction_time", 20.0),
     ],
 )
 def test_a_limit_out_of_range_is_refused(name: str, value: float) -> None:
