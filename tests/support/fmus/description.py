@@ -10,19 +10,25 @@ from support.fmus.cars import (
     INPUT_ARRAY,
     LOAD,
     OUTPUT_ARRAY,
-    QUANTITIES,
     REFERENCES,
     input_elements,
+)
+from support.fmus.variables import (
+    add_typed,
+    add_unit_definitions,
+    indicators,
+    names_of,
+    part,
+    rates_of,
+    set_attributes,
+    states_of,
+    units_of,
 )
 
 if TYPE_CHECKING:
     from support.fmus.cars import Car
 
 IDENTIFIER: Final = "car"
-BASE: Final = {  # unit: base units; one not listed has those of its quantity's own unit
-    "N": "kg1 m1 s-2", "N/s": "kg1 m1 s-3", "m/s2": "m1 s-2", "m/s": "m1 s-1", "m": "m1", "s": "s1",
-    "kg": "kg1", "N.s/m": "kg1 s-1", "N.s2/m2": "kg1 m-1", "1": "", "%": "",
-}  # fmt: skip
 
 
 def describe(car: Car, token: str) -> bytes:
@@ -46,12 +52,12 @@ def _fmi1(car: Car, token: str) -> Xml.Element:
         numberOfEventIndicators="0",
     )
     units = Xml.SubElement(root, "UnitDefinitions")
-    for name in _units(car):
+    for name in units_of(car):
         Xml.SubElement(units, "BaseUnit", unit=name)
     _default_experiment(root, car, startTime="0", stopTime="10")
     variables = Xml.SubElement(root, "ModelVariables")
     for quantity in (*car.inputs, *car.outputs, *car.parameters):
-        causality, variability = _part(car, quantity)
+        causality, variability = part(car, quantity)
         element = Xml.SubElement(
             variables,
             "ScalarVariable",
@@ -60,7 +66,7 @@ def _fmi1(car: Car, token: str) -> Xml.Element:
             causality="internal" if causality == "parameter" else causality,
             variability="parameter" if causality == "parameter" else variability,
         )
-        _typed(element, car, quantity)
+        add_typed(element, car, quantity)
     load = Xml.SubElement(
         variables,
         "ScalarVariable",
@@ -84,16 +90,16 @@ def _fmi2(car: Car, token: str) -> Xml.Element:
         guid=token,
         generationTool="the FMU zoo",
         variableNamingConvention="structured",
-        numberOfEventIndicators=str(_indicators(car)),
+        numberOfEventIndicators=str(indicators(car)),
     )
     for interface in car.interfaces:
         Xml.SubElement(root, interface, _flags(car, interface))
-    _unit_definitions(root, car)
+    add_unit_definitions(root, car)
     _default_experiment(root, car, startTime="0", stopTime="10")
     variables = Xml.SubElement(root, "ModelVariables")
     index = {}
-    for quantity in _variables(car):
-        causality, variability = _part(car, quantity)
+    for quantity in names_of(car):
+        causality, variability = part(car, quantity)
         index[quantity] = len(variables) + 1
         element = Xml.SubElement(
             variables,
@@ -105,7 +111,7 @@ def _fmi2(car: Car, token: str) -> Xml.Element:
         )
         if causality in ("output", "local"):
             element.set("initial", "calculated")
-        typed = _typed(element, car, quantity)
+        typed = add_typed(element, car, quantity)
         if quantity.startswith("rate_"):
             typed.set("derivative", str(index[f"state_{quantity.removeprefix('rate_')}"]))
     load = Xml.SubElement(
@@ -118,7 +124,7 @@ def _fmi2(car: Car, token: str) -> Xml.Element:
     )
     Xml.SubElement(load, "String", start="empty")
     structure = Xml.SubElement(root, "ModelStructure")
-    states, rates = _states(car), _rates(car)
+    states, rates = states_of(car), rates_of(car)
     for element_name, quantities in (
         ("Outputs", car.outputs),
         ("Derivatives", rates),
@@ -142,7 +148,7 @@ def _fmi3(car: Car, token: str) -> Xml.Element:
     )
     for interface in car.interfaces:
         Xml.SubElement(root, interface, _flags(car, interface))
-    _unit_definitions(root, car)
+    add_unit_definitions(root, car)
     _default_experiment(root, car, startTime="0", stopTime="10")
     variables = Xml.SubElement(root, "ModelVariables")
     Xml.SubElement(
@@ -158,8 +164,8 @@ def _fmi3(car: Car, token: str) -> Xml.Element:
         Xml.SubElement(variables, "Clock", clock | dict(car.clock))
     if car.array:
         _arrays(variables, car)
-    for quantity in _variables(car):
-        causality, variability = _part(car, quantity)
+    for quantity in names_of(car):
+        causality, variability = part(car, quantity)
         if car.array and causality in ("input", "output"):
             continue
         element = Xml.SubElement(
@@ -172,7 +178,7 @@ def _fmi3(car: Car, token: str) -> Xml.Element:
         )
         if causality in ("output", "local"):
             element.set("initial", "calculated")
-        _attributes(element, car, quantity)
+        set_attributes(element, car, quantity)
         if quantity == "force" and car.clocked:
             element.set("clocks", str(CLOCK))
         if quantity.startswith("rate_"):
@@ -194,13 +200,13 @@ def _fmi3_structure(root: Xml.Element, car: Car) -> None:
     structure = Xml.SubElement(root, "ModelStructure")
     references = [REFERENCES[quantity] for quantity in car.outputs]
     outputs = [OUTPUT_ARRAY] if car.array else references
-    rates = [REFERENCES[quantity] for quantity in _rates(car)]
-    states = [REFERENCES[quantity] for quantity in _states(car)]
+    rates = [REFERENCES[quantity] for quantity in rates_of(car)]
+    states = [REFERENCES[quantity] for quantity in states_of(car)]
     for name, numbers in (
         ("Output", outputs),
         ("ContinuousStateDerivative", rates),
         ("InitialUnknown", [*outputs, *states, *rates]),
-        ("EventIndicator", [REFERENCES["indicator"]] * _indicators(car)),
+        ("EventIndicator", [REFERENCES["indicator"]] * indicators(car)),
     ):
         for number in numbers:
             Xml.SubElement(structure, name, valueReference=str(number))
@@ -247,36 +253,6 @@ def _arrays(variables: Xml.Element, car: Car) -> None:
 # ---- what the versions have in common ----
 
 
-def _rates(car: Car) -> tuple[str, ...]:
-    return tuple(f"rate_{name}" for name in car.states) if "ModelExchange" in car.interfaces else ()
-
-
-def _states(car: Car) -> tuple[str, ...]:
-    return tuple(rate.replace("rate_", "state_") for rate in _rates(car))
-
-
-def _indicators(car: Car) -> int:
-    return int("ModelExchange" in car.interfaces and car.value("holds") != 0.0)
-
-
-def _variables(car: Car) -> tuple[str, ...]:
-    indicator = ("indicator",) * (_indicators(car) * (car.fmi == "3.0"))
-    return (*car.inputs, *car.outputs, *car.parameters, *_states(car), *_rates(car), *indicator)
-
-
-def _part(car: Car, quantity: str) -> tuple[str, str]:
-    """Causality and variability in the words of FMI 2 and 3."""
-    continuous = car.kind_of(quantity) in ("Real", "Float64", "Float32")
-    changing = "continuous" if continuous else "discrete"
-    if quantity in car.inputs:
-        return "input", changing
-    if quantity in car.outputs:
-        return "output", changing
-    if quantity in car.parameters:
-        return "parameter", "fixed"
-    return "local", changing
-
-
 def _flags(car: Car, interface: str) -> dict[str, str]:
     whole = car.only_step is None and not car.constant_step
     if car.fmi == "1.0":
@@ -304,52 +280,3 @@ def _default_experiment(root: Xml.Element, car: Car, **attributes: str) -> None:
     if car.fmi != "1.0" and (step := car.only_step or car.step):
         attributes["stepSize"] = repr(step)
     Xml.SubElement(root, "DefaultExperiment", attributes)
-
-
-def _units(car: Car) -> dict[str, tuple[float, float, str]]:
-    """Each declared unit: factor, offset and the SI unit it is of."""
-    units = {}
-    for quantity in _variables(car):
-        unit = car.unit(quantity)
-        if unit is not None and car.kind_of(quantity) in ("Real", "Float64", "Float32"):
-            of = unit[0] if unit[0] in BASE else QUANTITIES[quantity]
-            units[unit[0]] = (unit[1], unit[2], of)
-    return units
-
-
-def _unit_definitions(root: Xml.Element, car: Car) -> None:
-    units = _units(car)
-    if not units:
-        return
-    definitions = Xml.SubElement(root, "UnitDefinitions")
-    for name, (factor, offset, of) in units.items():
-        unit = Xml.SubElement(definitions, "Unit", name=name)
-        if not car.define_units:
-            continue
-        base = Xml.SubElement(unit, "BaseUnit")
-        for power in BASE[of].split():
-            symbol = power.rstrip("-0123456789")
-            base.set(symbol, power[len(symbol) :])
-        if name not in ("kg",):
-            base.set("factor", repr(factor))
-            base.set("offset", repr(offset))
-
-
-def _typed(element: Xml.Element, car: Car, quantity: str) -> Xml.Element:
-    typed = Xml.SubElement(element, car.kind_of(quantity))
-    _attributes(typed, car, quantity)
-    return typed
-
-
-def _attributes(element: Xml.Element, car: Car, quantity: str) -> None:
-    """Unit and start value."""
-    kind = car.kind_of(quantity)
-    real = kind in ("Real", "Float64", "Float32")
-    unit = car.unit(quantity)
-    if real and unit is not None:
-        element.set("unit", unit[0])
-    if _part(car, quantity)[0] in ("input", "parameter"):
-        raw = car.raw(quantity)
-        boolean = "true" if raw else "false"
-        text = repr(raw) if real else boolean if kind == "Boolean" else str(round(raw))
-        element.set("start", text)
