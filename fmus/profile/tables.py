@@ -8,9 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     ValidationError,
     model_validator,
@@ -18,16 +16,11 @@ from pydantic import (
 
 from fmus.description.model import Value
 from fmus.errors import FmuProfileError
+from fmus.strict_table import StrictTable
 from fmus.text import printable
 
 
-class Table(BaseModel):
-    """A table of a profile: frozen, finite numbers only, unknown keys refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class Axis(Table):
+class Axis(StrictTable):
     """One quantity: SI = gain * (factor * raw + unit_offset) + offset.
 
     ``factor`` and ``unit_offset`` belong to the unit. ``variable`` may be one element of an FMI 3
@@ -70,7 +63,7 @@ Period = Annotated[float, Field(ge=0, le=1e6)]
 Periods = Annotated[dict[str, Period], BeforeValidator(flat)]
 
 
-class Stepping(Table):
+class Stepping(StrictTable):
     """The settings for stepping an FMU."""
 
     # None for co-simulation if it has it
@@ -113,7 +106,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, float) and isfinite(value)
 
 
-_Profile = TypeVar("_Profile", bound=Table)
+_Profile = TypeVar("_Profile", bound=StrictTable)
 
 
 def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:

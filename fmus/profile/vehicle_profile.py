@@ -12,7 +12,8 @@ from typing import Annotated, Any, Final
 
 from pydantic import Field, field_validator, model_validator
 
-from fmus.profile.tables import Axis, Parameters, Stepping, Table, read_tables, validated
+from fmus.profile.tables import Axis, Parameters, Stepping, read_tables, validated
+from fmus.strict_table import StrictTable
 
 TOGETHER: Final = 1e-6  # largest error of a sum of shares
 
@@ -60,7 +61,7 @@ class SpeedSetpoint(VehicleAxis):
     lead: float | None = Field(None, gt=0, le=60)
 
 
-class Inputs(Table):
+class Inputs(StrictTable):
     """The inputs that drive the FMU.
 
     One of these is given: force, drive_force and brake_force, acceleration, throttle and brake,
@@ -105,7 +106,7 @@ class Inputs(Table):
         return self
 
 
-class Outputs(Table):
+class Outputs(StrictTable):
     """The outputs that are read; without a position the speed is integrated (trapezoid rule)."""
 
     speed: VehicleAxis  # [m/s]
@@ -114,7 +115,7 @@ class Outputs(Table):
     acceleration: VehicleAxis | None = None
 
 
-class Initial(Table):
+class Initial(StrictTable):
     """The variables that set the FMU's first position and speed."""
 
     speed: VehicleAxis | None = None  # [m/s] parameter, or input with a start value
@@ -128,7 +129,7 @@ class Fmu(Stepping):
     self_check: bool = True  # True: compare one step with two half steps before the run
 
 
-class Limits(Table):
+class Limits(StrictTable):
     """The limits that no car exceeds. Beyond them the FMU is at fault and the run ends."""
 
     speed: float = Field(100.0, gt=0, le=1e9)  # [m/s] largest absolute value
@@ -140,14 +141,14 @@ class Limits(Table):
     frozen_time: float = Field(2.0, gt=0, le=1e6)
 
 
-class InverseMap(Table):
+class InverseMap(StrictTable):
     """M and alpha with which a force becomes an acceleration or a speed; not for force inputs."""
 
     mass: float = Field(1000.0, gt=0, le=1e6)  # [kg]
     friction: float = Field(100.0, ge=0, le=1e6)  # [N.s/m]
 
 
-class SideModel(Table):
+class SideModel(StrictTable):
     """The answer of a vehicle to forces of one sign: driving, or braking."""
 
     mass: float = Field(gt=0, le=1e6)  # M [kg]
@@ -161,7 +162,7 @@ class SideModel(Table):
     rate: float | None = Field(None, gt=0, le=1e4)
 
 
-class FittedModel(Table):
+class FittedModel(StrictTable):
     """M v' + alpha v = u as identified, for the MPC, and how well it fits."""
 
     mass: float = Field(gt=0, le=1e6)  # M [kg]
@@ -204,7 +205,7 @@ class FittedModel(Table):
         return self.model_copy(update={"delay": self.delay + delay, **later})
 
 
-class VehicleProfile(Table):
+class VehicleProfile(StrictTable):
     """The settings that giveway needs to drive a foreign FMU."""
 
     record: tuple[str, ...] = Field((), max_length=100)  # variables whose values the rows keep

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Final, Literal, Protocol, TypeVar, get_args
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
     ConfigDict,
     Field,
@@ -18,6 +17,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
+from fmus.strict_table import StrictTable
 from giveway.errors import in_words
 
 _TOO_SMALL = "least"
@@ -195,12 +195,10 @@ SumoSeed = Annotated[
 ]
 
 
-class Section(BaseModel):
-    """A table of the configuration: frozen, with finite numbers only; unknown keys are refused."""
+class Section(StrictTable):
+    """A table of the configuration, whose defaults are checked, too."""
 
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
-    )
+    model_config = ConfigDict(validate_default=True)
 
     @field_validator("*", mode="after")
     @classmethod

@@ -2,11 +2,12 @@
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, get_type_hints
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 
+from fmus.strict_table import NO_TRUTH, is_truth_for_number
 from giveway.errors import ConfigError, ControlError, in_words, suggestion
 from giveway.plug_ins.sockets import CONTROLLER, Socket
 
@@ -31,10 +32,13 @@ def read_options(
     """
     table = f"[{socket.options}]"
     known = [] if kind is None else _names(name, kind, socket)
-    for key in values:
+    types = _types(kind)
+    for key, value in values.items():
         if key not in known:
             hint = suggestion(key, known, "" if known else "expected none: it has no options")
             raise ConfigError(f"{table} {key}: '{name}' has no such option; {hint}")
+        if is_truth_for_number(value, types.get(key)):
+            raise ConfigError(f"{table} {key} = {value!r}: {NO_TRUTH} ('{name}')")
     if kind is None:
         return None
     try:
@@ -73,6 +77,14 @@ def _names(name: str, kind: Any, socket: Socket) -> list[str]:
     raise ControlError(
         f"{socket.setting} = '{name}': Options = {kind!r}: expected a dataclass or a pydantic model"
     )
+
+
+def _types(kind: Any) -> dict[str, Any]:
+    """Return the types of the options by name; empty if a name in them means nothing."""
+    try:
+        return get_type_hints(kind)
+    except (NameError, TypeError):  # pydantic reports it, or there is no class
+        return {}
 
 
 def _unit(kind: Any, key: str) -> str:

@@ -12,7 +12,8 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
-from fmus.profile.tables import Axis, Parameters, Stepping, Table, read_tables, validated
+from fmus.profile.tables import Axis, Parameters, Stepping, read_tables, validated
+from fmus.strict_table import StrictTable
 
 GUIDE = "docs/controller_fmu.md"
 
@@ -23,7 +24,7 @@ class SpeedAnswer(Axis):
     lead: float | None = Field(None, gt=0, le=60)  # T [s]: a = (v_set - v) / T; None: one step
 
 
-class ControllerInputs(Table):
+class ControllerInputs(StrictTable):
     """The inputs of the FMU at each step; a series is an array, or ``x[1]``, ``x[2]``, ..."""
 
     speed: Axis | None = None  # [m/s]
@@ -43,7 +44,7 @@ class ControllerInputs(Table):
     nothing: float = Field(1e9, gt=0, le=1e300)
 
 
-class ControllerOutputs(Table):
+class ControllerOutputs(StrictTable):
     """The FMU's answer: one of force, acceleration, speed."""
 
     force: Axis | None = None  # [N] forwards positive
@@ -59,7 +60,7 @@ class ControllerOutputs(Table):
         return self
 
 
-class ControllerSetup(Table):
+class ControllerSetup(StrictTable):
     """The FMU's parameters that get the settings of the run."""
 
     time_step: Axis | None = None  # [s] between two answers
@@ -71,7 +72,7 @@ class ControllerSetup(Table):
     comfortable_deceleration: Axis | None = None  # [m/s2]
 
 
-class ControllerProfile(Table):
+class ControllerProfile(StrictTable):
     """The settings that giveway needs to ask a controller FMU."""
 
     fmu: Stepping = Stepping()

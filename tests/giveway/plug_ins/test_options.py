@@ -37,6 +37,7 @@ def test_texts_and_numbers_become_the_options_types(kind):
         ({"headwy": 1.0}, "headwy: 'own' has no such option; did you mean 'headway'"),
         ({"zzz": 1.0}, "expected one of headway, polite"),
         ({"headway": "wide"}, "headway = 'wide'"),
+        ({"headway": True}, "headway = True: should be a number, not true or false"),
     ],
 )
 def test_what_is_wrong_is_one_line_with_key_and_value(kind, values, said):

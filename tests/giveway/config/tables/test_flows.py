@@ -85,7 +85,7 @@ WRONG = {
     "[[flow]]\nfrom = [1,0,0,1]\nto = [5,5]\nrate = 1": "expected x_min < x_max and y_min < y_max",
     "[[flow]]\nfrom = [[1,1],[1,1]]\nto = [5,5]\nrate = 1": "expected two ends, 0.01 apart",
     "[[flow]]\nfrom = [0,0,1,1]\nto = [1e9,5]\nrate = 1": "to = [1000000000.0, 5]: expected",
-    "[[flow]]\nfrom = [0,0,1,true]\nto = [5,5]\nrate = 1": "from = [0, 0, 1, True]: expected",
+    "[[flow]]\nfrom = [0,0,1,true]\nto = [5,5]\nrate = 1": "from = [0, 0, 1, True]: should be",
     "[people]\nchild = 0.7\nhurried = 0.7": "child = 0.7, hurried = 0.7: expected shares",
     "[people]\nadult = 0.7": "adult: unknown key",
     "groups = 1.5": "groups = 1.5: should be at most 1: it is a share",
