@@ -1,7 +1,6 @@
 """Recovery after a crash of native code: the recorded rows become a result like any other."""
 
 import shutil
-import tomllib
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from giveway.config import RunConfig
 from giveway.config.files.foreign_code import named_in
 from giveway.config.files.layers import read_toml_text
 from giveway.config.files.loading import load
+from giveway.config.files.toml import parse_toml
 from giveway.errors import CrashError, GivewayError, ResultsError
 from giveway.journal.journal_reader import JournalContents, read_journal
 from giveway.journal.recorded import RecordedRows
@@ -153,7 +153,7 @@ def _look_at(journal: Path, contents: JournalContents) -> LeftJournal:
         raise ResultsError(
             f"{journal}: holds no journal of a run; 'giveway recover' lists those that there are"
         )
-    settings = tomllib.loads(config)
+    settings = parse_toml(config, str(journal))
     return LeftJournal(
         path=journal,
         scenario=str(settings.get("scenario", "")),

@@ -16,6 +16,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from giveway.gate import write_whole
+
 BLACK = "#000000"
 ORANGE = "#E69F00"
 SKY_BLUE = "#56B4E9"
@@ -98,7 +100,10 @@ def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
     # By default, the formats have a creation date and, for SVG, random element ids.
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with house_style():
-        figure.savefig(path, dpi=dpi, metadata=undated.get(path.suffix.lower(), {}))
+        picture, suffix = BytesIO(), path.suffix.lower()
+        form, metadata = suffix.removeprefix(".") or None, undated.get(suffix, {})
+        figure.savefig(picture, format=form, dpi=dpi, metadata=metadata)
+    write_whole(path, picture.getvalue())
 
 
 def quiet_grid(axes: Axes) -> None:

@@ -1,6 +1,7 @@
 """The reading of a journal, however the process that wrote it ended."""
 
 import json
+import mmap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from giveway.errors import ResultsError
+from giveway.gate import LARGEST_TABLE, opened, read_json, require_no_link
 from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind, Rows, row_type
-from giveway.processes.heartbeat import Heartbeat, Pulse
+from giveway.processes.heartbeat import HEARTBEAT_FILE, Heartbeat, Pulse
 
 
 @dataclass(frozen=True)
@@ -41,15 +43,16 @@ def read_journal(folder: Path) -> JournalContents:
     """
     meta_file, rows_file = folder / META_FILE, folder / ROWS_FILE
     try:
-        meta = json.loads(meta_file.read_text(encoding="utf-8")) if meta_file.exists() else {}
-    except ValueError:
-        meta = None
-    if not isinstance(meta, dict):
-        raise _broken(meta_file)
+        meta = read_json(meta_file)
+    except FileNotFoundError:
+        meta = {}
+    for file in (folder / HEARTBEAT_FILE, rows_file):
+        require_no_link(file)
     pulse = Heartbeat(folder).read()
     if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)
-    content = np.memmap(rows_file, np.uint8, mode="r").data
+    with opened(rows_file, largest=LARGEST_TABLE) as stream:
+        content = memoryview(mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ))
     # the process may have died while writing this
     begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")
     if not MAGIC.startswith(begun):

@@ -10,6 +10,8 @@ import subprocess
 from contextlib import suppress
 from pathlib import Path
 
+from giveway.gate import RefusedFileError, read_bytes
+
 _LAST_WORDS = 2.0  # Time [s] for a hanging process to write its traceback
 WINDOWS_CAUSES = {
     0xC0000005: "access violation",
@@ -52,8 +54,8 @@ def stood_still(seconds: float) -> str:
 def text_in(file: Path) -> str:
     """Return the text that a dead process left in ``file``, or "" without the file."""
     try:
-        return file.read_text(encoding="utf-8", errors="replace").strip()
-    except OSError:
+        return read_bytes(file).decode("utf-8", errors="replace").strip()
+    except (OSError, RefusedFileError):
         return ""
 
 

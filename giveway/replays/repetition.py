@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from giveway.gate import LARGEST_TABLE, read_bytes
 from giveway.replays.run_folder import PREDICTIONS
 
 PERIOD = 0.25  # Time [s] between two predicted positions
@@ -52,7 +53,8 @@ def _compared(folder: Path, again: Path, complaint: str) -> Predicted:
     if not file.is_file():
         why = (complaint.strip().splitlines() or ["it ended without a word"])[-1]
         return Predicted(None, f"No predictions: the run could not be made again ({why}).")
-    if not (again / "ego.csv").read_bytes().startswith((folder / "ego.csv").read_bytes()):
+    before = read_bytes(folder / "ego.csv", largest=LARGEST_TABLE)
+    if not (again / "ego.csv").read_bytes().startswith(before):
         return Predicted(
             None,
             "No predictions: made again, the run went differently (another version, or changed "

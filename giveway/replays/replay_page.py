@@ -16,6 +16,7 @@ from shapely import LineString
 from giveway.config.files.presets import parameters_of
 from giveway.config.tables.controllers import PaperPidOptions
 from giveway.errors import ResultsError
+from giveway.gate import write_whole
 from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
@@ -109,7 +110,7 @@ def content_of(folder: Path, predictions: Path | None = None, remark: str = "") 
 def _written(target: Path, page: str) -> Path:
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(page, encoding="utf-8")
+        write_whole(target, page.encode("utf-8"))
     except OSError as error:
         raise ResultsError(
             f"{target}: cannot be written ({error.strerror}); name another file with --out"

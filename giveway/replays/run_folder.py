@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ import pandas as pd
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
+from giveway.gate import LARGEST_TABLE, opened, read_json
 from giveway.geometry.kernel import Array
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
 from giveway.run_data.columns import (
@@ -143,7 +143,10 @@ def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
     """
     texts = {column.name: str for column in columns if column.type == "string"}
     try:
-        frame = pd.read_csv(file, dtype={"ego": str} | texts, na_values=[""], keep_default_na=False)
+        with opened(file, largest=LARGEST_TABLE) as stream:
+            frame = pd.read_csv(
+                stream, dtype={"ego": str} | texts, na_values=[""], keep_default_na=False
+            )
     except FileNotFoundError:
         return pd.DataFrame()
     except OSError as error:
@@ -183,9 +186,8 @@ def _require_numbers(file: Path, column: pd.Series, always: bool) -> None:
 
 def _json(file: Path) -> dict[str, Any]:
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        return read_json(file)
     except FileNotFoundError:
         return {}
-    except (OSError, ValueError) as error:
+    except OSError as error:
         raise ResultsError(f"{file}: cannot be read ({error}); make the run again") from error
-    return content if isinstance(content, dict) else {}

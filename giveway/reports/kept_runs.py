@@ -2,6 +2,7 @@
 
 import functools
 import hashlib
+import io
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -15,6 +16,14 @@ from zipfile import BadZipFile
 import numpy as np
 
 from giveway.errors import ResultsError
+from giveway.gate import (
+    LARGEST_TABLE,
+    fingerprint_of,
+    read_bytes,
+    read_json,
+    require_no_link,
+    write_whole,
+)
 from giveway.reports.examples import Drive
 from giveway.run_data.tracks import EgoTrack
 from giveway.studies.folder.study_folder import StudyFolder
@@ -39,10 +48,9 @@ class KeptRuns:
         self._folder = study.path / REPLAYS
         self._list: dict[str, Any] = {}
         try:
-            kept = json.loads((self._folder / _LIST).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            self._list = read_json(self._folder / _LIST, within=study.path)
+        except (FileNotFoundError, NotADirectoryError):
             return
-        self._list = kept if isinstance(kept, dict) else {}
 
     def has(self, run: str) -> bool:
         """Return whether page and drives of a run exist and were made from the study's record."""
@@ -62,7 +70,8 @@ class KeptRuns:
             LookupError: the drives are not kept.
         """
         try:
-            with np.load(self._drives(run), allow_pickle=False) as kept:
+            content = read_bytes(self._drives(run), within=self._study.path, largest=LARGEST_TABLE)
+            with np.load(io.BytesIO(content), allow_pickle=False) as kept:
                 about = json.loads(str(kept["egos"]))
                 return [
                     Drive(name, EgoTrack(**{c: kept[f"{i}_{c}"] for c in _COLUMNS}), safe, buffer)
@@ -84,7 +93,9 @@ class KeptRuns:
         }
         about = [(drive.ego, drive.safe_distance, drive.buffer_distance) for drive in drives]
         with self._told():
-            np.savez_compressed(self._drives(run), egos=np.array(json.dumps(about)), **columns)
+            content = io.BytesIO()
+            np.savez_compressed(content, egos=np.array(json.dumps(about)), **columns)
+            write_whole(self._drives(run), content.getvalue(), within=self._study.path)
             self._list[run] = self._line(run)
             self._write()
 
@@ -95,6 +106,7 @@ class KeptRuns:
             ResultsError: the folder cannot be written.
         """
         shown = set(runs)
+        require_no_link(self._folder / _LIST, self._study.path)
         with self._told():
             for path in self._folder.glob("*"):
                 if path.suffix in {".html", ".npz"} and path.stem not in shown:
@@ -120,13 +132,13 @@ class KeptRuns:
         return {
             "record": self._study.key_of(run),
             "drawn by": page_code(),
-            "page": hashlib.sha256(self.page(run).read_bytes()).hexdigest(),
-            "drives": hashlib.sha256(self._drives(run).read_bytes()).hexdigest(),
+            "page": fingerprint_of(self.page(run))["sha256"],
+            "drives": fingerprint_of(self._drives(run))["sha256"],
         }
 
     def _write(self) -> None:
         text = json.dumps(self._list, indent=1, sort_keys=True) + "\n"
-        (self._folder / _LIST).write_text(text, encoding="utf-8")
+        write_whole(self._folder / _LIST, text.encode("utf-8"), within=self._study.path)
 
 
 @functools.cache

@@ -16,6 +16,7 @@ from markupsafe import Markup
 from giveway.config.files.layers import options
 from giveway.errors import ResultsError
 from giveway.figures.style import house_style, save_figure
+from giveway.gate import require_no_link, write_whole
 from giveway.metrics.ego_fields import EGO_FIELDS
 from giveway.reports import findings_in_words as findings
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
@@ -113,6 +114,7 @@ def write_report(
     pairs, extremes = example_pairs(study, examples), worst_runs(study, worst)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
+        require_no_link(folder / "figure", study.path)
         _clear(folder)
         pictures = [_drawn(picture, folder) for picture in study_pictures(study)]
         drawn, missing = _examples(folder, pairs, drives, replays)
@@ -126,7 +128,7 @@ def write_report(
             .get_template("report.html.j2")
             .render(**content, pictures=by_section, examples=drawn, missing=missing)
         )
-        target.write_text(html, encoding="utf-8", newline="\n")
+        write_whole(target, html.encode("utf-8"))
     except OSError as error:
         raise ResultsError(
             f"{error.filename or target}: cannot be written ({error.strerror}); free the disk"

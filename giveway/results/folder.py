@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from giveway.errors import ResultsError
+from giveway.gate import read_bytes
 from giveway.processes.locks import FolderInUseError, locked
 from giveway.results.json_text import DECIMALS, json_text
 from giveway.results.names import FILES, SUMO_FOLDER
@@ -108,7 +109,7 @@ def is_marked_only(folder: Path) -> bool:
     """
     if not folder.is_dir() or [path.name for path in folder.iterdir()] != ["manifest.json"]:
         return False
-    return (folder / "manifest.json").read_bytes() == _RUNNING.encode("ascii")
+    return read_bytes(folder / "manifest.json") == _RUNNING.encode("ascii")
 
 
 @contextlib.contextmanager

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from giveway.gate import finite, read_json
 from giveway.run_data.road_marks import UNMARKED, RoadMarks
 from giveway.run_data.way import EgoWay
 
@@ -50,16 +51,20 @@ class Scene:
 
     @classmethod
     def read(cls, folder: Path) -> Scene:
-        """Read the scene in a results folder; it is empty if the folder has none."""
+        """Read the scene in a results folder; it is empty if the folder has none.
+
+        Raises:
+            RefusedFileError: the file is a link, too large, or not JSON.
+        """
         try:
-            kept = json.loads((folder / SCENE_FILE).read_text(encoding="utf-8"))
-            road = tuple(tuple((float(x), float(y)) for x, y in line) for line in kept["road"])
+            kept = read_json(folder / SCENE_FILE)
+            road = tuple(tuple((finite(x), finite(y)) for x, y in line) for line in kept["road"])
             bodies = {
-                str(name): (float(length), float(width))
+                str(name): (finite(length), finite(width))
                 for name, (length, width) in (kept["bodies"] or {}).items()
             }
             ways = tuple(map(EgoWay.from_dict, kept.get("ways", ())))
             marks = RoadMarks.from_dict(kept)
-        except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        except (OSError, ValueError, TypeError, KeyError, AttributeError, OverflowError):
             return cls()
         return cls(road, bodies, ways, marks)

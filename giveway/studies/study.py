@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from giveway.errors import GivewayError
+from giveway.gate import fingerprint
 from giveway.processes.interrupts import exit_code_of, who_ended
 from giveway.results.provenance import software_versions
 from giveway.studies.definition import StudyDefinition, dump_definition
@@ -20,7 +21,7 @@ from giveway.studies.folder.atomic_files import write_atomically
 from giveway.studies.folder.folder_contents import DEFINITION, MANIFEST, broken_files, read_manifest
 from giveway.studies.folder.frames import runs_frame
 from giveway.studies.folder.lock import remove_derived_files, remove_study, reserved
-from giveway.studies.folder.sealing import BrokenFileError, fingerprint, put_aside, sealed
+from giveway.studies.folder.sealing import BrokenFileError, put_aside, sealed
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.folder.table_files import write_tables

@@ -13,6 +13,7 @@ from giveway.exports.geojson import write_geojson
 from giveway.exports.people import write_jupedsim, write_pedpy
 from giveway.exports.sampling import Sampled, sampled
 from giveway.exports.trj import write_trj
+from giveway.gate import require_no_link
 from giveway.replays.run_folder import RunFolder
 
 
@@ -78,6 +79,7 @@ def _check(file: Path, suffix: str, *, force: bool) -> None:
     Raises:
         ResultsError: the name does not fit, or an existing file is not to be replaced.
     """
+    require_no_link(file)
     ending = suffix[suffix.rindex(".") :]
     if file.suffix != ending:
         msg = f"--out {file}: expected the name of a {ending} file"

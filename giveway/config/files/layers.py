@@ -1,7 +1,6 @@
 """Layers of settings (scenario, TOML file, flags), merged into one validated configuration."""
 
 import os
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,12 +11,13 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from giveway.config.files.schema_names import RUN, with_schema
-from giveway.config.files.toml import read_toml_file
+from giveway.config.files.toml import parse_toml, read_toml_file
 from giveway.config.option import Section, declared, expectation
 from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
 from giveway.config.tables.controllers import OWN_OPTIONS
 from giveway.errors import ConfigError, suggestion
+from giveway.gate import require_no_link
 from giveway.plug_ins.finding import same_name
 from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES
 
@@ -115,8 +115,10 @@ def read_toml(path: Path) -> Layer:
     Raises:
         ConfigError: the file is missing, unreadable or not TOML.
     """
-    values = read_toml_file(path, "a giveway configuration")
     results = results_of(path)
+    if results is not None:
+        require_no_link(path)
+    values = read_toml_file(path, "a giveway configuration")
     return Layer(str(path), anchored(values, path.parent.absolute()), results=results)
 
 
@@ -128,7 +130,7 @@ def results_of(path: Path) -> Path | None:
 
 def read_toml_text(text: str, origin: str) -> Layer:
     """Read the settings in a TOML text that giveway itself has written."""
-    return Layer(origin, tomllib.loads(text))
+    return Layer(origin, parse_toml(text, origin))
 
 
 def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:

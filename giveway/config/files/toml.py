@@ -2,11 +2,10 @@
 
 import tomllib
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from giveway.errors import ConfigError
-
-_DEEPEST: Final = 20  # Levels of tables and lists; files of giveway have less than half as many
+from giveway.gate import DEEPEST, is_deep
 
 
 def read_toml_file(file: Path, expected: str, called: str | None = None) -> dict[str, Any]:
@@ -52,27 +51,12 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
         ) from None
     except RecursionError:
         values = None
-    if values is None or _is_deep(values):
+    if values is None or is_deep(values):
         raise ConfigError(
-            f"{origin}: lists or tables in one another, more than {_DEEPEST} deep; expected a few "
+            f"{origin}: lists or tables in one another, more than {DEEPEST} deep; expected a few "
             "levels; look for a row of brackets"
         )
     return values
-
-
-def _is_deep(values: dict[str, Any]) -> bool:
-    """Return whether the nesting is too deep for recursive functions."""
-    level: list[Any] = [values]
-    for _ in range(_DEEPEST):
-        level = [child for node in level for child in _children(node)]
-        if not level:
-            return False
-    return True
-
-
-def _children(node: Any) -> list[Any]:
-    children = list(node.values()) if isinstance(node, dict) else node
-    return [child for child in children if isinstance(child, dict | list)]
 
 
 def toml_value(text: str) -> Any:

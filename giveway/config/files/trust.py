@@ -5,7 +5,6 @@ this package made the results. ``module:Class`` could name any installed code. I
 if the user has named it, too.
 """
 
-import json
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from giveway.config.files.foreign_code import Named, foreign_code
 from giveway.config.files.layers import Layer
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
+from giveway.gate import read_json
 from giveway.plug_ins.finding import find, is_fmu, is_reference, same_name, shown
 from giveway.plug_ins.sockets import Socket
 
@@ -73,7 +73,7 @@ def _require_same(code: Named, origin: str, folder: Path) -> None:
 def hashes_in(folder: Path, name: str, socket: Socket) -> set[str]:
     """Return the SHA-256 of a plug-in in the manifest of a results folder; empty if it has none."""
     try:
-        manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+        manifest = read_json(folder / "manifest.json")
         told = manifest.get(socket.manifest, {}).values()  # manifest of a run
         inputs = [cell["inputs"] for cell in manifest.get("cells", ())]  # manifest of a study
         return {str(one["sha256"]) for one in told if same_name(one["name"]) == same_name(name)} | {

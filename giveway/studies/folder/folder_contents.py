@@ -5,14 +5,13 @@ those of the tables.
 """
 
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from giveway.gate import RefusedFileError, fingerprint, fingerprint_of, read_bytes
 from giveway.studies.folder.sealing import (
     SEAL,
     BrokenFileError,
-    fingerprint,
     read_json,
     read_sealed,
 )
@@ -65,7 +64,11 @@ def require_definition(study: Path, manifest: dict[str, Any]) -> None:
     """
     file = study / DEFINITION
     known = manifest.get("definition")
-    if known is not None and known != fingerprint(file.read_bytes()):
+    try:
+        changed = known is not None and known != fingerprint(read_bytes(file))
+    except RefusedFileError as error:
+        raise BrokenFileError(file, f"it {error.reason}") from None
+    if changed:
         raise BrokenFileError(
             file, f"{MANIFEST} is about another, as after a kill in the beginning"
         )
@@ -110,5 +113,9 @@ def _tables(study: Path) -> Iterator[tuple[str, bool]]:
     except (KeyError, TypeError):
         raise BrokenFileError(file, "it is not a description of tables") from None
     for name, known in described.items():
-        with suppress(OSError):
-            yield name, fingerprint((study / name).read_bytes()) == known
+        try:
+            yield name, fingerprint_of(study / name) == known
+        except RefusedFileError:
+            yield name, False
+        except OSError:  # it is missing
+            continue

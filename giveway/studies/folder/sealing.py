@@ -5,16 +5,15 @@ code that wrote them. For a file that is not JSON, such as a table, a sealed fil
 checksum.
 """
 
-import hashlib
 import json
 from pathlib import Path
 from typing import Any
 
+from giveway import gate
 from giveway.errors import ResultsError
 
 SEAL = "seal"
 ASIDE = "broken"  # Name of the folder for files whose seal is broken
-_UNREADABLE = (ValueError, RecursionError)  # Errors of reading text or JSON
 
 
 class BrokenFileError(ResultsError):
@@ -35,11 +34,6 @@ class BrokenFileError(ResultsError):
             f"{file}: is not what giveway wrote ({reason}); giveway study with --resume puts it "
             "aside and makes it again"
         )
-
-
-def fingerprint(content: bytes) -> dict[str, Any]:
-    """Return length and checksum of a file's content."""
-    return {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
 
 
 def sealed(content: dict[str, Any], software: str) -> dict[str, Any]:
@@ -83,12 +77,9 @@ def read_json(file: Path) -> dict[str, Any]:
         OSError: it cannot be read.
     """
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except _UNREADABLE:
-        raise BrokenFileError(file, "it is not JSON") from None
-    if not isinstance(content, dict):
-        raise BrokenFileError(file, "it is not a JSON object")
-    return content
+        return gate.read_json(file)
+    except gate.RefusedFileError as error:
+        raise BrokenFileError(file, f"it {error.reason}") from None
 
 
 def put_aside(file: Path, study: Path) -> Path:
@@ -105,6 +96,7 @@ def put_aside(file: Path, study: Path) -> Path:
         ResultsError: the file cannot be moved.
     """
     there = study / ASIDE / file.relative_to(study)
+    gate.require_no_link(there, study)
     try:
         there.parent.mkdir(parents=True, exist_ok=True)
         return file.replace(there)
@@ -117,4 +109,4 @@ def put_aside(file: Path, study: Path) -> Path:
 
 def _seal(content: dict[str, Any], software: Any) -> dict[str, Any]:
     text = json.dumps(content, sort_keys=True)
-    return {**fingerprint(text.encode("ascii")), "software": software}
+    return {**gate.fingerprint(text.encode("ascii")), "software": software}

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from giveway.errors import ResultsError
+from giveway.gate import RefusedFileError, require_no_link
 from giveway.studies.folder.atomic_files import write_atomically
 from giveway.studies.folder.sealing import BrokenFileError, read_json, read_sealed, sealed
 from giveway.studies.record import RunRecord
@@ -41,10 +42,13 @@ class RecordStore:
         """
         path = self._path(key)
         try:
+            require_no_link(path, self._folder.parent)
             content = read_json(path) if self._software is None else self._sealed(path)
             record = RunRecord.from_values(content)
         except FileNotFoundError:
             return None
+        except RefusedFileError as error:
+            raise BrokenFileError(error.file, f"it {error.reason}") from None
         except IsADirectoryError:
             raise BrokenFileError(path, "it is a folder") from None
         except ValueError as error:
@@ -69,4 +73,5 @@ class RecordStore:
         assert self._software is not None  # no run is added to a study of an earlier giveway
         content = sealed(json.loads(record.to_json()), self._software)
         text = json.dumps(content, ensure_ascii=False, allow_nan=False) + "\n"
-        write_atomically(self._path(record.key), text, durable=True)
+        path = self._path(record.key)
+        write_atomically(path, text, within=self._folder.parent, durable=True)

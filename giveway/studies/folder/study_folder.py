@@ -12,6 +12,7 @@ from typing import Any
 import pandas as pd
 
 from giveway.errors import ResultsError
+from giveway.gate import LARGEST_TABLE, opened, read_text
 from giveway.run_data.columns import Column
 from giveway.studies.definition import StudyDefinition, parse_definition
 from giveway.studies.design import Cell, Design, design
@@ -73,7 +74,7 @@ class StudyFolder:
         self.path = path
         origin = str(path / DEFINITION)
         try:
-            text = (path / DEFINITION).read_text(encoding="utf-8")
+            text = read_text(path / DEFINITION)
             self.manifest = read_manifest(path)
             by_seals = self.manifest["identity"] if "definition" in self.manifest else None
             self._store = RecordStore(path, by_seals)
@@ -81,7 +82,7 @@ class StudyFolder:
             self._digests: dict[int, str] = {cell["cell"]: cell["digest"] for cell in cells}
             labels: dict[int, str] = {cell["cell"]: cell["label"] for cell in cells}
             self._seeds = int(self.manifest["seeds"])
-        except (OSError, UnicodeDecodeError, KeyError, TypeError):
+        except (OSError, KeyError, TypeError):
             raise ResultsError(
                 f"{path}: no study there ({DEFINITION} and {MANIFEST} that giveway wrote); "
                 "name the folder that giveway study printed"
@@ -252,9 +253,10 @@ class StudyFolder:
         columns = (*runs_columns(self.design), *COMPARISON_COLUMNS)
         texts = {column.name for column in columns if column.type == "string"}
         try:
-            frame = pd.read_csv(
-                path, dtype=dict.fromkeys(texts, str), keep_default_na=False, na_values=[""]
-            )
+            with opened(path, largest=LARGEST_TABLE) as stream:
+                frame = pd.read_csv(
+                    stream, dtype=dict.fromkeys(texts, str), keep_default_na=False, na_values=[""]
+                )
         except (OSError, ValueError):
             return None
         empty = dict.fromkeys(texts & set(frame.columns), "")  # there is no ego or no unit

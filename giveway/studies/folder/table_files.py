@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from giveway.gate import fingerprint
 from giveway.results.folder import package_of
 from giveway.run_data.columns import Column
 from giveway.studies.folder.atomic_files import write_atomically
@@ -17,7 +18,7 @@ from giveway.studies.folder.frames import (
     FAILURE_COLUMNS,
     as_written,
 )
-from giveway.studies.folder.sealing import fingerprint, sealed
+from giveway.studies.folder.sealing import sealed
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.identity import software_identity
 from giveway.studies.statistics.rounding import tabulated

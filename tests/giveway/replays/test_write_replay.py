@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from typing import TYPE_CHECKING, Any
 
@@ -145,8 +146,8 @@ def test_what_is_no_number_is_one_clear_line(
 
 @pytest.mark.parametrize(
     ("file", "content"),
-    [("summary.json", "[1]"), ("summary.json", '{"egos": 3}'), ("summary.json", '{"egos": [3]}')]
-    + [("manifest.json", '{"remarks": 3}'), ("manifest.json", "7")],
+    [("summary.json", '{"egos": 3}'), ("summary.json", '{"egos": [3]}')]
+    + [("manifest.json", '{"remarks": 3}')],
 )
 def test_what_a_replay_can_do_without_may_be_anything(
     folder: Path, tmp_path: Path, file: str, content: str
@@ -156,6 +157,46 @@ def test_what_a_replay_can_do_without_may_be_anything(
     (strange / file).write_text(content)
     write_replay(strange, tmp_path / "page.html")
     assert (tmp_path / "page.html").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "road", ["[" * 3000 + "]" * 3000, f"[[[0.0, {'1' * 400}]]]"], ids=["deep", "400 digits"]
+)
+def test_a_scene_that_is_a_bomb_is_one_line(
+    folder: Path, tmp_path: Path, refused: Any, road: str
+) -> None:
+    (folder / "scene.json").write_text(f'{{"road": {road}, "bodies": {{}}}}')
+    with refused(ResultsError, folder / "scene.json", "is not JSON"):
+        write_replay(folder, tmp_path / "page.html")
+
+
+def test_a_scene_with_infinite_numbers_is_left_out(folder: Path, tmp_path: Path) -> None:
+    (folder / "scene.json").write_text('{"road": [[[0.0, 1e999]]], "bodies": {"ego": [1e999, 2]}}')
+    assert content(write_replay(folder, tmp_path / "page.html"))["road"]["x"] == ""
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+@pytest.mark.parametrize("name", ["config.toml", "manifest.json", "ego.csv", "scene.json"])
+def test_a_pipe_or_a_link_in_place_of_a_file_is_one_line(
+    folder: Path, tmp_path: Path, refused: Any, name: str
+) -> None:
+    file = folder / name
+    file.rename(tmp_path / name)
+    file.symlink_to(tmp_path / name)
+    with refused(ResultsError, file, "is a link"):
+        write_replay(folder, tmp_path / "page.html")
+    file.unlink()
+    os.mkfifo(file)
+    with refused(ResultsError, folder, "expected"):  # a table that is none, or a pipe
+        write_replay(folder, tmp_path / "page.html")
+
+
+def test_the_page_is_not_written_through_a_link(folder: Path, tmp_path: Path, refused: Any) -> None:
+    (tmp_path / "precious").write_text("mine")
+    (folder / "replay.html").symlink_to(tmp_path / "precious")
+    with refused(ResultsError, folder / "replay.html", "is a link"):
+        write_replay(folder, folder / "replay.html")
+    assert (tmp_path / "precious").read_text() == "mine"
 
 
 def test_a_page_that_cannot_be_written_is_one_clear_line(folder: Path, refused: Any) -> None:

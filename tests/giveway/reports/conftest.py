@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from giveway.gate import fingerprint
 from giveway.reports.examples import drives_of
 from giveway.studies.definition import parse_definition
 from giveway.studies.design import design
-from giveway.studies.folder.sealing import SEAL, fingerprint, sealed
+from giveway.studies.folder.sealing import SEAL, sealed
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.folder.table_files import write_tables
