@@ -15,11 +15,14 @@ import argparse
 import csv
 import hashlib
 import json
+import os
 import subprocess
 import sys
 import tempfile
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 SEVERAL_EGOS = [
@@ -74,14 +77,14 @@ RUNS: dict[str, dict[str, Any]] = {
 }
 
 
-def fingerprint(name: str) -> dict[str, str]:
-    """The sha256 of each column that one of :data:`RUNS` leaves, by its file's name and its own."""
+def fingerprint(run: dict[str, Any]) -> dict[str, str]:
+    """The sha256 of each column that a run leaves, by its file's name and its own."""
     import fmus
     import giveway
 
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        settings = json.loads(json.dumps({"record": {"predictions": 0.5}, **RUNS[name]}))
+        settings = {"record": {"predictions": 0.5}, **run}
         if settings.get("vehicle", {}).get("fmu") == "FOREIGN":
             settings["vehicle"]["fmu"] = str(_foreign(fmus.bundled_fmu("2.0"), folder))
         giveway.run(settings, results=folder / "run", pictures=False)
@@ -109,10 +112,16 @@ def _foreign(bundled: Path, folder: Path) -> Path:
     return path
 
 
-def in_a_process(name: str) -> dict[str, str]:
+def in_a_process(
+    name: str, environment: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, str]:
     """Return :func:`fingerprint` of a run in a process of its own; "failed" if it ended badly."""
     done = subprocess.run(
-        [sys.executable, __file__, "--one", name], capture_output=True, text=True, check=False
+        [sys.executable, __file__, "--one", json.dumps(RUNS[name])],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | environment,
     )
     if done.returncode:
         return {"failed": done.stderr.strip().splitlines()[-1]}
@@ -129,10 +138,10 @@ def main() -> None:
     parser.add_argument("--write", type=Path, help="keep the sha256 in this file")
     parser.add_argument("--compare", type=Path, help="a file that --write made")
     parser.add_argument("--only", action="append", choices=RUNS, help="some of the runs")
-    parser.add_argument("--one", choices=RUNS, help=argparse.SUPPRESS)
+    parser.add_argument("--one", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.one:
-        print(json.dumps(fingerprint(options.one)))
+        print(json.dumps(fingerprint(json.loads(options.one))))
         return
     before = json.loads(options.compare.read_text()) if options.compare else {}
     found, differ = {}, 0

@@ -46,6 +46,21 @@ def nodes_of(horizon: int, growth: float = _GROWTH) -> Indices:
     return np.array(nodes, dtype=np.int64)
 
 
+def inverse_factor(H: Array) -> Array:
+    """Return L^-1 of the Cholesky factor L of ``H`` (n, n), so that H = L L'.
+
+    Every sum has a fixed order. BLAS and LAPACK choose theirs by the processor, and the last digits
+    of a whole drive with it.
+    """
+    left, inverse = H.copy(), np.eye(len(H))
+    for k in range(len(H)):
+        column = left[k:, k] / np.sqrt(left[k, k])
+        left[k:, k:] -= np.multiply.outer(column, column)
+        inverse[k] /= column[0]
+        inverse[k + 1 :] -= np.multiply.outer(column[1:], inverse[k])
+    return inverse
+
+
 class Limits(NamedTuple):
     """The limits of the vehicle and its actuator."""
 
@@ -96,34 +111,29 @@ class SmoothingProblem:
         self.intervals = h
         accelerations = (np.eye(n) - np.eye(n, k=-1)) / h[:, None]  # without the term of v_0
         between = np.concatenate([[dt], (h[1:] + h[:-1]) / 2.0])
-        jerks = (accelerations - np.eye(n, k=-1) @ accelerations) / between[:, None]
+        jerks = np.diff(accelerations, axis=0, prepend=0.0) / between[:, None]
         H = np.diag(h)
-        H += p.effort_weight * accelerations.T @ np.diag(h) @ accelerations
-        H += p.jerk_weight * jerks.T @ np.diag(between) @ jerks
-        L = np.linalg.cholesky(H)
-        self.speeds_of = np.ascontiguousarray(np.linalg.inv(L.T))  # v = L'^-1 z
+        H += np.einsum("ki,k,kj", accelerations, p.effort_weight * h, accelerations)
+        H += np.einsum("ki,k,kj", jerks, p.jerk_weight * between, jerks)
+        to_z = inverse_factor(H)
+        self.speeds_of = np.ascontiguousarray(to_z.T)  # v = L'^-1 z
         distances = np.zeros((n, n))  # distances driven from node 1 on, by the trapezoidal rule
         for i in range(1, n):
             distances[i, :i] += h[1 : i + 1] / 2.0
             distances[i, 1 : i + 1] += h[1 : i + 1] / 2.0
         rows = np.concatenate([np.eye(n), accelerations[1:], distances[1:]])
-        self.rows = np.ascontiguousarray(rows @ self.speeds_of)
+        self.rows = np.einsum("ik,kj", rows, self.speeds_of)
         self.target = np.zeros(n)
         self.lower = np.empty(len(rows))
         self.upper = np.empty(len(rows))
         # The gradient at v = 0 in three parts: speeds aimed at, v_0 and the acceleration before.
-        to_z = np.ascontiguousarray(np.linalg.inv(L))
         of_speed = p.effort_weight * accelerations[0]
         of_speed = of_speed + p.jerk_weight * (jerks[0] - jerks[1]) / dt
         self.gradients = (
-            np.ascontiguousarray(to_z @ np.diag(h)),
-            to_z @ of_speed,
-            to_z @ (p.jerk_weight * jerks[0]),
+            to_z * h,
+            np.einsum("ij,j", to_z, of_speed),
+            np.einsum("ij,j", to_z, p.jerk_weight * jerks[0]),
         )
-
-    def speeds(self, z: Array) -> Array:
-        """Return the speeds (n,) [m/s] at the nodes."""
-        return np.asarray(self.speeds_of @ z)
 
     def aim_at(self, speeds: Array, speed: float, acceleration: float) -> None:
         """Set the target.

@@ -41,15 +41,13 @@ class OsqpBackend:
     def __init__(self, problem: LeastSquares, iteration_limit: int) -> None:
         self._problem = problem
         count, N = problem.rows.shape
-        increments = problem.increments
-        self._sums = sums = np.tril(np.ones((N, N))) if increments else np.eye(N)  # x = sums dx
         self._aimed_at = problem.target.copy()
         solver = osqp.OSQP(algebra="builtin")
         try:
             solver.setup(
-                sparse.csc_matrix(np.triu(2.0 * sums.T @ sums)),  # P
+                sparse.csc_matrix(np.triu(2.0 * self._posed(self._posed(np.eye(N)).T))),  # P
                 self._gradient(problem.target),  # q
-                sparse.csc_matrix(problem.rows @ sums),
+                sparse.csc_matrix(self._posed(problem.rows)),
                 np.full(count, -_INFINITY),
                 np.full(count, _INFINITY),
                 verbose=False,
@@ -72,7 +70,16 @@ class OsqpBackend:
 
     def _gradient(self, target: Array) -> Array:
         """The linear cost of |x - target|^2 in the solver's unknowns."""
-        return np.asarray(-2.0 * self._sums.T @ target)
+        return -2.0 * self._posed(target)
+
+    def _posed(self, rows: Array) -> Array:
+        """Return rows (..., N) for unknowns x as rows for the solver's unknowns.
+
+        x is the running sum of the increments, so that these are sums from the last column on.
+        """
+        if not self._problem.increments:
+            return rows
+        return np.cumsum(rows[..., ::-1], axis=-1)[..., ::-1]
 
     def solve(self, solution: Array, multipliers: Array) -> tuple[Outcome, int]:
         """Solve within the problem's present bounds.

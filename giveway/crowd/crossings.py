@@ -101,7 +101,7 @@ def turning_in(
         at = crowd.waypoint_start[rows] + crowd.waypoint_index[rows] + step
         there, onwards = (crowd.waypoints[np.minimum(k, last)] for k in (at, at + 1))
         way = onwards - there
-        onward = (way @ along) / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
+        onward = np.einsum("ij,j", way, along) / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
         u, _ = place_on(there, kerb, along)
         near = np.hypot(*(there - position).T) <= reach
         forth = near & (np.abs(u) <= _WAITING) & (onward >= _ONWARD)

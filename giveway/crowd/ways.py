@@ -28,7 +28,7 @@ class Gate(NamedTuple):
         """Return the point (2,) [m] at which a person from ``place`` (2,) passes the gate."""
         along = np.array([-self.across[1], self.across[0]])
         room = max(self.half_width - _BODY, 0.0)
-        beside = float(np.clip((place - self.middle) @ along, -room, room))
+        beside = float(np.clip(((place - self.middle) * along).sum(), -room, room))
         return np.asarray(self.middle + beside * along)
 
 
@@ -96,7 +96,7 @@ def gates_of(flow: FlowConfig) -> tuple[Gate, ...]:
             length = math.hypot(*(last - first))
             d_x, d_y = (last - first) / length
             across, half = np.array([d_y, -d_x]), length / 2.0
-            across = across if across @ (middle - before) >= 0.0 else -across
+            across = across if (across * (middle - before)).sum() >= 0.0 else -across
         gates.append(Gate(middle, across, half))
         before = middle
     return tuple(gates)

@@ -24,7 +24,8 @@ class VehicleShape:
         """
         c, s, half = cos(heading), sin(heading), self.width / 2.0
         local = np.array([(0.0, half), (-self.length, half), (-self.length, -half), (0.0, -half)])
-        return np.asarray(local @ np.array([[c, s], [-s, c]]) + front, dtype=np.float64)
+        turned = np.einsum("ij,jk", local, np.array([[c, s], [-s, c]]))
+        return np.asarray(turned + front, dtype=np.float64)
 
 
 BODY = VehicleShape()

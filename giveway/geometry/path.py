@@ -60,7 +60,7 @@ class EgoPath:
                 f"ego path: {len(vertices)} distinct points; expected at least two finite ones"
             )
         steps = np.diff(vertices, axis=0)
-        return cls(vertices, stations_of(vertices), np.arctan2(steps[:, 1], steps[:, 0]))
+        return cls(vertices, stations_of(vertices), directions(steps))
 
     @property
     def length(self) -> float:
@@ -200,6 +200,14 @@ def project_all(vertices: Array, stations: Array, points: Array, frenet: Array) 
     """Fill ``frenet`` (2, n) with stations and signed lateral offsets [m] of ``points`` (n, 2)."""
     for i in range(len(points)):
         frenet[0, i], frenet[1, i] = project(vertices, stations, points[i, 0], points[i, 1])
+
+
+def directions(vectors: Array) -> Array:
+    """Return the headings (n,) [rad] of ``vectors`` (n, 2), the same on every processor.
+
+    They come from the C library: numpy's arctan2 has other last digits where AVX-512 is missing.
+    """
+    return np.fromiter(map(math.atan2, vectors[:, 1], vectors[:, 0]), float, len(vectors))
 
 
 def heading_to_angle(heading: float) -> float:

@@ -53,4 +53,4 @@ class Slope:
         """Return the largest angle [rad] between two of its points a metre or more apart."""
         along, up = np.diff(self.stations), np.diff(self.heights)
         long = along >= 1.0
-        return float(np.arctan2(np.abs(up[long]), along[long]).max(initial=0.0))
+        return math.atan(float((np.abs(up[long]) / along[long]).max(initial=0.0)))

@@ -292,7 +292,8 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         x, y, heading = seen.path.poses(np.zeros(1))[0]
         c, s = cos(heading), sin(heading)
         turn = np.array([[c, -s], [s, c]])
-        place, velocity = (seen.people.position - [x, y]) @ turn, seen.people.velocity @ turn
+        place = np.einsum("ij,jk", seen.people.position - [x, y], turn)
+        velocity = np.einsum("ij,jk", seen.people.velocity, turn)
         near = (place[:, 0] > _REAR) & (place[:, 0] < FAR) & (np.abs(place[:, 1]) < LATERAL)
         around: Array = np.column_stack([place, velocity])[near]
         return around

@@ -204,7 +204,7 @@ def _by_frame(found: "pd.DataFrame", looked_at: NDArray[np.int64]) -> "pd.Series
 def _size(measure: MeasureConfig) -> float:
     """Return the size [m^2] of an area, by the shoelace formula."""
     x, y = np.array(measure.area).T
-    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0)
+    return float(abs((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()) / 2.0)
 
 
 def _head(

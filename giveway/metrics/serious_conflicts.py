@@ -5,6 +5,7 @@ accident, which is the time to collision then, and the conflicting speed, which 
 evades. A conflict is serious if the time to accident is shorter than the border for this speed.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +39,9 @@ class SeriousConflicts(NamedTuple):
 
 def border(speed: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the time to accident [s] below which a conflict at a speed [m/s] is serious."""
-    return np.asarray(_MARGIN * speed / (_TWICE_BRAKING * np.exp(-_FADING * speed / 2.0)))
+    # The C library's exp: numpy's has other last digits on processors without AVX-512.
+    fading = np.fromiter(map(math.exp, -_FADING * speed / 2.0), float, len(speed))
+    return np.asarray(_MARGIN * speed / (_TWICE_BRAKING * fading))
 
 
 def serious(found: SeriousConflicts) -> NDArray[np.bool_]:
@@ -71,7 +74,8 @@ def serious_conflicts(
     by_ego = contact | (near.deceleration > 0.0)
     speed = np.where(by_ego, ego.speed[crowd.step], np.hypot(crowd.vx, crowd.vy))
     ratio = np.full(ttc.size, np.inf)
-    np.divide(ttc, border(speed), out=ratio, where=counts & (speed > 0.0))
+    counts &= speed > 0.0
+    ratio[counts] = ttc[counts] / border(speed[counts])
     worst = groups.first_minimum(ratio)
     some = np.isfinite(groups.at(ratio, worst))
     return SeriousConflicts(

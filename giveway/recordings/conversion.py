@@ -8,6 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
+from giveway.geometry.path import directions
 from giveway.recordings.dataset import Dataset
 from giveway.recordings.recording import GAP, RESTART, Defect, Tracks
 
@@ -129,7 +130,7 @@ def _differences(track: NDArray[np.int64], time: Array, position: Array) -> Arra
 
 def _directions(track: NDArray[np.int64], velocity: Array) -> Array:
     """Return the direction (R,) [rad] of the velocity; who stands keeps the last one."""
-    heading = np.arctan2(velocity[:, 1], velocity[:, 0])
+    heading = directions(velocity)
     moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _TURNING
     series = pd.Series(np.where(moving, heading, np.nan)).groupby(track)
     held = series.ffill().groupby(track).bfill().to_numpy(dtype=np.float64)

@@ -42,6 +42,6 @@ class ClipBootstrap:
         if np.count_nonzero(count) < 2:
             return np.nan, np.nan
         with np.errstate(divide="ignore", invalid="ignore"):
-            means = (self.weights @ total) / (self.weights @ count)
+            means = np.einsum("rc,c", self.weights, total) / np.einsum("rc,c", self.weights, count)
         low, high = np.nanquantile(means, TAILS)
         return float(low), float(high)

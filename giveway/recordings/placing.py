@@ -60,7 +60,7 @@ def placed(entry: RecordedConfig, points: Array) -> Array:
 def turned(entry: RecordedConfig, vectors: Array) -> Array:
     """Return vectors (n, 2) of a recording along the axes of the network."""
     c, s = np.cos(np.radians(entry.heading)), np.sin(np.radians(entry.heading))
-    return np.asarray(vectors @ np.array([[c, s], [-s, c]]))
+    return np.asarray(np.einsum("ij,jk", vectors, np.array([[c, s], [-s, c]])))
 
 
 def require_inside(

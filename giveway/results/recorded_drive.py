@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from giveway.config.tables.recorded import RecordedConfig
 from giveway.errors import ConfigError, suggestion
 from giveway.geometry.bodies import BODY
+from giveway.geometry.path import directions
 from giveway.metrics.conflicts import CRITICAL_TTC
 from giveway.metrics.contacts import FRONTAL, SIDE
 from giveway.metrics.contacts import RECORDED as UNAWARE
@@ -200,7 +201,7 @@ def _tracks(
         frame=frame,
         position=state[:, :2].copy(),
         velocity=velocity,
-        heading=np.arctan2(velocity[:, 1], velocity[:, 0]),
+        heading=directions(velocity),
         speed=np.hypot(velocity[:, 0], velocity[:, 1]),
         body=body,
     )

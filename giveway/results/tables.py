@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.geometry.kernel import Array
-from giveway.geometry.path import headings_to_angles
+from giveway.geometry.path import directions, headings_to_angles
 from giveway.run_data.columns import (
     PREDICTION_COLUMNS,
     TIMING_COLUMNS,
@@ -114,7 +114,7 @@ def _walking(time: Array, crowd: CrowdTrack) -> "pd.DataFrame":
     import pandas as pd
 
     speed = np.hypot(crowd.vx, crowd.vy)
-    angle = headings_to_angles(np.arctan2(crowd.vy, crowd.vx))
+    angle = headings_to_angles(directions(np.column_stack([crowd.vx, crowd.vy])))
     angle = np.where(speed < _STANDING, np.nan, angle)
     angles = pd.Series(angle).groupby(crowd.pedestrian).ffill().fillna(0.0)
     ids = np.array(crowd.ids, dtype=object)[crowd.pedestrian]

@@ -32,7 +32,7 @@ def part_beside(ends: Array, width: float, lanes: Iterable[Array]) -> tuple[Arra
     left = np.array([-along[1], along[0]])
     taken = []
     for lane in lanes:
-        u, w = (lane - ends[0]) @ along, (lane - ends[0]) @ left
+        u, w = (np.einsum("ij,j", lane - ends[0], axis) for axis in (along, left))
         if u[0] > u[-1]:
             u, w = u[::-1], w[::-1]
         if u[0] > 0.0 or u[-1] < length or (np.diff(u) <= 0.0).any():

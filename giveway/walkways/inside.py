@@ -87,7 +87,7 @@ class Interior:
         piece = self._piece_near(middle, across)
         if piece.is_empty:
             return row, 0.0
-        ends = (np.asarray(piece.coords)[:, :2] - middle) @ left
+        ends = np.einsum("ij,j", np.asarray(piece.coords)[:, :2] - middle, left)
         low, high = ends.min() + BODY_RADIUS, ends.max() - BODY_RADIUS
         fitted = row.copy()
         fitted[0, :2] += (low + high) / 2 * left

@@ -301,4 +301,5 @@ def _outline(ego: Ego) -> Array:
     ends = [np.column_stack([np.full(len(across), end), across]) for end in along[[0, -1]]]
     points = np.concatenate([*sides, *ends])
     cos, sin = math.cos(heading), math.sin(heading)
-    return np.ascontiguousarray(points @ np.array([[cos, sin], [-sin, cos]]) + (x, y))
+    turned = np.einsum("ij,jk", points, np.array([[cos, sin], [-sin, cos]]))
+    return np.ascontiguousarray(turned + (x, y))

@@ -134,7 +134,8 @@ def _group(
     heading = pose.heading + side * np.pi / 2.0 + np.radians(skew)
     ahead = np.array([np.cos(heading), np.sin(heading)])
     beside = np.array([-ahead[1], ahead[0]])
-    place = np.array([pose.x, pose.y]) + formation(size) @ np.vstack([beside, ahead])
+    formed = np.einsum("ij,jk", formation(size), np.vstack([beside, ahead]))
+    place = np.array([pose.x, pose.y]) + formed
     place += random.uniform(-_JITTER, _JITTER, (size, 2))
     return place - speed * arrival * ahead, place + _BEYOND * ahead
 

@@ -17,7 +17,7 @@ _ABREAST = 3  # largest number of people in one row; larger groups walk in two
 _BESIDE, _BEHIND = 0.75, 1.0  # distance [m] of neighbours in a row, and of rows
 _SIZES = np.arange(2, LARGEST + 1)
 _WEIGHTS = np.array([RATE**size / math.factorial(size) for size in _SIZES.tolist()])
-_MEAN = float(_SIZES @ _WEIGHTS / _WEIGHTS.sum())  # mean size of groups of at least two
+_MEAN = float((_SIZES * _WEIGHTS).sum() / _WEIGHTS.sum())  # mean size of groups of at least two
 
 
 def parties_per_person(share: float) -> float:
@@ -70,7 +70,8 @@ def facing(size: int, way: Array) -> Array:
     """Return offsets (size, 2) [m] of a formation that walks along ``way`` (2,)."""
     length = math.hypot(*way)
     ahead = np.asarray(way) / length if length > 0.0 else np.array([1.0, 0.0])
-    return np.asarray(formation(size) @ np.array([[-ahead[1], ahead[0]], ahead]))
+    axes = np.array([[-ahead[1], ahead[0]], ahead])
+    return np.asarray(np.einsum("ij,jk", formation(size), axes))
 
 
 def of_parties(sizes: list[int], names: tuple[str, ...]) -> tuple[str, ...]:

@@ -144,4 +144,4 @@ def _mirror(points: Array, axis: Pose) -> Array:
     """Return the mirror images of ``points`` (n, 2) [m] about the line through ``axis``."""
     origin = np.array([axis.x, axis.y])
     normal = np.array([-np.sin(axis.heading), np.cos(axis.heading)])
-    return points - 2.0 * np.outer((points - origin) @ normal, normal)
+    return points - 2.0 * np.outer(np.einsum("ij,j", points - origin, normal), normal)

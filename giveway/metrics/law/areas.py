@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
-from giveway.geometry.path import fine_near, points_at
+from giveway.geometry.path import directions, fine_near, points_at
 from giveway.metrics.law.drive import Drive
 from giveway.metrics.standing import runs
 from giveway.run_data.way import CrossingOnWay
@@ -94,7 +94,7 @@ def _visits(line: _Line, shape: VehicleShape, crossing: CrossingOnWay) -> list[A
 def _outline(line: _Line, shape: VehicleShape, stations: Array) -> tuple[Array, Array]:
     """Return points of the body's outline x, y (n, p) [m] for each station (n,) of its front."""
     front, rear = line.at(stations), line.at(stations - shape.length)
-    heading = np.arctan2(front[:, 1] - rear[:, 1], front[:, 0] - rear[:, 0])[:, None]
+    heading = directions(front - rear)[:, None]
     back = np.linspace(0.0, shape.length, 1 + int(np.ceil(shape.length / _GRAIN)))
     side = np.linspace(-0.5, 0.5, 1 + int(np.ceil(shape.width / _GRAIN))) * shape.width
     # the two sides from front to rear, and the front

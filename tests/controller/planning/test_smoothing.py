@@ -43,7 +43,7 @@ def test_the_distance_to_the_target_is_the_cost(plain_problem, seed):
     wanted = g.uniform(0.0, 4.0, n)
     plain = plain_problem(3.0, 500.0, -1.3, wanted, 4.0, FREE[:20], MODEL, parameters)
     problem = bounded(plain)
-    L = np.linalg.inv(np.column_stack([problem.speeds(e) for e in np.eye(n)]))
+    L = np.linalg.inv(np.column_stack([problem.speeds_of[:, i] for i in range(n)]))
     u, v = g.uniform(0.0, 5.0, (2, n))
     ours = [np.sum((L @ x - problem.target) ** 2) for x in (u, v)]
     assert ours[1] - ours[0] == pytest.approx(plain.cost(v) - plain.cost(u), rel=1e-9)
@@ -54,7 +54,7 @@ def test_rows_and_bounds_are_the_written_ones(plain_problem, seed):
     plain = drawn(plain_problem, seed)
     problem = bounded(plain)
     z = np.random.default_rng(seed).uniform(0.0, 5.0, len(problem.nodes))
-    v = problem.speeds(z)
+    v = problem.speeds_of @ z
     G, lower, upper = plain.rows()
     D, room = plain.distances()
     assert problem.rows @ z == pytest.approx(np.concatenate([G @ v, D @ v]), abs=1e-12)
