@@ -38,6 +38,7 @@ USED_FOR = {
     "scipy": "statistics of studies; fitting; sparse matrices of OSQP",
     "shapely": "where people can walk",
     "tomlkit": "writes TOML with its comments",
+    "threadpoolctl": "names the kernel of BLAS",
     "typer": "the command line",
 }
 MODULES = {"pillow": "PIL.Image"}  # that are called otherwise than their package

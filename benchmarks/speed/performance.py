@@ -18,6 +18,8 @@ from datetime import date
 from importlib.metadata import version
 from pathlib import Path
 
+from giveway.results.provenance import processor
+
 HERE = Path(__file__).resolve().parent
 KEPT = HERE / "kept_ratios.json"
 TOLERANCE = 1.6  # times the kept ratio, either way: another machine, and a busy one
@@ -46,11 +48,7 @@ def printed(command: str) -> str:
 
 def machine() -> str:
     """One sentence about where and with what the numbers were made."""
-    name = platform.processor() or platform.machine()
-    if Path("/proc/cpuinfo").exists():
-        text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
-        found = re.search(r"^model name\s*:\s*(.+)$", text, re.MULTILINE)
-        name = found[1] if found else name
+    name = processor()["name"]
     versions = ", ".join(f"{package} {version(package)}" for package in PACKAGES)
     load = f", load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else ""
     return (

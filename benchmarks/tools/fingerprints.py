@@ -25,6 +25,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+AS_IT_IS: Mapping[str, str] = MappingProxyType({})
 SEVERAL_EGOS = [
     {"ego": {"take_over": ["westbound.0"]}, "controller": "pid-tuned"},
     {"ego": {"take_over": ["eastbound.0"]}, "controller": "mpc-paper"},

@@ -4,11 +4,14 @@ import functools
 import hashlib
 import os
 import platform
+import re
 from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
+
+import numpy as np
 
 from giveway._version import __version__
 from giveway.config import RunConfig
@@ -36,6 +39,31 @@ def software_versions() -> Mapping[str, str]:
             versions[name] = "unknown"
     versions |= {"platform": platform.platform(), "machine": platform.machine()}
     return MappingProxyType(versions)
+
+
+@functools.cache
+def processor() -> Mapping[str, Any]:
+    """Return the processor's name, the vector units that numpy uses, and the kernel of BLAS.
+
+    No table depends on them (docs/results.md), which this makes verifiable.
+    """
+    from threadpoolctl import threadpool_info
+
+    kernels = {pool["architecture"] for pool in threadpool_info() if "architecture" in pool}
+    units: Mapping[str, Any] = np.show_config(mode="dicts")["SIMD Extensions"]
+    return MappingProxyType(
+        {"name": _processor_name(), "numpy": units.get("found", []), "blas": sorted(kernels)}
+    )
+
+
+def _processor_name() -> str:
+    """The name that the system gives: Linux writes it into a file, others tell Python."""
+    try:
+        told = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return platform.processor()
+    named = re.search(r"^model name\s*:\s*(.+)$", told, re.MULTILINE)
+    return named[1] if named else platform.machine()
 
 
 def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
@@ -131,4 +159,5 @@ def manifest(
         "traffic": dict(facts.traffic),
         CONFIGURATION: None if config_text is None else sha256(config_text.encode()),
         "software": dict(software_versions()),
+        "processor": dict(processor()),
     }

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from giveway.ego.perception.corridor import Corridor
 from giveway.errors import ScenarioError
-from giveway.geometry.path import EgoPath, fine_near
+from giveway.geometry.path import EgoPath, directions, fine_near
 
 L_SHAPE = [(0, 0), (10, 0), (10, 20)]  # 10 m east, then 20 m north
 
@@ -225,3 +225,8 @@ def test_angles_convert_between_the_conventions() -> None:
     assert heading_to_angle(math.pi) == pytest.approx(270.0)
     for angle in (0.0, 45.0, 133.0, 359.0):
         assert heading_to_angle(angle_to_heading(angle)) == pytest.approx(angle)
+
+
+def test_headings_are_those_of_the_c_library():
+    vectors = np.random.default_rng(1).uniform(-9.0, 9.0, (1000, 2))
+    assert directions(vectors).tolist() == [math.atan2(y, x) for x, y in vectors.tolist()]

@@ -43,8 +43,8 @@ def stands(x, count, y=0.0):
     [(0.0, 0.0), (4.0, 0.381956), (8.0, 0.812124), (50 / 3.6, 1.542872)],
 )
 def test_the_border_grows_with_the_speed(speed, expected):
-    assert border(np.array(speed)) == pytest.approx(expected, abs=1e-6)
-    assert border(np.array(speed)) == pytest.approx(1.5 * speed / 16.7 * exp(0.0153 * speed))
+    assert border(np.array([speed])) == pytest.approx(expected, abs=1e-6)
+    assert border(np.array([speed])) == pytest.approx(1.5 * speed / 16.7 * exp(0.0153 * speed))
 
 
 @pytest.mark.parametrize(

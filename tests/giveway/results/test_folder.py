@@ -72,6 +72,8 @@ def test_the_manifest_names_what_the_run_was_made_of(folder: Path) -> None:
     assert len(manifest["vehicles"]["ego"]["sha256"]) == 64
     assert {"shared_space.net.xml", "shared_space.sumocfg"} <= set(manifest["scenario"]["sha256"])
     assert {"giveway", "libsumo", "fmpy", "osqp", "numpy"} <= set(manifest["software"])
+    assert manifest["processor"]["name"]
+    assert manifest["processor"]["blas"]
 
 
 def test_the_same_seed_gives_the_same_bytes_in_one_process(folder: Path, tmp_path: Path) -> None:
