@@ -6,10 +6,12 @@ Two runs with the same key have the same rows, byte for byte. Therefore a study 
 import functools
 import hashlib
 import json
-import platform
 import socket
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+from fmus.text import printable
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
 from giveway.config.files.foreign_code import code_hashes
@@ -42,7 +44,7 @@ _NAMING_FILES = (
 )
 # Files that make the rows, in packages that are otherwise left out
 _ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})
-_IRRELEVANT_VERSIONS = frozenset({"platform", "machine", "pandas", "python"})
+_IRRELEVANT_VERSIONS = frozenset({"platform", "pandas"})
 
 
 @functools.cache
@@ -56,10 +58,35 @@ def software_identity() -> str:
             excluded = room == "giveway" and place.parts[0] in _NOT_NUMBERS
             if not excluded or place.as_posix() in _ROWS:
                 digest.update(str(place.as_posix()).encode() + path.read_bytes())
-    versions = {k: v for k, v in software_versions().items() if k not in _IRRELEVANT_VERSIONS}
-    versions["python"] = ".".join(platform.python_version_tuple()[:2])
-    digest.update(json.dumps(versions, sort_keys=True).encode())
+    digest.update(json.dumps(relevant_versions(), sort_keys=True).encode())
     return digest.hexdigest()[:16]
+
+
+def relevant_versions(versions: Mapping[str, Any] | None = None) -> dict[str, str]:
+    """Return the versions and the kind of machine on which the bytes of a row depend.
+
+    The processor is not among them: docs/results.md promises the same bytes on each.
+
+    Args:
+        versions: Versions as a manifest has them, or None for those of this process.
+    """
+    versions = software_versions() if versions is None else versions
+    relevant = {k: str(v) for k, v in versions.items() if k not in _IRRELEVANT_VERSIONS}
+    major_minor = relevant.get("python", "").split(".")[:2]
+    library = str(versions.get("platform", "")).partition("-with-")[2]
+    return relevant | {"python": ".".join(major_minor), "C library": library}
+
+
+def differences(versions: Mapping[str, str]) -> str:
+    """Return in words how this process differs from another: "numpy 2.1 instead of 2.2".
+
+    Args:
+        versions: The other process's :func:`relevant_versions`.
+    """
+    here = relevant_versions()
+    pairs = [(k, here.get(k, "none"), versions.get(k, "none")) for k in sorted({*here, *versions})]
+    told = [f"{name} {mine} instead of {other}" for name, mine, other in pairs if mine != other]
+    return printable(", ".join(told) or "its own files", 400)
 
 
 def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
@@ -109,8 +136,9 @@ def require_same(task: Task) -> None:
     here = socket.gethostname()
     if task.software != software_identity():
         raise ConfigError(
-            f"worker on {here}: its giveway or libraries differ from those that planned run "
-            f"{task.run}; install the same versions on every machine; if they were changed "
+            f"worker on {here}: its giveway, libraries or machine differ from those that planned "
+            f"run {task.run} ({differences(task.versions)}), and so might the bytes of its rows; "
+            "use the same versions and kind of machine everywhere; if they were changed "
             "meanwhile, go on with --resume"
         )
     config = task.run_config

@@ -14,7 +14,13 @@ from giveway.results.provenance import scenario_inputs
 from giveway.scenario_files.declared_ids import declares_people
 from giveway.studies.definition import StudyDefinition
 from giveway.studies.design import Cell, Design, design
-from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity
+from giveway.studies.identity import (
+    cell_digest,
+    input_hashes,
+    relevant_versions,
+    run_key,
+    software_identity,
+)
 from giveway.studies.record import Task, run_id
 from giveway.studies.statistics import metric
 from sumo_scenarios import Scenario
@@ -62,7 +68,8 @@ class PlannedRun:
     def task(self) -> Task:
         """Return the task that a worker needs to make the run."""
         text = self.config.model_dump_json()
-        return Task(self.id, self.key, text, self.planned.inputs, software_identity())
+        made_by = software_identity(), relevant_versions()
+        return Task(self.id, self.key, text, self.planned.inputs, *made_by)
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ class Task:
         config: Effective configuration as JSON.
         inputs: SHA-256 of each input file, by its name; a worker on another machine checks them.
         software: Identity of the code that planned it; a worker must be the same.
+        versions: Versions behind this identity, for messages.
     """
 
     run: str
@@ -39,6 +40,7 @@ class Task:
     config: str
     inputs: dict[str, str]
     software: str
+    versions: dict[str, str] = field(default_factory=dict)
 
     @cached_property
     def run_config(self) -> RunConfig:
@@ -53,7 +55,9 @@ class Computing:
     Attributes:
         seconds: Wall clock time [s] of the run, with set-up and metrics.
         attempts: Number of attempts.
+        retried: Reason why the run was made once more, or "" if it was not.
         worker: Host and process id.
+        processor: Name of the processor.
         memory: Memory [MB] that the worker holds after the run.
         control_median: Median time [ms] of a control step, for prediction and controller.
         control_max: Largest time [ms] of a control step. The first step is left out of both.
@@ -62,7 +66,9 @@ class Computing:
 
     seconds: float = math.nan
     attempts: int = 1
+    retried: str = ""
     worker: str = ""
+    processor: str = ""
     memory: float = math.nan
     control_median: float = math.nan
     control_max: float = math.nan

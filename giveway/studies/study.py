@@ -14,7 +14,7 @@ import numpy as np
 from giveway.errors import GivewayError
 from giveway.gate import fingerprint
 from giveway.processes.interrupts import exit_code_of, who_ended
-from giveway.results.provenance import software_versions
+from giveway.results.provenance import processor, software_versions
 from giveway.studies.definition import StudyDefinition, dump_definition
 from giveway.studies.execution import Executor
 from giveway.studies.folder.atomic_files import write_atomically
@@ -25,7 +25,7 @@ from giveway.studies.folder.sealing import BrokenFileError, put_aside, sealed
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.folder.table_files import write_tables
-from giveway.studies.identity import software_identity
+from giveway.studies.identity import differences, relevant_versions, software_identity
 from giveway.studies.plan import Plan, PlannedRun, plan
 from giveway.studies.record import RunRecord
 from giveway.studies.statistics import looks, precise_enough
@@ -125,6 +125,7 @@ class _Session:
         self._seeds = planned.seeds
         self._definition = dump_definition(planned.definition)
         self._begun = False
+        self._processors: set[str] = set()  # of which the user has been told
 
     def begin(self) -> None:
         """Write definition and manifest, and remove tables and report of a former session."""
@@ -134,11 +135,14 @@ class _Session:
             there = put_aside(file, self._out)
             self._tell(f"{file}: is not what giveway wrote; put aside in {there}, it is made again")
         with suppress(OSError, KeyError):
-            before = read_manifest(self._out)["identity"]
+            manifest = read_manifest(self._out)
+            before = manifest["identity"]
             if before != self._software:
+                differ = differences(relevant_versions(manifest["software"]))
                 self._tell(
-                    f"{self._out}: its runs were made by another giveway or other libraries "
-                    f"(identity {before}, now {self._software}); they are made again"
+                    f"{self._out}: its runs were made by another giveway, other libraries or a "
+                    f"machine of another kind (identity {before}, now {self._software}: {differ}); "
+                    "they are made again"
                 )
         remove_derived_files(self._out)
         write_atomically(self._out / DEFINITION, self._definition, durable=True)
@@ -190,16 +194,30 @@ class _Session:
                 missing[run.key].append(run)
             else:
                 self._records[run.key] = record
+                self._tell_processor(record)
                 self._kept += 1
                 self._failed += record.failed
                 self._report(None)
         for record in executor.run(runs[0].task() for runs in missing.values()):
             self._store.put(record)
             self._records[record.key] = record
+            self._tell_processor(record)
+            if record.computing.retried and not record.failed:
+                self._tell(f"{record.run}: {record.computing.retried}; another process has made it")
             count = len(missing[record.key])
             self._made += count
             self._failed += count * record.failed
             self._report(record)
+
+    def _tell_processor(self, record: RunRecord) -> None:
+        """Tell the user once of each processor, other than this one, that has made a run."""
+        name, here = record.computing.processor, processor()["name"]
+        if name not in {"", here, *self._processors}:
+            self._processors.add(name)
+            self._tell(
+                f"{record.run}: made on another processor ({name}; here {here}); the bytes are the "
+                "same (docs/results.md)"
+            )
 
     def _kept_record(self, key: str) -> RunRecord | None:
         """Return the record of a run that has been made.

@@ -11,9 +11,10 @@ import sys
 import threading
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from typing import Any, Final, Self
 
 from giveway.studies.execution.cluster_probe import reason_against
@@ -76,6 +77,8 @@ class ClusterExecutor:
         self._threads = 0
         self._missed = 0.0  # Time [s] at which the last worker was lost; 0 while there is one
         self._looked = 0.0
+        # Sign of life of each Dask worker as the scheduler tells it, and our time [s] of it
+        self._signs: dict[str, tuple[float, float]] = {}
 
     @property
     def workers(self) -> int:
@@ -170,13 +173,39 @@ class ClusterExecutor:
                 self._client = None
                 client = self._open()
             if client.status == "running":
-                self._threads = sum(client.nthreads().values())
+                workers = _workers(client)
+                self._threads = sum(worker["nthreads"] for worker in workers.values())
                 lacking = "" if self._threads else f"cluster {self._address}: it has no worker"
+                if workers and not self._leave_frozen(client, workers):
+                    lacking = f"cluster {self._address}: each of its workers stands still"
                 return lacking, self._patience
         except (OSError, ValueError, WorkerError):
             pass
         lacking = f"cluster {self._address}: its scheduler does not answer"
         return lacking, min(self._patience, _SCHEDULER_PATIENCE)
+
+    def _leave_frozen(self, client: Client, workers: Mapping[str, Any]) -> bool:
+        """Take workers without a sign of life out of the cluster; Dask gives their runs to others.
+
+        Returns:
+            False if no worker has given a sign of life within the hang limit.
+        """
+        now = time.monotonic()
+        signs = {address: worker["last_seen"] for address, worker in workers.items()}
+        known = self._signs
+        self._signs = {
+            address: known[address] if known.get(address, (None,))[0] == sign else (sign, now)
+            for address, sign in signs.items()
+        }
+        frozen = [w for w, (_, since) in self._signs.items() if now - since > self._limits.hang]
+        if len(frozen) == len(signs):
+            return False
+        for worker in frozen:
+            told = f"worker {worker} has stood still for {self._limits.hang:g} s"
+            self._tell(f"cluster {self._address}: {told}; its runs go to others")
+            leave = partial(client.sync, client.scheduler.unregister, address=worker)
+            _try_briefly(partial(leave, stimulus_id=f"giveway-{worker}"))
+        return True
 
     def _open(self) -> Client:
         return self._client or self._connect()
@@ -204,7 +233,7 @@ class ClusterExecutor:
             self._client = dask.Client(where, timeout=_CONNECT, set_as_default=False)
             if self._cluster is not None:
                 self._client.run(ignore_interrupts)
-            self._threads = sum(self._client.nthreads().values())
+            self._threads = sum(w["nthreads"] for w in _workers(self._client).values())
         except (OSError, ValueError, RuntimeError) as error:
             reason = " ".join(str(error).split()) or type(error).__name__
             raise self._unreachable(reason) from error
@@ -223,6 +252,16 @@ def _require_dask() -> None:
         raise WorkerError(
             f"a cluster needs Dask ({error}); pip install 'giveway[cluster]'"
         ) from error
+
+
+def _workers(client: Client) -> dict[str, Any]:
+    """Return what the scheduler says of each Dask worker.
+
+    Raises:
+        OSError: it does not answer.
+    """
+    asked = client.sync(client.scheduler.identity, callback_timeout=_CONNECT)
+    return dict(asked["workers"])
 
 
 def _try_briefly(call: Callable[[], Any], limit: float = _CLOSING) -> None:

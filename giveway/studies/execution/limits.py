@@ -42,6 +42,12 @@ class Limits:
                 )
         return cls(hang_limit, math.inf if run_limit is None else run_limit)
 
-    def quiet(self, phase: Phase) -> float:
-        """Return the time [s] for which nothing may change in a phase of a run."""
-        return self.hang if phase in LOOP else _SETTING_UP * self.hang
+    def quiet(self, phase: Phase, *, stopped: bool = False) -> float:
+        """Return the time [s] for which nothing may change in a phase of a run.
+
+        Args:
+            phase: Phase of the run. STARTING: the worker has not taken it yet.
+            stopped: True if somebody has stopped the process, which therefore cannot be busy.
+        """
+        busy = phase not in LOOP and phase is not Phase.STARTING and not stopped
+        return _SETTING_UP * self.hang if busy else self.hang

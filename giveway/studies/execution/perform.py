@@ -16,6 +16,7 @@ from giveway.errors import GivewayError
 from giveway.journal.journal import Journal
 from giveway.processes.heartbeat import Phase
 from giveway.results.folder import rounded_row
+from giveway.results.provenance import processor
 from giveway.results.run_result import RunResult
 from giveway.run_data.tracks import Timings
 from giveway.studies.record import FAILED, Computing, RunRecord, Scalar, Task
@@ -90,6 +91,7 @@ def _since(began: float) -> Computing:
     return Computing(
         seconds=round(perf_counter() - began, 6),
         worker=f"{socket.gethostname()}:{os.getpid()}",
+        processor=printable(processor()["name"]),
         memory=resident_memory(),
     )
 

@@ -140,7 +140,7 @@ class Pool:
         self, task: Task, worker: WorkerProcess | None
     ) -> tuple[WorkerProcess | None, RunRecord]:
         """Make the run, and replace its worker as often as needed."""
-        attempt = 1
+        attempt, retried = 1, ""
         while True:
             if worker is None:
                 worker = self._start_worker()
@@ -149,15 +149,15 @@ class Pool:
                 record = worker.perform(task)
             except NotBegunError as error:
                 self._remove(worker)
-                worker = None
-                self._note_failed_start(str(error))
+                worker, retried = None, str(error)
+                self._note_failed_start(retried)
                 continue
             except WorkerError:
                 self._remove(worker)
                 raise
             except (RunDiedError, RunRaisedError) as error:
                 self._remove(worker)
-                worker = None
+                worker, retried = None, str(error)
                 self._raise_if_closed()
                 if attempt < ATTEMPTS:
                     attempt += 1
@@ -177,7 +177,8 @@ class Pool:
                 self._remove(worker)
                 worker = None
             self._failed_starts = 0
-            return worker, replace(record, computing=replace(record.computing, attempts=attempt))
+            computing = replace(record.computing, attempts=attempt, retried=retried)
+            return worker, replace(record, computing=computing)
 
     def _start_worker(self) -> WorkerProcess:
         """Start a worker, and wait until it is ready.

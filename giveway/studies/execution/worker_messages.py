@@ -40,15 +40,16 @@ class Line:
         self._sent = self._received = 0
         self._buffer = bytearray()
 
-    def send(self, kind: bytes, payload: bytes = b"") -> None:
+    def send(self, kind: bytes, payload: bytes = b"", timeout: float | None = None) -> None:
         """Send a message.
 
         Raises:
+            TimeoutError: the other side has not taken it within ``timeout`` [s].
             OSError: the other side is gone.
         """
         self._sent = (self._sent + 1) & 0xFFFFFFFF
         head = _HEAD.pack(kind, self._sent, len(payload), zlib.crc32(payload))
-        self._connection.settimeout(None)
+        self._connection.settimeout(timeout)
         self._connection.sendall(head + payload)
 
     def receive(self, timeout: float | None = None) -> tuple[bytes, bytes] | None:

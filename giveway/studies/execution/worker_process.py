@@ -95,7 +95,7 @@ class WorkerProcess:
                 waited += self._poll
                 if self._process.poll() is not None:
                     raise EOFError
-                if waited > START_LIMIT:
+                if waited > (self._limits.hang if self._is_stopped() else START_LIMIT):
                     raise NotBegunError(f"it was not ready after {waited:g} s")
             if message[0] != READY:
                 raise GarbledError
@@ -117,7 +117,7 @@ class WorkerProcess:
             with suppress(OSError):
                 os.truncate(printed, 0)
         try:
-            self._line.send(TASK, json.dumps(asdict(task)).encode())
+            self._line.send(TASK, json.dumps(asdict(task)).encode(), self._limits.hang)
             kind, payload = self._answer()
             if kind == REFUSED:
                 raise WorkerError(payload.decode("utf-8", "replace"))
@@ -126,6 +126,9 @@ class WorkerProcess:
             if kind != RECORD:
                 raise GarbledError
             record = RunRecord.from_json(payload.decode())
+        except TimeoutError:
+            self.end()
+            cause = stood_still(self._limits.hang)
         except (EOFError, OSError):
             cause = self._cause_of_end()
         except (GarbledError, ValueError):
@@ -169,7 +172,7 @@ class WorkerProcess:
         while (message := self._line.receive(self._poll)) is None:
             taken += self._poll
             pulse, quiet = stillness.look(self._poll)
-            if quiet >= self._limits.quiet(pulse.phase):
+            if quiet >= self._limits.quiet(pulse.phase, stopped=self._is_stopped()):
                 self._kill(stood_still(quiet))
             elif taken >= self._limits.run:
                 self._kill(f"not finished within {taken:g} s, the limit of a run,")
@@ -181,16 +184,26 @@ class WorkerProcess:
                     os.truncate(self._printed, 0)
         return message
 
+    def _is_stopped(self) -> bool:
+        """Return whether somebody has stopped the process, as SIGSTOP does."""
+        with suppress(AttributeError, ChildProcessError):  # some systems cannot tell
+            options = os.WSTOPPED | os.WNOHANG | os.WNOWAIT
+            return os.waitid(os.P_PID, self._process.pid, options) is not None
+        return False
+
     def _kill(self, cause: str) -> None:
         """Let the worker write where it hangs, then kill it.
 
         Raises:
-            RunDiedError: always.
+            NotBegunError: the worker had not taken the run.
+            RunDiedError: it had.
         """
-        let_speak(self._process)
+        if not self._is_stopped():
+            let_speak(self._process)
         failure = self._failure(cause)
+        begun = self._heartbeat.read().phase is not Phase.STARTING
         self.end()
-        raise RunDiedError(failure)
+        raise (RunDiedError if begun else NotBegunError)(failure)
 
     def _cause_of_end(self) -> str:
         """Return the reason why the worker has ended, or counts as ended."""

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import platform
+from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
+from giveway.errors import ConfigError
+from giveway.studies.identity import require_same
 from giveway.studies.plan import plan
 
 
@@ -22,6 +28,17 @@ def test_other_settings_make_other_keys(small_study, small_study_text):
     assert {r.key for r in ours.runs(ours.seeds)}.isdisjoint(
         r.key for r in theirs.runs(theirs.seeds)
     )
+
+
+def test_a_worker_elsewhere_is_refused_and_told_what_differs(small_study):
+    run = next(iter(plan(small_study.definition, "s").runs(range(1, 2))))
+    task = run.task()
+    require_same(task)
+    versions = task.versions | {"numpy": "1.0", "machine": "riscv64"}
+    told = rf"machine {platform.machine()} instead of riscv64, numpy \S+ instead of 1.0\)"
+    with pytest.raises(ConfigError, match=told):
+        require_same(replace(task, software="other", versions=versions))
+    assert {"machine", "C library"} < set(task.versions)
 
 
 def test_a_scenarios_place_does_not_matter_but_its_contents_do(small_study_text, tmp_path):

@@ -18,8 +18,8 @@ from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.study import StudyInterruptedError
 
 
-def test_an_interrupted_study_goes_on_where_it_was(
-    small_study, study_of, small_study_text, tables_of, tmp_path
+def test_an_interrupted_study_goes_on_and_names_another_processor(
+    small_study, study_of, small_study_text, tables_of, tmp_path, monkeypatch, capsys
 ):
     def interrupt(progress):
         if progress.made == 7:
@@ -32,7 +32,12 @@ def test_an_interrupted_study_goes_on_where_it_was(
     assert len(pd.read_csv(half.path / "runs.csv")) == 7
 
     states = []
+    monkeypatch.setattr("giveway.studies.study.processor", lambda: {"name": "Another"})
     whole = study_of(small_study_text, tmp_path / "half", states.append, resume=True)
+    told = [line for line in capsys.readouterr().err.splitlines() if "made on another" in line]
+    assert [line.partition("; here ")[2] for line in told] == [
+        "Another); the bytes are the same (docs/results.md)"
+    ]
     assert states[-1].kept == 7
     assert states[-1].made == 13
     assert tables_of(whole.path) == tables_of(small_study.path)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pandas as pd
+import psutil
 import pytest
 
 from giveway.errors import GivewayError, ResultsError
@@ -64,11 +66,17 @@ def test_every_table_is_described_by_the_data_package(small_study):
     }
 
 
-def test_the_number_of_workers_does_not_matter(
-    small_study, study_of, small_study_text, tables_of, tmp_path
+def test_two_workers_of_which_one_freezes_do_not_matter(
+    small_study, study_of, small_study_text, tables_of, tmp_path, capsys
 ):
-    two = study_of(small_study_text, tmp_path / "two", jobs=2)
+    def freeze(progress):
+        if progress.made == 3:
+            psutil.Process(int(progress.latest.computing.worker.rpartition(":")[2])).suspend()
+
+    two = study_of(small_study_text, tmp_path / "two", freeze, jobs=2, hang_limit=2.0)
     assert tables_of(two.path) == tables_of(small_study.path)
+    told = r"note: c\d-s\d: no progress for 2.* s .*; another process has made it"
+    assert re.search(told, capsys.readouterr().err)
 
 
 def test_failed_runs_are_listed_with_the_command_to_repeat_them(study_of, tmp_path):

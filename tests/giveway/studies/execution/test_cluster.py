@@ -29,19 +29,20 @@ def dask_workers() -> list[psutil.Process]:
     return [process for process in mine if process.children()]
 
 
-def test_the_records_of_one_machine_though_a_worker_dies(
+def test_records_stay_though_workers_die_and_freeze(
     task, healthy, expected, numbers, faulty, left_behind
 ):
     others = [task(f"r{n}", n) for n in range(100, 130)]
-    killed = False
-    made = []
-    with cluster_executor("local:2") as executor:
+    made, told = [], []
+    with ClusterExecutor("local:2", Limits(hang=6.0), told.append) as executor:
         assert executor.workers == 2
         for record in executor.run([*healthy, faulty("segfault"), *others]):
             made.append(record)
-            if not killed:
-                killed = True
-                dask_workers()[0].kill()
+            if len(made) == 1:
+                dead, frozen = dask_workers()
+                dead.kill()
+            elif len(made) == 20:
+                frozen.suspend()
     assert len(made) == len(healthy) + 1 + len(others)
     records = {record.run: record for record in made}
     assert {run: numbers(records[run]) for run in expected} == expected
@@ -51,6 +52,7 @@ def test_the_records_of_one_machine_though_a_worker_dies(
     assert crash.computing.attempts == 2
     assert not any(record.failed for record in records.values())
     assert len({record.computing.worker for record in made}) > 2
+    assert [line for line in told if "has stood still for 6 s; its runs go to others" in line]
 
 
 def test_workers_that_come_late_are_waited_for(left_behind, empty_cluster, task, worker_of):

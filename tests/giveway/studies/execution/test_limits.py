@@ -22,4 +22,10 @@ def test_a_limit_not_above_zero_is_refused(hang: float, run: float | None) -> No
 def test_before_the_loop_five_times_as_long_is_quiet() -> None:
     limits = Limits(hang=10.0)
     assert {limits.quiet(phase) for phase in LOOP} == {10.0}
-    assert {limits.quiet(phase) for phase in set(Phase) - set(LOOP)} == {50.0}
+    assert {limits.quiet(phase) for phase in set(Phase) - LOOP - {Phase.STARTING}} == {50.0}
+
+
+def test_who_is_stopped_or_does_not_begin_is_quiet_once() -> None:
+    limits = Limits(hang=10.0)
+    assert {limits.quiet(phase, stopped=True) for phase in Phase} == {10.0}
+    assert limits.quiet(Phase.STARTING) == 10.0

@@ -36,6 +36,12 @@ def test_messages_arrive_in_order_however_they_are_cut(ends):
     assert line.receive() == (RECORD, b"")
 
 
+def test_a_side_that_takes_nothing_is_not_waited_for_long(ends):
+    line, _ = ends
+    with pytest.raises(TimeoutError):
+        line.send(TASK, bytes(1 << 24), 0.05)
+
+
 def test_half_a_message_is_waited_for(ends):
     line, there = ends
     whole = message(b"x" * 5000)
