@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib.util
 import os
 import re
@@ -79,6 +80,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     others = [item for item in items if "fmus" not in item.path.parent.parts]
     half = len(items) // 2
     items[:] = [*others[:half], *needs_none, *others[half:]]
+
+
+def pytest_collection_finish() -> None:
+    """Leave all that is imported and collected out of each later search for garbage."""
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from giveway import run
-from giveway.replays import write_replay
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
@@ -27,6 +24,8 @@ SETTINGS: dict[str, Any] = {
 @pytest.fixture(scope="session")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The results of a run that drives, brakes and hands over to the PID."""
+    from giveway import run
+
     folder = tmp_path_factory.mktemp("runs") / "recorded"
     run(SETTINGS, results=folder, pictures=False)
     return folder
@@ -151,6 +150,8 @@ def watch(chromium: Any) -> Iterator[Callable[..., Watched]]:
 @pytest.fixture(scope="session")
 def page(recorded: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The replay of the recorded run."""
+    from giveway.replays import write_replay
+
     return write_replay(recorded, tmp_path_factory.mktemp("pages") / "replay.html")
 
 

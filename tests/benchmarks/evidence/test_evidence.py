@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import re
-import subprocess
+import runpy
 import sys
 from pathlib import Path
 
@@ -135,14 +135,16 @@ def test_a_command_that_fails_says_what_it_was(tmp_path: Path) -> None:
     assert not (tmp_path / "printed.md").exists()
 
 
-def test_stale_pages_are_listed_and_a_strange_page_is_refused() -> None:
-    def run(*words: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, PACKAGE, *words]
-        return subprocess.run(command, capture_output=True, text=True, check=False)
+def test_stale_pages_are_listed_and_a_strange_page_is_refused(monkeypatch, capsys) -> None:
+    def run(*words: str) -> int:
+        monkeypatch.setattr(sys, "argv", ["evidence", *words])
+        with pytest.raises(SystemExit) as ended:
+            runpy.run_path(str(PACKAGE), run_name="__main__")
+        return int(ended.value.code)
 
     entries = json.loads((ROOT / "docs" / "evidence.json").read_text(encoding="utf-8"))
     expected = [name for name, page in PAGES.items() if ledger.is_stale(page, entries)]
-    checked = run("--check")
-    assert checked.stdout.split() == expected
-    assert checked.returncode == bool(expected)
-    assert "expected one of readme" in run("no-such-page").stderr
+    assert run("--check") == bool(expected)
+    assert capsys.readouterr().out.split() == expected
+    assert run("no-such-page") == 2
+    assert "expected one of readme" in capsys.readouterr().err

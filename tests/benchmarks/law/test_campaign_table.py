@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import nan
 
+import campaign_table
 import pytest
 from campaign_table import MEASURES, pooled, tables
 from drive_row import LOST
@@ -42,6 +43,11 @@ ROW = {
     "violations": [],
 }
 BRAKING = {"time": 3.0, "after": 3.0, "deceleration": 5.0, "speed": 9.0, "cause": "person"}
+
+
+@pytest.fixture(autouse=True)
+def _few_resamples(monkeypatch) -> None:
+    monkeypatch.setattr(campaign_table, "RESAMPLES", 100)
 
 
 def cells(rows: list[dict], name: str) -> list[str]:

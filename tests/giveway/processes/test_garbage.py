@@ -28,7 +28,6 @@ def often():
     gc.set_threshold(50, 1, 1)
     yield
     gc.set_threshold(*before)
-    gc.unfreeze()
 
 
 def full_collections() -> int:
