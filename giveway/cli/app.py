@@ -179,12 +179,13 @@ def _doctor(
     scenario: Annotated[
         str | None,
         typer.Argument(
-            help="Bundled scenario, folder or .sumocfg.", autocompletion=complete_scenario
+            help="Bundled scenario, folder or .sumocfg; or the results of a run or study.",
+            autocompletion=complete_scenario,
         ),
     ] = None,
     as_json: JsonFlag = False,
 ) -> None:
-    """Examine the installation, and a scenario: findings and their remedies."""
+    """Examine the installation, and a scenario or results: findings and their remedies."""
     from giveway.cli.commands.doctor_command import doctor_command
 
     raise typer.Exit(doctor_command(scenario, as_json=as_json))

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from giveway.cli.help import Commands
+from giveway.cli.option_groups import Unsealed
 
 _Folder = Annotated[Path, typer.Argument(help="Folder with recordings, in it or below it.")]
 _Dataset = Annotated[
@@ -104,8 +105,9 @@ def _compare(
     out: _Out = None,
     force: _Force = False,
     quiet: _Quiet = False,
+    unsealed: Unsealed = False,
 ) -> None:
     """Compare drives of egos with those of the recorded vehicles in whose place they drove."""
     from giveway.cli.commands.recorded_drive_command import compare_command
 
-    compare_command(runs, out, force=force, quiet=quiet)
+    compare_command(runs, out, force=force, quiet=quiet, unsealed=unsealed)

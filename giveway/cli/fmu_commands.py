@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from giveway.cli.help import Commands
-from giveway.cli.option_groups import DryRun, ReplaceFile, StepTests, ungrouped
+from giveway.cli.option_groups import DryRun, ReplaceFile, StepTests, Unsealed, ungrouped
 from giveway.errors import ConfigError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]
@@ -64,11 +64,12 @@ def _run(
         typer.Option(help="Between two instants in s (default: the run's; MP4 0.05, GIF 0.1)."),
     ] = None,
     force: ReplaceFile = False,
+    unsealed: Unsealed = False,
 ) -> None:
     """Write a run for SUMO, PedPy, JuPedSim or a map, or as a film."""
     from giveway.cli.commands.export_run_command import export_run_command
 
-    export_run_command(folder, to, out, step=step, force=force)
+    export_run_command(folder, to, out, step=step, force=force, unsealed=unsealed)
 
 
 def _inspect(

@@ -20,6 +20,9 @@ NoSummary = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress
 NoTables = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")]
 ControlStep = Annotated[float, typer.Option(help="Control step in s.", min=0.001, max=0.5)]
 ForceLimit = Annotated[float, typer.Option(help="Largest force in N.", min=1.0, max=1e6)]
+Unsealed = Annotated[
+    bool, typer.Option("--unsealed", help="Use tables although they are not what the run wrote.")
+]
 ReplaceFile = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 
 

@@ -14,6 +14,7 @@ from giveway.cli.option_groups import (
     StudyComputation,
     StudyOutputs,
     StudySeeds,
+    Unsealed,
     ungrouped,
 )
 
@@ -164,9 +165,11 @@ def _replay(
     rerun: Annotated[
         bool, typer.Option(help="Make the run again for its predicted positions.")
     ] = True,
+    unsealed: Unsealed = False,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one HTML page that plays a run, in any browser, without a network."""
     from giveway.cli.commands.replay_command import replay_command
 
-    raise typer.Exit(replay_command(run, out=out, beside=beside, rerun=rerun, show=show))
+    choice = {"rerun": rerun, "unsealed": unsealed, "show": show}
+    raise typer.Exit(replay_command(run, out=out, beside=beside, **choice))

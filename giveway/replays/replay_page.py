@@ -52,7 +52,12 @@ _MADE_WITHOUT = (
 
 
 def write_replay(
-    folder: Path, target: Path, *, predictions: Path | None = None, remark: str = ""
+    folder: Path,
+    target: Path,
+    *,
+    predictions: Path | None = None,
+    remark: str = "",
+    unsealed: bool = False,
 ) -> Path:
     """Make the page that plays the run in ``folder``.
 
@@ -61,6 +66,7 @@ def write_replay(
         target: HTML file to write; it is replaced if it exists.
         predictions: File ``predictions.csv`` of the same run, or None for the folder's own, if any.
         remark: Reason for missing predictions, for the page.
+        unsealed: True to play tables that differ from those that the run wrote.
 
     Returns:
         ``target``.
@@ -68,7 +74,7 @@ def write_replay(
     Raises:
         ResultsError: the folder holds no run, or the page cannot be written.
     """
-    return _written(target, _page(content_of(folder, predictions, remark)))
+    return _written(target, _page(content_of(folder, predictions, remark, unsealed=unsealed)))
 
 
 def write_beside(contents: Sequence[dict[str, Any]], target: Path) -> Path:
@@ -92,7 +98,9 @@ def write_beside(contents: Sequence[dict[str, Any]], target: Path) -> Path:
     return _written(target, page)
 
 
-def content_of(folder: Path, predictions: Path | None = None, remark: str = "") -> dict[str, Any]:
+def content_of(
+    folder: Path, predictions: Path | None = None, remark: str = "", *, unsealed: bool = False
+) -> dict[str, Any]:
     """Return the content of a run's page.
 
     The arguments are those of :func:`write_replay`.
@@ -100,7 +108,7 @@ def content_of(folder: Path, predictions: Path | None = None, remark: str = "") 
     Raises:
         ResultsError: the folder holds no run.
     """
-    run = RunFolder.read(folder)
+    run = RunFolder.read(folder, unsealed=unsealed)
     if predictions is None and (folder / PREDICTIONS).is_file():
         predictions = folder / PREDICTIONS
     table = None if predictions is None else read_predictions(predictions)

@@ -22,6 +22,7 @@ from giveway.run_data.columns import (
     Column,
 )
 from giveway.run_data.scene import Scene
+from giveway.run_data.seal import MANIFEST, is_sealed, require_sealed
 from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"
@@ -73,6 +74,13 @@ class RunFolder:
         known = sumo.get("step_length") if isinstance(sumo, dict) else None
         return float(known) if isinstance(known, int | float) else self.step
 
+    @property
+    def seal_note(self) -> str:
+        """The remark that nobody can tell whether the tables are the run's, or "" with a seal."""
+        if is_sealed(self.manifest):
+            return ""
+        return f"{self.path}: has no seal (an earlier giveway wrote it): changes go unnoticed"
+
     def rows_of(self, ego: str) -> dict[str, Any]:
         """Return the summary's row of one ego."""
         rows = self.summary.get("egos", [self.summary])
@@ -80,13 +88,21 @@ class RunFolder:
         return next((row for row in rows if row.get("ego") == ego), {})
 
     @classmethod
-    def read(cls, folder: Path) -> RunFolder:
+    def read(cls, folder: Path, *, unsealed: bool = False) -> RunFolder:
         """Read a folder that ``giveway run`` wrote.
 
+        Args:
+            folder: Results folder.
+            unsealed: True to read tables that differ from those that the run wrote.
+
         Raises:
-            ResultsError: the folder holds no run, or one of its files cannot be read.
+            ResultsError: the folder holds no run, or one of its files cannot be read or is not what
+                the run wrote.
         """
         _require_run(folder)
+        manifest = _json(folder / MANIFEST)
+        if not unsealed:
+            require_sealed(folder, manifest)
         try:
             config = build_config([read_toml(folder / "config.toml")])
         except ConfigError as error:
@@ -106,7 +122,7 @@ class RunFolder:
             trajectories=trajectories,
             pedestrians=_table(folder / "pedestrians.csv", PEDESTRIAN_FIELDS),
             summary=_json(folder / "summary.json"),
-            manifest=_json(folder / "manifest.json"),
+            manifest=manifest,
             scene=Scene.read(folder),
             signals=_table(folder / "signals.csv", SIGNAL_COLUMNS),
             time=time,

@@ -1,6 +1,7 @@
 """The results folder: tables, summary, manifest, data package, configuration and pictures."""
 
 import contextlib
+import json
 import shutil
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
@@ -18,6 +19,7 @@ from giveway.results.run_tables import RunTables
 from giveway.results.scene import scene_of
 from giveway.run_data.columns import Column
 from giveway.run_data.scene import SCENE_FILE
+from giveway.run_data.seal import MANIFEST, sealed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -174,7 +176,6 @@ def write_results(result: RunTables, folder: Path, *, parquet: bool = False) -> 
     contents[SCENE_FILE] = _text(scene_of(result).to_json())
     if result.sumo_messages:
         contents["sumo.log"] = _text(result.sumo_messages)
-    contents["manifest.json"] = _json(result.manifest)  # written last: it marks complete results
     path = folder
     try:
         for name in FILES - {SUMO_FOLDER}:
@@ -183,6 +184,9 @@ def write_results(result: RunTables, folder: Path, *, parquet: bool = False) -> 
         for name, write in contents.items():
             path = folder / name
             write(path)
+        path = folder / MANIFEST  # written last: it marks complete results
+        manifest = json.loads(json_text(result.manifest))
+        _json(sealed(manifest, folder, contents))(path)
     except OSError as error:
         message = f"{path}: cannot be written ({error.strerror}); free the disk"
         _leave_incomplete(path, result.manifest | {"incomplete": message})

@@ -43,7 +43,7 @@ MEASURES = (
 RECORDED_DRIVER = "recorded driver"
 
 
-def compared(folders: Sequence[Path]) -> pd.DataFrame:
+def compared(folders: Sequence[Path], *, unsealed: bool = False) -> pd.DataFrame:
     """Return the measures of recorded drivers and of runs, a row for each driver.
 
     The columns are driver, recording, vehicle, and the names of ``MEASURES``. All are measured with
@@ -51,6 +51,7 @@ def compared(folders: Sequence[Path]) -> pd.DataFrame:
 
     Args:
         folders: Results folders of runs.
+        unsealed: True to read tables that differ from those that a run wrote.
 
     Raises:
         ConfigError: a run has no recorded people, or its recording names no vehicle.
@@ -58,7 +59,7 @@ def compared(folders: Sequence[Path]) -> pd.DataFrame:
     """
     rows: dict[tuple[str, ...], dict[str, object]] = {}
     for folder in folders:
-        run = RunFolder.read(folder)
+        run = RunFolder.read(folder, unsealed=unsealed)
         entry = _entry(folder, run)
         recording = read_clip(entry)
         if entry.vehicle not in recording.vehicles.ids:

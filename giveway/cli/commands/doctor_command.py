@@ -2,21 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
 from giveway.cli.screen.printing import findings_table, print_json
 from giveway.doctor import Finding, examine_environment, examine_scenario
+from giveway.studies.folder.examination import examine_results, is_results
 
 _STYLES = {"ok": "green", "note": "cyan", "warning": "yellow", "error": "bold red"}
 
 
 def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
-    """Examine the environment, and the scenario if one is named.
+    """Examine the environment, and the scenario or the results if some are named.
 
     Args:
-        scenario: Name or path, or None.
+        scenario: Name or path of a scenario, results folder of a run or study, or None.
         as_json: True to print the findings as JSON.
 
     Returns:
@@ -26,7 +28,11 @@ def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
     with console.status("Examining the environment ..."):
         findings = examine_environment()
     console.print(_table("Environment", findings))
-    if scenario is not None:
+    if scenario is not None and is_results(Path(scenario)):
+        of_results = examine_results(Path(scenario))
+        console.print(_table("Results", of_results))
+        findings += of_results
+    elif scenario is not None:
         with console.status("SUMO tries the scenario ..."):
             of_scenario = examine_scenario(scenario)
         console.print(_table("Scenario", of_scenario))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rich.console import Console
 
-from giveway.cli.screen.printing import print_place, writing
+from giveway.cli.screen.printing import print_notes, print_place, writing
 from giveway.errors import ConfigError, ResultsError, suggestion
 from giveway.exports.fcd import write_fcd
 from giveway.exports.geojson import write_geojson
@@ -41,7 +41,13 @@ FORMATS = {
 
 
 def export_run_command(
-    folder: Path, to: str, out: Path | None, *, step: float | None = None, force: bool = False
+    folder: Path,
+    to: str,
+    out: Path | None,
+    *,
+    step: float | None = None,
+    force: bool = False,
+    unsealed: bool = False,
 ) -> None:
     """Write a run in another format.
 
@@ -51,6 +57,7 @@ def export_run_command(
         out: File to write, or None for one in the working folder, named after the results folder.
         step: Time [s] between two instants, or None for one that suits the format.
         force: True to replace an existing file.
+        unsealed: True to use tables that are not what the run wrote.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -58,7 +65,8 @@ def export_run_command(
     found = FORMATS.get(to)
     if found is None:
         raise ConfigError(f"--format {to}: no such format; {suggestion(to, FORMATS)}")
-    run = RunFolder.read(folder)
+    run = RunFolder.read(folder, unsealed=unsealed)
+    print_notes(run.seal_note)
     file = out or Path(f"{folder.absolute().name}{found.suffix}")
     _check(file, found.suffix, force=force)
     samples = sampled(run, found.step if step is None else step)

@@ -54,7 +54,9 @@ def scenario_command(
         console.print(f"Please cite: {escape(recording.dataset.citation)}", highlight=False)
 
 
-def compare_command(runs: Sequence[Path], out: Path | None, *, force: bool, quiet: bool) -> None:
+def compare_command(
+    runs: Sequence[Path], out: Path | None, *, force: bool, quiet: bool, unsealed: bool = False
+) -> None:
     """Print one table of the runs and of the recorded drivers in whose place they drove.
 
     Raises:
@@ -63,7 +65,7 @@ def compare_command(runs: Sequence[Path], out: Path | None, *, force: bool, quie
     console = Console(quiet=quiet)
     if out is not None:
         check_folder(out, force=force, ours=frozenset({_TABLE}), writer=_WRITER)
-    found = compared(runs)
+    found = compared(runs, unsealed=unsealed)
     console.print(_comparison(found))
     if out is not None:
         with writing(out / _TABLE, "name another folder with --out"):

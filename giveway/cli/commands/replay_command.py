@@ -1,14 +1,13 @@
 """The command ``giveway replay``: a page that plays the run of a results folder."""
 
 import contextlib
-import sys
 import webbrowser
 from collections.abc import Iterator
 from pathlib import Path
 
 from rich.console import Console
 
-from giveway.cli.screen.printing import print_place
+from giveway.cli.screen.printing import print_notes, print_place
 from giveway.replays.repetition import Predicted, predicted_again
 from giveway.replays.replay_page import content_of, write_beside, write_replay
 from giveway.replays.run_folder import PREDICTIONS, RunFolder
@@ -22,6 +21,7 @@ def replay_command(
     out: Path | None = None,
     beside: Path | None = None,
     rerun: bool = True,
+    unsealed: bool = False,
     show: bool = False,
 ) -> int:
     """Write the replay of a run and return the exit code 0.
@@ -32,6 +32,7 @@ def replay_command(
             working folder.
         beside: Results folder of another run, which is played at the same time, or None.
         rerun: True to repeat a run whose predictions are not recorded.
+        unsealed: True to play tables that are not what the run wrote; it is not repeated then.
         show: True to open the page in the browser.
 
     Raises:
@@ -40,14 +41,21 @@ def replay_command(
     console = Console()
     if beside is None:
         target = out or run / "replay.html"
-        with _predicted(run, console, rerun=rerun) as predicted:
-            write_replay(run, target, predictions=predicted.file, remark=predicted.remark)
+        with _predicted(run, console, rerun=rerun, unsealed=unsealed) as predicted:
+            write_replay(
+                run,
+                target,
+                predictions=predicted.file,
+                remark=predicted.remark,
+                unsealed=unsealed,
+            )
     else:
         target = out or Path(f"{run.absolute().name}_beside_{beside.absolute().name}.html")
         contents = []
         for folder in (run, beside):
-            with _predicted(folder, console, rerun=rerun) as predicted:
-                contents.append(content_of(folder, predicted.file, predicted.remark))
+            with _predicted(folder, console, rerun=rerun, unsealed=unsealed) as predicted:
+                content = content_of(folder, predicted.file, predicted.remark, unsealed=unsealed)
+                contents.append(content)
         write_beside(contents, target)
     print_place(console, "Replay", target)
     if show:
@@ -56,26 +64,26 @@ def replay_command(
 
 
 @contextlib.contextmanager
-def _predicted(run: Path, console: Console, *, rerun: bool) -> Iterator[Predicted]:
+def _predicted(run: Path, console: Console, *, rerun: bool, unsealed: bool) -> Iterator[Predicted]:
     """Yield the predictions of a run, which is repeated for them if this is useful."""
     with contextlib.ExitStack() as stack:
         predicted = Predicted(None)
-        if rerun and _worth_it(run):
+        folder = RunFolder.read(run, unsealed=unsealed)
+        print_notes(folder.seal_note)
+        if rerun and not unsealed and _is_worth_it(folder):
             with console.status(_AGAIN):
                 if not console.is_terminal:
                     console.print(_AGAIN)
                 predicted = stack.enter_context(predicted_again(run))
-            if predicted.remark:
-                sys.stderr.write(f"note: {predicted.remark}\n")
+            print_notes(predicted.remark)
         yield predicted
 
 
-def _worth_it(run: Path) -> bool:
+def _is_worth_it(folder: RunFolder) -> bool:
     """Return whether a repetition may give predictions that are not recorded.
 
     A run that crashed is not repeated.
     """
-    folder = RunFolder.read(run)
-    if (run / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
+    if (folder.path / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
         return False
     return any(config.optimises for config in folder.egos.values())

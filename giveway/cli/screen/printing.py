@@ -60,6 +60,12 @@ def print_place(console: Console, what: str, path: Path) -> None:
     console.print(where, highlight=False, soft_wrap=True)
 
 
+def print_notes(*notes: str) -> None:
+    """Print remarks on standard error, one line each; empty ones are left out."""
+    for note in filter(None, notes):
+        sys.stderr.write(f"note: {visible(note)}\n")
+
+
 def print_json(content: dict[str, Any]) -> None:
     """Print the findings of a command for a script: only JSON on standard output."""
     sys.stdout.write(json_text(content))

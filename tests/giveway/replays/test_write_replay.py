@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 import pytest
+from support.runs import unseal
 
 from giveway import run
 from giveway.errors import ResultsError
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 @pytest.fixture
 def folder(recorded: Path, tmp_path: Path) -> Path:
     """A copy of the recorded run, to be tampered with."""
-    return shutil.copytree(recorded, tmp_path / "run")
+    return unseal(shutil.copytree(recorded, tmp_path / "run"))
 
 
 def content(page: Path) -> dict[str, Any]:

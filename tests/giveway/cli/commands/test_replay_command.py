@@ -7,6 +7,7 @@ import shutil
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from support.runs import unseal
 
 from giveway.cli.commands.replay_command import replay_command
 from giveway.replays import write_replay
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 @pytest.fixture
 def folder(recorded: Path, tmp_path: Path) -> Path:
     """A copy of the recorded run, to be tampered with."""
-    return shutil.copytree(recorded, tmp_path / "run")
+    return unseal(shutil.copytree(recorded, tmp_path / "run"))
 
 
 def content(page: Path) -> dict[str, Any]:
