@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import math
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,42 +55,43 @@ def hill(tmp_path_factory: pytest.TempPathFactory, call_sumo: Callable[..., str]
     return net
 
 
-@pytest.fixture
-def driven(
-    zoo: Any, hill: Path, scenario: Callable[..., Path], tmp_path: Path
-) -> Callable[..., Any]:
-    """Drive a car that feels the road over the hill, without anybody on it."""
+@pytest.fixture(scope="module")
+def driven(zoo: Any, hill: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Any]:
+    """Drive a car that feels the road over the hill, without anybody on it; equal ones once."""
     if importlib.util.find_spec("pythonfmu3") is None:
         pytest.skip("pip install pythonfmu3")
 
-    def drive(
-        more: str = GRADE,
-        route: tuple[str, ...] = UP,
-        results: Path | None = None,
-        **settings: Any,
-    ) -> Any:
-        profile = tmp_path / "car.toml"
+    config = hill.with_name("hill.sumocfg")
+    config.write_text(
+        '<configuration><net-file value="hill.net.xml"/><end value="200"/>'
+        '<step-length value="0.1"/></configuration>'
+    )
+
+    @cache
+    def drive(more: str = GRADE, route: tuple[str, ...] = UP) -> Any:
+        folder = tmp_path_factory.mktemp("driven")
+        profile = folder / "car.toml"
         profile.write_text(PROFILE + more, encoding="utf-8")
-        return giveway.run(
+        result = giveway.run(
             {
-                "scenario": str(scenario("", net=hill)),
+                "scenario": str(config),
                 "controller": "pid-paper",
                 "vehicle": {"fmu": str(zoo.hill_car()), "profile": str(profile)},
                 "ego": {"route": route, "initial_speed": 4.0},
                 "crowd": {"zone": "none", "pedestrians": 0},
-                **settings,
+                "sumo.baseline": False,
             },
-            results=results,
+            results=folder / "run",
             pictures=False,
         )
+        return result, folder / "run"
 
     return drive
 
 
-def test_uphill_is_slower_and_downhill_is_faster(driven, tmp_path):
-    driven(results=tmp_path / "up")
-    driven(route=DOWN, results=tmp_path / "down")
-    up, down = (pd.read_csv(tmp_path / way / "ego.csv") for way in ("up", "down"))
+def test_uphill_is_slower_and_downhill_is_faster(driven):
+    drives = driven(), driven(route=DOWN)
+    up, down = (pd.read_csv(folder / "ego.csv") for _, folder in drives)
     on_ramp = up["x"].between(70.0, 155.0)
     assert up["road_grade"][on_ramp].to_numpy() == pytest.approx(RAMP, abs=1e-4)
     assert up["road_grade"][up["x"] < 59.0].to_numpy() == pytest.approx(0.0, abs=1e-6)
@@ -103,32 +105,29 @@ def test_uphill_is_slower_and_downhill_is_faster(driven, tmp_path):
 
 
 def test_the_fmu_is_told_the_grade_of_its_step(driven):
-    track = driven(time_limit=40.0).egos[0].track
-    outputs = {o.name: o.values for o in driven(time_limit=40.0).egos[0].outputs}
+    ego = driven()[0].egos[0]
+    track, outputs = ego.track, {o.name: o.values for o in ego.outputs}
     grade = outputs["road_grade"]
     rate = (track.force - 100.0 * track.speed) / 1000.0 - 9.81 * np.sin(grade)
     assert track.speed[1:] == pytest.approx(track.speed[:-1] + 0.05 * rate[:-1], abs=1e-9)
 
 
 def test_per_cent_are_the_tangent(driven):
-    by_angle, by_percent = driven(), driven(PERCENT)
-    speeds = by_angle.egos[0].track.speed, by_percent.egos[0].track.speed
+    speeds = [result.egos[0].track.speed for result, _ in (driven(), driven(PERCENT))]
     assert speeds[1] == pytest.approx(speeds[0], abs=1e-9)
 
 
 def test_an_fmu_without_a_grade_input_drives_level_with_a_remark(driven):
-    result = driven("")
-    blind, feeling = result.egos[0].track.speed, driven().egos[0].track.speed
+    (result, _), (told, _) = driven(""), driven()
+    blind, feeling = result.egos[0].track.speed, told.egos[0].track.speed
     assert np.ptp(blind[200:]) < 0.03  # on the level, too
     assert feeling[200:].min() < blind.min() - 0.05
     assert any("up to 5.0 % steep" in remark for remark in result.remarks)
-    assert not any("steep" in remark for remark in driven().remarks)
+    assert not any("steep" in remark for remark in told.remarks)
 
 
-def test_the_column_has_a_meaning(driven, tmp_path):
-    folder = tmp_path / "run"
-    driven(time_limit=2.0, results=folder)
-    package = json.loads((folder / "datapackage.json").read_text(encoding="utf-8"))
+def test_the_column_has_a_meaning(driven):
+    package = json.loads((driven()[1] / "datapackage.json").read_text(encoding="utf-8"))
     (ego,) = (r for r in package["resources"] if r["path"] == "ego.csv")
     (field,) = (f for f in ego["schema"]["fields"] if f["name"] == "road_grade")
     assert field["unit"] == "rad"

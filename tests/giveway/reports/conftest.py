@@ -13,6 +13,7 @@ import pytest
 
 from giveway.gate import fingerprint
 from giveway.reports.examples import drives_of
+from giveway.reports.report_page import write_report
 from giveway.studies.definition import parse_definition
 from giveway.studies.design import design
 from giveway.studies.folder.sealing import SEAL, sealed
@@ -104,6 +105,19 @@ def lost(changed: Callable[..., StudyFolder]) -> StudyFolder:
 def again(study: StudyFolder) -> Callable[[str], Any]:
     """The drives of a run that is made again, each only once."""
     return cache(lambda run: drives_of(rerun(study, run)))
+
+
+@pytest.fixture(scope="session")
+def report(study: StudyFolder, again: Callable[[str], Any]) -> Path:
+    """The report of the study; nobody changes it."""
+
+    def replay(run: str) -> Path:
+        page = study.path / "replays" / f"{run}.html"
+        page.parent.mkdir(exist_ok=True)
+        page.write_text("a replay")
+        return page
+
+    return write_report(study, drives=again, replay=replay)
 
 
 class Page(HTMLParser):

@@ -19,17 +19,6 @@ from giveway.studies.statistics import METRICS
 LIMIT = 5_000_000  # bytes
 
 
-@pytest.fixture(scope="module")
-def report(study, again):
-    def replay(run):
-        page = study.path / "replays" / f"{run}.html"
-        page.parent.mkdir(exist_ok=True)
-        page.write_text("a replay")
-        return page
-
-    return write_report(study, drives=again, replay=replay)
-
-
 def test_it_needs_nothing_but_itself(report, parsed):
     page = parsed(report)
     for tag, values in page.tags:

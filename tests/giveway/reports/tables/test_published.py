@@ -2,22 +2,9 @@
 
 from __future__ import annotations
 
-import pytest
-
 from giveway.reports.report_page import write_report
 from giveway.reports.wording import number
 from giveway.studies.statistics import PUBLISHED
-
-
-@pytest.fixture(scope="module")
-def report(study, again):
-    def replay(run):
-        page = study.path / "replays" / f"{run}.html"
-        page.parent.mkdir(exist_ok=True)
-        page.write_text("a replay")
-        return page
-
-    return write_report(study, drives=again, replay=replay)
 
 
 def test_published_numbers_stand_beside_ours(study, report, parsed):

@@ -2,21 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
-from giveway.reports.report_page import write_report
 from giveway.reports.wording import digits_for, number
-
-
-@pytest.fixture(scope="module")
-def report(study, again):
-    def replay(run):
-        page = study.path / "replays" / f"{run}.html"
-        page.parent.mkdir(exist_ok=True)
-        page.write_text("a replay")
-        return page
-
-    return write_report(study, drives=again, replay=replay)
 
 
 def test_the_comparison_table_holds_the_frame(study, report, parsed):
