@@ -43,6 +43,7 @@ _KINDS: Final = (
 _PIECE: Final = 2**20  # Bytes that are hashed at a time
 _KEY_FILE: Final = "own_results.key"
 _KEY_LENGTH: Final = 32  # Bytes of the user's key, as many as SHA-256 has
+MANIFEST: Final = "manifest.json"
 MAKER: Final = "maker"
 """Key of a JSON file with the signature of the user who made it."""
 

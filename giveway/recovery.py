@@ -9,11 +9,12 @@ import numpy as np
 
 from giveway.api import in_journal, keep
 from giveway.config import RunConfig
-from giveway.config.files.foreign_code import named_in
-from giveway.config.files.layers import read_toml_text
+from giveway.config.files.foreign_code import foreign_code, named_in
+from giveway.config.files.layers import build_config, read_toml_text
 from giveway.config.files.loading import load
 from giveway.config.files.toml import parse_toml
 from giveway.errors import CrashError, GivewayError, ResultsError
+from giveway.gate import is_own
 from giveway.journal.journal_reader import JournalContents, read_journal
 from giveway.journal.recorded import RecordedRows
 from giveway.processes.heartbeat import Heartbeat
@@ -31,7 +32,7 @@ def recover(journal: Path, verdict: Verdict) -> CrashError:
     """Write the rows of a run whose process died, and report the cause of its death.
 
     Args:
-        journal: Folder of the dead process's journal.
+        journal: Folder of the dead process's journal, which this process has made.
         verdict: Verdict on the end of the process.
 
     Returns:
@@ -119,12 +120,24 @@ def recover_left(
         with locked(journal):
             left = _look_at(journal, contents := read_journal(journal))
             folder = out or left.results
+            own = is_own(contents.meta)
+            if out is None and folder is not None and not own:
+                raise ResultsError(
+                    f"{journal}: another user or another giveway wrote this journal, whose folder "
+                    f"for the results ({folder}) is not used; name one with --out"
+                )
             if folder is None:
                 raise ResultsError(f"{journal}: the run wrote no results; name a folder with --out")
             if not left.steps:
                 raise ResultsError(f"{journal}: the run was killed before its first row")
-            config_text = contents.meta["config"]
-            config, scenario = load([read_toml_text(config_text, "the run's configuration")])
+            layer = read_toml_text(contents.meta["config"], "the run's configuration")
+            code = [] if own else foreign_code(build_config([layer]))
+            if code:
+                raise ResultsError(
+                    f"{journal}: another user or another giveway wrote this journal, and it names "
+                    f"code, '{code[0].name}', which is not imported; recover it as that user"
+                )
+            config, scenario = load([layer])
             verdict = verdict_on_left(journal)
             error = CrashError(f"{scenario.config_file}: the run was {verdict.message}")
             result = _result_of(config, scenario, contents, error, verdict)

@@ -20,6 +20,10 @@ NoSummary = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress
 NoTables = Annotated[bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")]
 ControlStep = Annotated[float, typer.Option(help="Control step in s.", min=0.001, max=0.5)]
 ForceLimit = Annotated[float, typer.Option(help="Largest force in N.", min=1.0, max=1e6)]
+Trust = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME", help="Code (FMU, plug-in) that results name and that you know."),
+]
 Unsealed = Annotated[
     bool, typer.Option("--unsealed", help="Use tables although they are not what the run wrote.")
 ]
@@ -40,6 +44,7 @@ class RunOutputs(NamedTuple):
     pictures: Annotated[bool, typer.Option(help="Draw the pictures.", rich_help_panel="Run")] = True
     quiet: NoSummary = False
     as_json: JsonFlag = False
+    trust: Trust = None
 
 
 class RerunOutputs(NamedTuple):

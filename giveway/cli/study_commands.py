@@ -14,14 +14,11 @@ from giveway.cli.option_groups import (
     StudyComputation,
     StudyOutputs,
     StudySeeds,
+    Trust,
     Unsealed,
     ungrouped,
 )
 
-_Trust = Annotated[
-    list[str] | None,
-    typer.Option(metavar="MODULE:CLASS", help="Code that the study names and that you know."),
-]
 _Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
 
 
@@ -123,7 +120,7 @@ def _rerun(
     study: _Folder,
     run: Annotated[str, typer.Argument(help="The run's id, like c2-s17; see runs.csv.")],
     outputs: RerunOutputs,
-    trust: _Trust = None,
+    trust: Trust = None,
 ) -> None:
     """Make one run of a study again, with all trajectories, and compare its numbers."""
     from giveway.cli.guards.isolated import run_isolated, supervised
@@ -145,7 +142,7 @@ def _report(
         bool, typer.Option(help="Make the runs that it points at again, to play and show them.")
     ] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
-    trust: _Trust = None,
+    trust: Trust = None,
 ) -> None:
     """Write figures, replays of the most telling runs, and report.html into a study's folder."""
     from giveway.cli.commands.report_command import report_command
@@ -166,10 +163,11 @@ def _replay(
         bool, typer.Option(help="Make the run again for its predicted positions.")
     ] = True,
     unsealed: Unsealed = False,
+    trust: Trust = None,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one HTML page that plays a run, in any browser, without a network."""
-    from giveway.cli.commands.replay_command import replay_command
+    from giveway.cli.commands.replay_command import PlayChoice, replay_command
 
-    choice = {"rerun": rerun, "unsealed": unsealed, "show": show}
-    raise typer.Exit(replay_command(run, out=out, beside=beside, **choice))
+    choice = PlayChoice(rerun, unsealed, tuple(trust or ()))
+    raise typer.Exit(replay_command(run, choice, out=out, beside=beside, show=show))

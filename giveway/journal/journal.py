@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.gate import signed
 from giveway.processes.heartbeat import Heartbeat
 
 Array = NDArray[np.float64]
@@ -198,7 +199,7 @@ class Journal:
             return
         new = self._folder / f"{META_FILE}.new"
         try:
-            new.write_text(json.dumps(meta), encoding="utf-8")
+            new.write_text(json.dumps(signed(meta)), encoding="utf-8")
             new.replace(self._folder / META_FILE)
         except OSError as error:
             self._give_up(error)

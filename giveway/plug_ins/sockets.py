@@ -85,6 +85,18 @@ SENSOR = Socket(
     "--set-sensor",
     "observe",
 )
+VEHICLE = Socket(
+    "vehicle",
+    "[vehicle] fmu",
+    ("vehicle", "fmu"),
+    "vehicle",
+    "vehicles",
+    "",
+    "--vehicle",
+    "",
+    "",
+)
+"""The vehicle FMU of an ego: a file and no plug-in, but other people's code, too."""
 SOCKETS = (CONTROLLER, MODEL, SENSOR)
 """Sockets for which one key names the plug-in."""
 TABLES = (RULE, METRIC)

@@ -12,6 +12,7 @@ import math
 import os
 import shutil
 import signal
+import stat
 import subprocess
 import sys
 import tempfile
@@ -106,13 +107,23 @@ def journal_place() -> Path:
 
 
 def journals() -> list[Path]:
-    """Return the folders of journals whose supervisors are gone, oldest first."""
+    """Return the folders of this user's journals whose supervisors are gone, oldest first."""
     found: list[tuple[float, Path]] = []
     for folder in journal_place().glob(f"{_PREFIX}*"):
         with contextlib.suppress(OSError):
-            if not in_use(folder):
+            if _is_own(folder) and not in_use(folder):
                 found.append((folder.stat().st_mtime, folder))
     return [folder for _, folder in sorted(found)]
+
+
+def _is_own(folder: Path) -> bool:
+    """Return whether a path is a folder of this user, and not a link to one.
+
+    Raises:
+        OSError: it cannot be examined.
+    """
+    found = folder.lstat()
+    return stat.S_ISDIR(found.st_mode) and found.st_uid == getattr(os, "getuid", lambda: 0)()
 
 
 def verdict_on_left(journal: Path) -> Verdict:
@@ -130,7 +141,9 @@ def _sweep(place: Path) -> None:
     """Remove the journals that have not been used for a week; those in use are locked."""
     with contextlib.suppress(OSError):
         for folder in place.glob(f"{_PREFIX}*"):
-            written = max((file.stat().st_mtime for file in folder.iterdir()), default=math.inf)
+            if not _is_own(folder):
+                continue
+            written = max((file.lstat().st_mtime for file in folder.iterdir()), default=math.inf)
             if time.time() - written > _KEPT and not in_use(folder):
                 shutil.rmtree(folder, ignore_errors=True)
 

@@ -4,7 +4,7 @@ import contextlib
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,7 +28,7 @@ class Predicted:
 
 
 @contextlib.contextmanager
-def predicted_again(folder: Path) -> Iterator[Predicted]:
+def predicted_again(folder: Path, trusted: Collection[str] = ()) -> Iterator[Predicted]:
     """Repeat the run in ``folder``, in other processes, so that a crash does no harm.
 
     The predictions count only if the ``ego.csv`` of the repetition begins with the folder's. The
@@ -36,11 +36,13 @@ def predicted_again(folder: Path) -> Iterator[Predicted]:
 
     Args:
         folder: Results of ``giveway run``.
+        trusted: Code that the folder names and that may run.
     """
     with tempfile.TemporaryDirectory(prefix="giveway-replay-", ignore_cleanup_errors=True) as place:
         again = Path(place) / "run"
         command = [sys.executable, "-m", "giveway", "run", "--config", str(folder / "config.toml")]
         command += ["--record-predictions", str(PERIOD), "--out", str(again)]
+        command += [word for name in trusted for word in ("--trust", name)]
         command += ["--no-twin", "--no-pictures", "--quiet"]
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, check=False, text=True

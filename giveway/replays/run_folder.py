@@ -12,7 +12,7 @@ import pandas as pd
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
-from giveway.gate import LARGEST_TABLE, opened, read_json
+from giveway.gate import LARGEST_TABLE, MANIFEST, opened, read_json
 from giveway.geometry.kernel import Array
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
 from giveway.run_data.columns import (
@@ -22,7 +22,7 @@ from giveway.run_data.columns import (
     Column,
 )
 from giveway.run_data.scene import Scene
-from giveway.run_data.seal import MANIFEST, is_sealed, require_sealed
+from giveway.run_data.seal import is_sealed, require_sealed
 from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"

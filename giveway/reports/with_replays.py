@@ -23,6 +23,7 @@ def write_report_of(
     replays: bool = True,
     tell: Callable[[str], None] = lambda _: None,
     trusted: Collection[str] = (),
+    warn: Callable[[str], None] = lambda _: None,
 ) -> Path:
     """Write figures, replays and ``report.html`` into the study's folder.
 
@@ -32,6 +33,7 @@ def write_report_of(
             of speed and gap. Runs that a former report has made are kept.
         tell: Function that takes one line at each step.
         trusted: Code, as module:Class, that the study may import.
+        warn: Function that takes one line if runs cannot be made again.
 
     Raises:
         GivewayError: the disk is full.
@@ -42,6 +44,10 @@ def write_report_of(
     runs, kept = shown_runs(study), KeptRuns(study)
     kept.only(runs)
     lost = _make([run for run in runs if not kept.has(run)], study, kept, tell, trusted)
+
+    if lost:
+        first = next(iter(lost.values()))
+        warn(f"{len(lost)} of {len(runs)} shown runs have no replay: {first}")
 
     def drives(run: str) -> Sequence[Drive]:
         if run in lost:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from giveway.errors import ResultsError
-from giveway.gate import read_bytes
+from giveway.gate import MANIFEST, read_bytes
 from giveway.processes.locks import FolderInUseError, locked
 from giveway.results.json_text import DECIMALS, json_text
 from giveway.results.names import FILES, SUMO_FOLDER
@@ -19,7 +19,7 @@ from giveway.results.run_tables import RunTables
 from giveway.results.scene import scene_of
 from giveway.run_data.columns import Column
 from giveway.run_data.scene import SCENE_FILE
-from giveway.run_data.seal import MANIFEST, sealed
+from giveway.run_data.seal import sealed
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from giveway.errors import ResultsError
-from giveway.gate import MAKER, RefusedFileError, fingerprint_of, is_own, read_json, signed
+from giveway.gate import MAKER, MANIFEST, RefusedFileError, fingerprint_of, signed
 
-MANIFEST: Final = "manifest.json"
 SEAL: Final = "seal"
 _TABLES: Final = frozenset({".csv", ".parquet"})
 
@@ -81,16 +80,6 @@ def require_sealed(folder: Path, manifest: Mapping[str, Any]) -> None:
             f"{found[0]}{more}; expected the run's own files, as sealed in {MANIFEST}; copy the "
             "folder again or make the run again, or use it as it is with --unsealed"
         )
-
-
-def is_own_run(folder: Path) -> bool:
-    """Return whether this user made the run in a folder, with the configuration that is there."""
-    try:
-        manifest = read_json(folder / MANIFEST)
-        known = manifest[SEAL]["files"]["config.toml"]
-        return is_own(manifest) and fingerprint_of(folder / "config.toml") == known
-    except (OSError, RefusedFileError, LookupError, TypeError):
-        return False
 
 
 def _changed(file: Path, known: Any) -> str:

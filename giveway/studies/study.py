@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from giveway.errors import GivewayError
-from giveway.gate import fingerprint
+from giveway.gate import fingerprint, signed
 from giveway.processes.interrupts import exit_code_of, who_ended
 from giveway.results.provenance import processor, software_versions
 from giveway.studies.definition import StudyDefinition, dump_definition
@@ -273,7 +273,7 @@ class _Session:
             ],
             "software": dict(software_versions()),
         }
-        whole = sealed(content, self._software)
+        whole = signed(sealed(content, self._software))
         text = json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
         write_atomically(self._out / MANIFEST, text, durable=True)
 

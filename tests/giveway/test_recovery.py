@@ -18,6 +18,7 @@ from giveway.api import run_checked
 from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ResultsError
+from giveway.gate import is_own
 from giveway.journal.journal import MAGIC, RECORD, Kind, row_type
 from giveway.journal.layout import ROWS
 from giveway.journal.recorded import RecordedRows
@@ -174,6 +175,44 @@ def test_what_sigkill_has_left_becomes_tables(
     assert "killed, with its supervisor," in manifest["error"]
     assert not journal.exists()
     assert "No run that was killed" in type_here("recover").stdout
+
+
+def test_a_journal_of_somebody_else_decides_nothing(
+    tmp_path: Path,
+    type_here: Callable[..., subprocess.CompletedProcess[str]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Neither where the rows go, nor what code is imported; it is not even listed."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    journal = journalled(tmp_path)
+    file = journal / "meta.json"
+    meta = json.loads(file.read_text())
+    assert is_own(meta)
+    file.write_text(json.dumps(meta | {"results": str(tmp_path / "precious")}))
+    refused = type_here("recover", journal)
+    assert "whose folder for the results" in refused.stderr
+    code = meta["config"].replace('controller = "mpc"', 'controller = "own_code:Evil"')
+    file.write_text(json.dumps(meta | {"config": code}))
+    assert (
+        "'own_code:Evil', which is not imported"
+        in type_here("recover", journal, "--out", "o").stderr
+    )
+    os.mkfifo(tmp_path / "giveway-journal-pipe")
+    (tmp_path / "giveway-journal-link").symlink_to(tmp_path / "precious")
+    assert f"{journal}  " in type_here("recover").stdout
+    if os.getuid() == 0:
+        os.chown(journal, 12345, 12345)
+        assert "No run that was killed" in type_here("recover").stdout
+    file.write_text(json.dumps(meta | {"results": str(tmp_path / "precious")}))
+    rows = journal / "rows"
+    rows.rename(tmp_path / "rows")
+    rows.symlink_to(tmp_path / "rows")
+    assert "rows: is a link" in type_here("recover", journal, "--out", "o").stderr
+    (tmp_path / "rows").replace(rows)
+    assert type_here("recover", journal, "--out", "o").returncode == 0
+    assert (tmp_path / "o" / "ego.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    assert not (tmp_path / "precious").exists()
 
 
 @pytest.mark.parametrize(

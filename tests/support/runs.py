@@ -38,3 +38,11 @@ def unseal(folder: Path) -> Path:
     kept = {key: value for key, value in content.items() if key not in ("seal", "maker")}
     manifest.write_text(json.dumps(kept), encoding="utf-8")
     return folder
+
+
+def foreign(folder: Path) -> Path:
+    """Turn a results folder into one that another user has made, whose key signed it."""
+    manifest = folder / "manifest.json"
+    content = json.loads(manifest.read_text(encoding="utf-8"))
+    manifest.write_text(json.dumps(content | {"maker": "0" * 64}), encoding="utf-8")
+    return folder

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from giveway.cli.screen.printing import print_place
+from giveway.cli.screen.printing import print_notes, print_place
 from giveway.studies.folder.study_folder import StudyFolder
 
 
@@ -48,5 +48,7 @@ def write_all(
     if not study.complete or {f"{name}.csv" for name in TABLES} - intact_tables(study.path):
         write_tables(study, whole=True)
     with console.status("Drawing ...") as status:
-        page = write_report_of(study, replays=replays, tell=status.update, trusted=trusted)
+        page = write_report_of(
+            study, replays=replays, tell=status.update, trusted=trusted, warn=print_notes
+        )
     print_place(console, "Report", page)

@@ -50,7 +50,7 @@ def run_command(
         GivewayError: one line that says what to do.
     """
     console = Console(quiet=outputs.quiet or outputs.as_json)
-    effective, found = load(layers_of(scenario, config, settings))
+    effective, found = load(layers_of(scenario, config, settings), outputs.trust or ())
     if outputs.parquet:
         require_parquet()
     from giveway.cosimulation.preflight import preflight

@@ -16,6 +16,7 @@ from giveway.plug_ins.sockets import (
     SENSOR,
     SOCKETS,
     TABLES,
+    VEHICLE,
     Socket,
 )
 
@@ -49,7 +50,7 @@ class Named(NamedTuple):
         Raises:
             ControlError: the package or file is not there.
         """
-        if is_fmu(self.name):
+        if is_fmu(self.name) or self.socket is VEHICLE:
             return fmu_hash(self.name)
         return find(self.name, self.socket).sha256
 

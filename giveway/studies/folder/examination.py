@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
+from giveway.config.files.trust import is_own_folder
 from giveway.doctor.finding import Finding, error, note, ok
 from giveway.errors import ResultsError
-from giveway.gate import read_json
-from giveway.run_data.seal import MANIFEST, faults, is_own_run, is_sealed
+from giveway.gate import MANIFEST, read_json
+from giveway.run_data.seal import faults, is_sealed
 from giveway.studies.folder.folder_contents import DEFINITION, broken_files
 from giveway.studies.folder.study_folder import StudyFolder
 
@@ -35,7 +36,7 @@ def examine_results(folder: Path) -> list[Finding]:
         ]
     found = faults(folder, manifest)
     remedy = "copy the folder again, or make the run again"
-    maker = "this user" if is_own_run(folder) else "another user, machine or cache folder"
+    maker = "this user" if is_own_folder(folder) else "another user, machine or cache folder"
     whole = ok(_SUBJECT, f"{folder}: as the run wrote them; made by {maker}")
     return [error(_SUBJECT, str(fault), remedy) for fault in found] or [whole]
 

@@ -58,6 +58,7 @@ def read_sealed(file: Path, *, software: str | None = None) -> dict[str, Any]:
         OSError: it cannot be read.
     """
     content = read_json(file)
+    content.pop(gate.MAKER, None)
     seal = content.pop(SEAL, None)
     if seal is None:
         raise BrokenFileError(file, "its seal is missing")

@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from support.plug_ins import printed
+from support.runs import foreign
 
 import giveway
 from giveway.config import EgoRunConfig, RunConfig
@@ -168,6 +169,10 @@ def test_a_results_folder_is_not_believed(careful, installed, tmp_path, type_her
     assert load([read_toml(named / "config.toml")], trusted={"careful_driver:Careful"})
     words = ["--controller", "careful_driver:Careful"]
     assert type_here("config", "--config", named / "config.toml", *words).returncode == 0
+    theirs = foreign(shutil.copytree(declared, tmp_path / "theirs")) / "config.toml"
+    with pytest.raises(ConfigError, match="somebody else's results folder names code"):
+        load([read_toml(theirs)])
+    assert load([read_toml(theirs)], trusted={"careful"})
     elsewhere = shutil.copy(named / "config.toml", tmp_path / "my.toml")
     assert load([read_toml(Path(elsewhere))])  # the user's own file
     careful.write_text(careful.read_text(encoding="utf-8") + "# other\n", encoding="utf-8")

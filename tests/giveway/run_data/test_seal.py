@@ -10,10 +10,11 @@ import pytest
 from support.runs import unseal
 
 from giveway import run
+from giveway.config.files.trust import is_own_folder
 from giveway.errors import ResultsError
-from giveway.gate import read_json
+from giveway.gate import MANIFEST, read_json
 from giveway.replays.run_folder import RunFolder
-from giveway.run_data.seal import MANIFEST, SEAL, faults, is_own_run, require_sealed
+from giveway.run_data.seal import SEAL, faults, require_sealed
 from giveway.studies.folder.examination import examine_results
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def test_a_table_that_is_not_the_runs_is_named(
     harm(folder / name)
     (fault,) = faults(folder, read_json(folder / MANIFEST))
     assert fault.file == folder / name
-    assert not is_own_run(folder) or name != "config.toml"
+    assert not is_own_folder(folder) or name != "config.toml"
     with pytest.raises(ResultsError, match=rf"{name}: .*--unsealed|'{name}' is missing"):
         RunFolder.read(folder)
 
@@ -84,11 +85,11 @@ def test_a_table_that_was_put_there_is_named(folder: Path) -> None:
 
 def test_a_manifest_that_was_changed_is_named(folder: Path) -> None:
     manifest = json.loads((folder / MANIFEST).read_text())
-    assert is_own_run(folder)
+    assert is_own_folder(folder)
     (folder / MANIFEST).write_text(json.dumps(manifest | {"time_step": 0.1}))
     with pytest.raises(ResultsError, match=r"manifest\.json: was changed after the run"):
         RunFolder.read(folder)
-    assert not is_own_run(folder)
+    assert not is_own_folder(folder)
     (folder / MANIFEST).write_text(json.dumps(manifest | {SEAL: 3}))
     with pytest.raises(ResultsError, match="broken seal"):
         RunFolder.read(folder)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from support.runs import unseal
 
-from giveway.cli.commands.replay_command import replay_command
+from giveway.cli.commands.replay_command import PlayChoice, replay_command
 from giveway.replays import write_replay
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def test_predictions_of_a_run_that_differed_are_not_shown(
 def test_no_rerun_makes_no_run(folder: Path) -> None:
     (folder / "predictions.csv").unlink()
     (folder / "config.toml").write_text((folder / "config.toml").read_text() + "# as it was\n")
-    assert replay_command(folder, rerun=False) == 0
+    assert replay_command(folder, PlayChoice(rerun=False)) == 0
     made = content(folder / "replay.html")
     assert made["egos"][0]["predicted"] is None
     assert any("--record-predictions" in note for note in made["notes"])
