@@ -5,11 +5,11 @@ All of it is in the repository, or made here from it, once for each ``--out``.
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -179,8 +179,10 @@ _ADDITIONAL: Final = """<additional>
         <destProbReroute id="A0A1"/></interval></rerouter>
 </additional>
 """
-_JOURNAL: Final = """import sys
+_JOURNAL: Final = """import json
+import sys
 from pathlib import Path
+from giveway.gate import signed
 from giveway.api import run_checked
 from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
@@ -189,6 +191,9 @@ settings = {"crowd": {"pedestrians": 3}, "time_limit": 1.0}
 journal, results = map(Path, sys.argv[1:])
 checked = preflight(*load([as_layer(settings)]))
 run_checked(checked, Destination(results, pictures=False), journal=journal)
+meta = json.loads((journal / "meta.json").read_text())
+del meta["maker"]
+(journal / "meta.json").write_text(json.dumps(signed(meta | {"results": "r"})))
 """
 _RATE: Final = 29.97  # [1/s] of the clips
 
@@ -335,10 +340,23 @@ class Bases:
             results = self._folder / "journalled"
             shutil.rmtree(results, ignore_errors=True)
             made = [sys.executable, "-c", _JOURNAL, folder, results]
-            subprocess.run(made, check=True, capture_output=True)
-            meta = folder / "meta.json"
-            told = json.loads(meta.read_text(encoding="utf-8"))
-            meta.write_text(json.dumps(told | {"results": "r"}), encoding="utf-8")
+            subprocess.run(made, check=True, capture_output=True, env=self._nursery.environment)
+        return folder
+
+    @cached_property
+    def driven(self) -> Path:
+        """Results of a run of ``car.fmu`` beside them, which is no bundled vehicle."""
+        from giveway.studies.identity import software_identity
+
+        folder = self._folder / f"driven-{software_identity()}" / "run"
+        if not folder.exists():
+            car = folder.with_name("car.fmu")
+            car.parent.mkdir(exist_ok=True)
+            with zipfile.ZipFile(self.fmus[0]) as ours, zipfile.ZipFile(car, "w") as theirs:
+                for name in ours.namelist():
+                    theirs.writestr(zipfile.ZipInfo(name), ours.read(name))
+            short = ("--pedestrians", 2, "--time-limit", 0.5, "--no-pictures", "--out", folder)
+            self._said("run", "--vehicle", car, *short)
         return folder
 
     def _said(self, *words: object) -> str:

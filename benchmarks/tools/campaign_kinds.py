@@ -7,8 +7,9 @@ import shutil
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
+from campaign_folders import CIVIL, FOLDER_KINDS, Expected
 from campaign_mutations import mutate
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ class Case:
         words: of the command, typed in ``folder``.
         folder: where the input lies.
         mutations: what has been done to which file.
+        expected: what has to hold beside civility.
     """
 
     number: int
@@ -40,6 +42,7 @@ class Case:
     words: Words
     folder: Path
     mutations: str
+    expected: Expected = CIVIL
 
 
 def make_case(seed: int, number: int, bases: Bases, folder: Path, only: str | None = None) -> Case:
@@ -57,8 +60,8 @@ def make_case(seed: int, number: int, bases: Bases, folder: Path, only: str | No
     folder.mkdir(parents=True)
     kind = drawn.choices(list(KINDS), [weight for weight, _ in KINDS.values()])[0]
     kind = only or kind
-    words, mutations = KINDS[kind][1](drawn, bases, folder)
-    return Case(number, kind, words, folder, mutations)
+    words, mutations, *expected = KINDS[kind][1](drawn, bases, folder)
+    return Case(number, kind, words, folder, mutations, *expected)
 
 
 def _mutated(drawn: random.Random, file: Path) -> str:
@@ -220,7 +223,8 @@ def _replay(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, st
     chosen = drawn.sample(files, drawn.choice((1, 1, 2)))
     done = "; ".join(_broken(drawn, file, drawn.choice(files)) for file in chosen)
     again: Words = [] if drawn.random() < 0.15 else ["--no-rerun"]
-    return ["replay", "run", *again], done
+    unsealed: Words = [] if drawn.random() < 0.3 else ["--unsealed"]
+    return ["replay", "run", *again, *unsealed], done
 
 
 def _recover(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, str]:
@@ -232,7 +236,7 @@ def _recover(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, s
     return ["recover", "journal", *where], done
 
 
-KINDS: Final[dict[str, tuple[int, Callable[[random.Random, Bases, Path], tuple[Words, str]]]]] = {
+KINDS: Final[dict[str, tuple[int, Callable[..., tuple[Any, ...]]]]] = {
     "scenario": (28, _scenario),
     "settings": (15, _settings),
     "study": (12, _study),
@@ -245,5 +249,6 @@ KINDS: Final[dict[str, tuple[int, Callable[[random.Random, Bases, Path], tuple[W
     "rerun": (4, _rerun),
     "replay": (6, _replay),
     "recover": (6, _recover),
+    **FOLDER_KINDS,
 }
 """Each kind's share, and what makes a case of it."""

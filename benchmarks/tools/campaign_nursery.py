@@ -91,7 +91,9 @@ class Nursery:
         texts = [path.read_text(encoding="utf-8", errors="replace") for path in (out, err)]
         return Ended(int(answer), *texts)
 
-    def _started(self) -> subprocess.Popen[str]:
+    @property
+    def environment(self) -> dict[str, str]:
+        """The environment of the commands that are typed."""
         from giveway._kernels.cache import kernel_cache
 
         environment = {
@@ -100,13 +102,15 @@ class Nursery:
             "COLUMNS": "120",
         }
         environment |= {"XDG_CACHE_HOME": str(self._cache), "NO_COLOR": "1", "MPLBACKEND": "agg"}
-        environment |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+        return environment | dict.fromkeys(("OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+
+    def _started(self) -> subprocess.Popen[str]:
         self._process = subprocess.Popen(
             [sys.executable, __file__],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            env=environment,
+            env=self.environment,
         )
         return self._process
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from campaign_nursery import Ended
 
 TABLES: Final = ("runs", "cells", "levels", "comparison", "situations", "failures")
-BAD: Final = ("traceback", "native", "hang", "different", "nonsense", "mute", "noise")
+BAD: Final = ("traceback", "native", "hang", "different", "nonsense", "mute", "noise", "wrong")
 _LONGEST: Final = 1500  # characters of a clear line
 _FINDINGS: Final = ("doctor", "fmu", "study")  # they may say on a whole screen what is wrong
 _FORCED: Final = ("run", "study", "validate", "calibrate", "rerun", "recover")  # have --force
@@ -38,7 +38,7 @@ class Verdict:
             the run, and one line says so). Not civil: "traceback"; "native": ended by a signal
             without a line; "hang"; "different": other tables without a word; "nonsense": infinite
             numbers in tables; "mute": failed without its one line; "noise": more than that, or what
-            no terminal should be sent.
+            no terminal should be sent; "wrong": not what the case expects.
         code: of the exit.
         seconds: it took.
         mutations: what was done to which file.
@@ -72,6 +72,8 @@ def judge(case: Case, ended: Ended, seconds: float, original: Path | None) -> Ve
     """
     outcome = _outcome(case, ended, original)
     line = ended.err.strip() or ended.out.strip()[-300:]
+    if outcome not in BAD and case.expected.broken(ended.code, ended.err):
+        outcome = "wrong"
     if outcome == "native":
         code, line = _typed_again(case)
         outcome = "told" if code > 0 and _is_one_line(line) else "native"
