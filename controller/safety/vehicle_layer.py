@@ -80,15 +80,15 @@ class VehicleLayer:
         dt, self._actuator = model.time_step, limits.actuator
         hardest = min(limits.force_limit, limits.actuator.brake.limit) / model.mass
         response = min(limits.response, hardest)
-        self._lagging = Lagging.of(limits.actuator, dt)
         vehicle = [dt, model.mass, model.friction, response, hardest, limits.margin]
-        self._numbers = np.array([*vehicle, *self._lagging])
-        self._commands, self._acting = past_commands(limits.actuator.dead_time, dt), np.zeros(3)
+        self._numbers = np.array([*vehicle, *Lagging.of(limits.actuator, dt)])
+        self._memory = past_commands(limits.actuator.dead_time, dt), np.zeros(3)
         self.restores = False
 
     def reset(self) -> None:
         """Forget the past."""
-        self._commands[:] = self._acting[:] = 0.0
+        for array in self._memory:
+            array[:] = 0.0
         self.restores = False
 
     def filter(self, force: float, speed: float, ahead: VehicleAhead | None) -> float:
@@ -107,7 +107,7 @@ class VehicleLayer:
         restores = self.restores or ahead.new
         asked = self._actuator.acting(force)
         safe, self.restores = safe_following_force(
-            asked, speed, ahead, restores, self._numbers, (self._commands, self._acting)
+            asked, speed, ahead, restores, self._numbers, self._memory
         )
         return force if safe == asked else self._actuator.command(float(safe))
 
@@ -117,11 +117,19 @@ class VehicleLayer:
         Args:
             force: Force [N]; at most the one that :meth:`filter` has returned.
         """
-        self._commands[:-1] = self._commands[1:]
-        self._commands[-1] = self._actuator.acting(force)
-        _, mass, _, _, hardest, _ = self._numbers[:6]
-        strongest = max(self._commands.max(), -mass * hardest)
-        advance_bound(strongest, self._acting, self._lagging)
+        remember(self._actuator.acting(force), self._numbers, self._memory)
+
+
+@kernel
+def remember(force: float, numbers: Array, memory: tuple[Array, Array]) -> None:
+    """Remember a force [N] that is to act; arguments as for :func:`safe_following_force`."""
+    commands, acting = memory
+    for i in range(commands.shape[0] - 1):
+        commands[i] = commands[i + 1]
+    commands[-1] = force
+    hardest = numbers[1] * numbers[4]
+    c = Lagging(numbers[6], numbers[7], numbers[8], numbers[9], numbers[10])
+    advance_bound(max(commands.max(), -hardest), acting, c)
 
 
 @kernel

@@ -275,10 +275,21 @@ class SumoSession:
             for name, pose in egos:
                 there = self._vehicle_position(name)
                 if there != pose[:2]:
-                    _compare("vehicle", self.time, name, there, pose)
-            self._person_moves.compare(ids, x, y, partial(_compare, "person", self.time))
+                    self._compare("vehicle", name, there, pose)
+            self._person_moves.compare(ids, x, y, partial(self._compare, "person"))
         except self._sumo.TraCIException as error:
             raise self._failure(error) from error
+
+    def _compare(
+        self, kind: str, name: str, there: tuple[float, float], here: Sequence[float]
+    ) -> None:
+        deviation = math.hypot(there[0] - here[0], there[1] - here[1])
+        if deviation > POSITION_TOLERANCE:
+            raise SumoError(
+                f"{kind} '{name}' at {self.time:.3f} s: SUMO has it {deviation:.3g} m away from "
+                f"our state; expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody "
+                "else?"
+            )
 
     def step(self) -> None:
         """Let the scenario go on by itself for one SUMO step."""
@@ -316,17 +327,6 @@ class SumoSession:
         self._stderr.close()
         with contextlib.suppress(OSError):
             self._scratch.cleanup()
-
-
-def _compare(
-    kind: str, time: float, name: str, there: tuple[float, float], here: Sequence[float]
-) -> None:
-    deviation = math.hypot(there[0] - here[0], there[1] - here[1])
-    if deviation > POSITION_TOLERANCE:
-        raise SumoError(
-            f"{kind} '{name}' at {time:.3f} s: SUMO has it {deviation:.3g} m away from our state; "
-            f"expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody else?"
-        )
 
 
 def _calls_somebody(scenario: ScenarioFiles) -> bool:

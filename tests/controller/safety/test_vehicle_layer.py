@@ -49,7 +49,7 @@ class Drive:
         assert safe <= force
         self.layer.applied(safe)
         self.commands.append(safe)
-        acts = self.commands[-1 - (len(self.layer._commands) - 1)]
+        acts = self.commands[-1 - (len(self.layer._memory[0]) - 1)]
         self.decelerations.append(braking(self.speed, acts))
         self.front += DT * self.speed
         self.speed = max(0.0, MODEL.decay * self.speed + MODEL.speed_per_force * acts)
@@ -189,7 +189,7 @@ def test_the_past_is_forgotten() -> None:
     layer = VehicleLayer(MODEL, VehicleLimits(actuator=late(0.2)))
     layer.applied(FULL)
     layer.reset()
-    assert not np.any(layer._commands)
+    assert not np.any(layer._memory[0])
 
 
 @pytest.mark.parametrize(
