@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtrit
+import scipy  # scipy.special is loaded where it is first used
 
 from fmus.checking.model_fit.measurements import Measurements
 from fmus.checking.model_fit.side_response import Array, SideResponse
@@ -291,7 +291,7 @@ def half_widths(estimate: Estimate) -> tuple[float, float]:
     spread = np.sqrt((n - 1) / n * (np.array(moved) ** 2).sum(axis=0))[:2]
     scale = np.maximum(np.abs(linear.rows).max(axis=0), 1e-12)[:2]
     relative = spread / scale / np.maximum(np.abs(linear.coefficients[:2]), 1e-300)
-    quantile = float(stdtrit(max(n - A.shape[1], 1), 0.975))
+    quantile = float(scipy.special.stdtrit(max(n - A.shape[1], 1), 0.975))
     one, two = (
         estimate.mass(side) * max(quantile * float(relative[side]), LEAST_INTERVAL)
         for side in (0, 1)

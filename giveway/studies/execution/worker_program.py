@@ -39,6 +39,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         token: Token by which a worker that connects proves itself.
     """
     die_with(parent)
+    gc.disable()  # imports make no garbage, and each search for it takes longer
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the study decides what Ctrl-C means
     line = Line(_connected(connection, token))
     _raise_oom_score()
@@ -58,6 +59,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         # here, since half a minute of compiling must not look like a hanging run
         compile_kernels_once()
         gc.freeze()  # modules stay loaded, so garbage collection need not look at them
+        gc.enable()
         line.send(READY)
         runs = itertools.count(1)
         with contextlib.suppress(EOFError), processes_reused():

@@ -31,6 +31,13 @@ tasks = [Task(str(n), str(n), config, {{}}, code) for n in range(100000)]
 """
 
 
+@pytest.fixture(scope="module")
+def one_worker():
+    """An executor with one worker, which stays."""
+    with local_executor(jobs=1) as executor:
+        yield executor
+
+
 @pytest.fixture
 def script(tmp_path, task):
     """Starts a Python of its own that has 100,000 tasks."""
@@ -68,7 +75,7 @@ def test_every_run_is_made_once_and_like_in_one_process(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_tasks_are_taken_when_they_are_needed_and_workers_stay(task, worker_of, left_behind):
+def test_tasks_are_taken_when_they_are_needed_and_workers_stay(one_worker, task, worker_of):
     taken = 0
 
     def plan():
@@ -77,17 +84,16 @@ def test_tasks_are_taken_when_they_are_needed_and_workers_stay(task, worker_of, 
             taken += 1
             yield task(f"r{number}", number)
 
-    with local_executor(jobs=1) as executor:
-        first = executor.run(plan())
-        one = next(first)
-        assert taken <= 3
-        assert len({record.computing.worker for record in (one, *first)}) == 1
-        (again,) = executor.run([task("again")])
-        assert again.computing.worker == one.computing.worker
-        if sys.platform == "linux":  # short of memory, the system takes a worker first
-            score = Path(f"/proc/{worker_of(again).pid}/oom_score_adj").read_text().strip()
-            assert score == "500"
-        assert list(executor.run([])) == []
+    first = one_worker.run(plan())
+    one = next(first)
+    assert taken <= 3
+    assert len({record.computing.worker for record in (one, *first)}) == 1
+    (again,) = one_worker.run([task("again")])
+    assert again.computing.worker == one.computing.worker
+    if sys.platform == "linux":  # short of memory, the system takes a worker first
+        score = Path(f"/proc/{worker_of(again).pid}/oom_score_adj").read_text().strip()
+        assert score == "500"
+    assert list(one_worker.run([])) == []
 
 
 def test_a_study_that_is_given_up_leaves_no_process(task, left_behind):
@@ -197,24 +203,18 @@ def test_a_file_that_changes_while_the_study_is_at_work_ends_it(
     assert 1 <= len(made) < 4
 
 
-def test_a_scenario_missing_on_the_worker_is_no_runs_failure(tmp_path, task, refused, left_behind):
+def test_a_scenario_missing_on_the_worker_is_no_runs_failure(tmp_path, task, refused, one_worker):
     there = tmp_path / "theirs"
     shutil.copytree(find("shared_space").config_file.parent, there)
     planned = task("a", scenario=str(there))
     settings = RunConfig.model_validate_json(planned.config)
     planned = replace(planned, inputs=input_hashes(settings, find(settings.scenario)))
     shutil.rmtree(there)
-    with (
-        local_executor(jobs=1) as executor,
-        refused(WorkerError, "shared_space.", "found nothing", "the same path on every machine"),
-    ):
-        list(executor.run([planned]))
+    with refused(WorkerError, "shared_space.", "found nothing", "the same path on every machine"):
+        list(one_worker.run([planned]))
 
 
-def test_other_software_than_the_plans_makes_no_run(task, refused, left_behind):
+def test_other_software_than_the_plans_makes_no_run(task, refused, one_worker):
     stranger = replace(task("a"), software="another")
-    with (
-        local_executor(jobs=1) as executor,
-        refused(WorkerError, "differ from those that planned run a", "same versions", "--resume"),
-    ):
-        list(executor.run([stranger]))
+    with refused(WorkerError, "differ from those that planned run a", "same versions", "--resume"):
+        list(one_worker.run([stranger]))
