@@ -32,6 +32,11 @@ class Phase(enum.IntEnum):
     DONE = 8
 
 
+SETTING_UP = 5.0
+"""Factor on the time without progress that counts as a hang while a run is being set up.
+
+A large network takes minutes to load.
+"""
 LOOP = frozenset({Phase.CONTROLLING, Phase.VEHICLE, Phase.CROWD, Phase.SUMO})
 _PLACES = {
     Phase.STARTING: "while Python started",

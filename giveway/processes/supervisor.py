@@ -26,7 +26,7 @@ from typing import Self
 
 from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
-from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
+from giveway.processes.heartbeat import LOOP, SETTING_UP, Heartbeat, Phase, Pulse, Stillness
 from giveway.processes.interrupts import ENDING, SignalHandler
 from giveway.processes.locks import in_use, locked
 
@@ -289,7 +289,8 @@ class _Watchdog:
     def _limit(self, phase: Phase) -> float:
         if phase in LOOP:
             return self._hang_limit
-        return _TEARDOWN_LIMIT if phase is Phase.DONE else math.inf
+        set_up = SETTING_UP * self._hang_limit
+        return {Phase.LOADING: set_up, Phase.DONE: _TEARDOWN_LIMIT}.get(phase, math.inf)
 
     def _watch(self) -> None:
         stillness = Stillness(self._heartbeat)

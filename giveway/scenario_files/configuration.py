@@ -18,6 +18,7 @@ from giveway.scenario_files.options import (
     OUTPUTS,
     canonical,
 )
+from giveway.scenario_files.reading import is_bomb
 
 _Value = TypeVar("_Value")
 
@@ -115,6 +116,11 @@ class ScenarioFiles:
                 raise ScenarioError(
                     f"{self.config_file}: {option} names {path}, which you may not read; "
                     "expected a readable file; change its permissions"
+                )
+            if is_bomb(path):
+                raise ScenarioError(
+                    f"{self.config_file}: {option} names {path}, which unpacks to more than a "
+                    "hundred times its size; expected a file of a scenario; look at its content"
                 )
 
 

@@ -1,13 +1,34 @@
 """Scenario files as streams of bytes, compressed or not."""
 
 import gzip
+import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, cast
 
 _CHUNK = 1 << 22  # Size of one read [bytes]
+_JUDGED = 1 << 28  # Unpacked size [bytes] from which a gzip file is judged
+_MOST_USUAL = 100  # Unpacked bytes for each packed one; SUMO's files have 10 to 40
+_MOST_PACKED = 1032  # The same, the most that gzip can do
 _GZIP = b"\x1f\x8b"  # first bytes of gzip files; SUMO looks at the content, too, not at the name
+
+
+def is_bomb(path: Path) -> bool:
+    """Return whether a gzip file unpacks to far more than its size, as no scenario's file does.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    with path.open("rb") as raw:
+        if raw.read(2) != _GZIP or path.stat().st_size * _MOST_PACKED < _JUDGED:
+            return False
+        raw.seek(0)
+        unpacked = 0
+        with gzip.open(raw) as stream, suppress(EOFError, zlib.error, gzip.BadGzipFile):
+            while unpacked < _JUDGED and (piece := stream.read(_CHUNK)):
+                unpacked += len(piece)
+        return unpacked >= _JUDGED and unpacked > _MOST_USUAL * raw.tell()
 
 
 @contextmanager

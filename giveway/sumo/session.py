@@ -29,6 +29,7 @@ from giveway.sumo.light_requests import LightRequests
 from giveway.sumo.network.footpaths import FootPaths
 from giveway.sumo.network.junction_links import Junctions
 from giveway.sumo.network.lanes import Lanes
+from giveway.sumo.network.soundness import require_sound
 from giveway.sumo.persons.handover import NOWHERE
 from giveway.sumo.persons.person_moves import PersonMoves
 from giveway.sumo.persons.scenario_persons import ScenarioPersons
@@ -122,6 +123,13 @@ class SumoSession:
             if self._extra:
                 msg += f" (with --sumo-options '{' '.join(self._extra)}')"
             raise SumoError(msg) from error
+        try:
+            require_sound(self._sumo, self._config_file)
+        except ScenarioError:
+            with self._stderr:
+                self._sumo.close()
+            self._stderr.close()
+            raise
 
     def __enter__(self) -> Self:
         return self

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from giveway.processes.heartbeat import LOOP, Phase
+from giveway.processes.heartbeat import LOOP, SETTING_UP, Phase
 from giveway.studies.execution.executor import WorkerError
 
 # Wall-clock time [s] without progress of the loop that counts as a hang
 HANG_LIMIT: Final = 120.0
-# Factor on the hang limit before the loop: a large network takes minutes to load
-_SETTING_UP: Final = 5.0
 ATTEMPTS: Final = 2  # Number of attempts at a run
 
 
@@ -50,4 +48,4 @@ class Limits:
             stopped: True if somebody has stopped the process, which therefore cannot be busy.
         """
         busy = phase not in LOOP and phase is not Phase.STARTING and not stopped
-        return _SETTING_UP * self.hang if busy else self.hang
+        return SETTING_UP * self.hang if busy else self.hang

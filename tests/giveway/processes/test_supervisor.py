@@ -1,6 +1,7 @@
 """Real processes that really die: the verdict names cause and place, and no row is lost."""
 
 import os
+import re
 import signal
 import sys
 import threading
@@ -96,6 +97,12 @@ def test_a_child_that_cannot_even_speak(fate: Callable[..., Verdict], journal: P
     assert verdict.cause == "no progress for 0.4 s"
     assert verdict.code == 137
     assert len(read_journal(journal).tables["ego"]) == 3
+
+
+def test_what_is_set_up_for_ever_hangs(fate: Callable[..., Verdict]) -> None:
+    body = "journal.heartbeat.beat(Phase.LOADING); time.sleep(60.0)"
+    told = fate(body, hang_limit=0.1).message
+    assert re.fullmatch(r"no progress for 0.5\d* s while the run was being set up", told)
 
 
 def test_slow_is_not_hanging(fate: Callable[..., Verdict]) -> None:

@@ -34,3 +34,15 @@ def test_a_compressed_file_that_is_cut_off_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "a.xml.gz").write_bytes(gzip.compress(ROUTES)[:-20])
     with pytest.raises(EOFError):
         list(pieces(tmp_path / "a.xml.gz"))
+
+
+def test_what_unpacks_to_far_more_than_its_size_is_a_bomb(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reading, "_JUDGED", 1 << 20)
+    usual = b"".join(b'<trip id="%d" depart="%d"/>' % (n, n * n % 9973) for n in range(40_000))
+    for content, bomb in ((b" " * (1 << 22), True), (usual, False), (ROUTES, False)):
+        (tmp_path / "a.xml").write_bytes(gzip.compress(content))
+        assert reading.is_bomb(tmp_path / "a.xml") is bomb
+        (tmp_path / "a.xml").write_bytes(content)
+        assert not reading.is_bomb(tmp_path / "a.xml")
