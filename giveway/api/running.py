@@ -25,6 +25,7 @@ from giveway.results.folder import (
     taken_folder,
     write_results,
 )
+from giveway.results.inputs import require_recorded
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Watcher
 
@@ -60,8 +61,12 @@ def run(
         GivewayError: one line that says what to do. If the run had begun, its rows are written
             anyway, and the partial result is the error's attribute ``result``.
     """
+    layer = as_layer(config)
+    loaded = load([layer])
+    if layer.results is not None:
+        require_recorded(layer.results, *loaded)
     return run_checked(
-        preflight(*load([as_layer(config)])),
+        preflight(*loaded),
         Destination(
             None if results is None else Path(results), force, parquet, pictures, ARGUMENTS
         ),

@@ -1,8 +1,7 @@
 """The provenance of a run, with which it can be repeated: versions, hashes, seeds, command."""
 
+import contextlib
 import functools
-import hashlib
-import os
 import platform
 import re
 from collections.abc import Mapping, Sequence
@@ -16,16 +15,11 @@ import numpy as np
 from giveway._version import __version__
 from giveway.config import RunConfig
 from giveway.errors import GivewayError
-from giveway.scenario_files import read_scenario, with_included
+from giveway.results.inputs import data_hashes, scenario_hashes, sha256
 from sumo_scenarios import Scenario
 
 CONFIGURATION: Final = "configuration_sha256"
 _PACKAGES = ("fmpy", "jupedsim", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
-
-
-def sha256(content: bytes) -> str:
-    """Return the hexadecimal SHA-256 of ``content``."""
-    return hashlib.sha256(content).hexdigest()
 
 
 @functools.cache
@@ -66,25 +60,6 @@ def _processor_name() -> str:
     return named[1] if named else platform.machine()
 
 
-def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
-    """Return the scenario's configuration, settings and input files, by path from its folder.
-
-    Files that input files include are among them.
-    """
-    inputs = [path for _, path in read_scenario(scenario.config_file).inputs]
-    files = [scenario.config_file, *with_included(path for path in inputs if path.is_file())]
-    if scenario.settings_file is not None:
-        files.append(scenario.settings_file)
-    folder = scenario.config_file.parent
-    return {_seen_from(folder, file): file for file in files if file.is_file()}
-
-
-def scenario_hashes(scenario: Scenario) -> dict[str, str]:
-    """Return the SHA-256 of each of the :func:`scenario_inputs`."""
-    inputs = scenario_inputs(scenario)
-    return {name: sha256(file.read_bytes()) for name, file in inputs.items()}
-
-
 def recording_hashes(config: RunConfig) -> dict[str, dict[str, str]]:
     """Return the SHA-256 of each file of the recordings whose people came in, entry by entry.
 
@@ -101,13 +76,6 @@ def recording_hashes(config: RunConfig) -> dict[str, dict[str, str]]:
             files = ()
         hashes[entry.name] = {file.name: sha256(file.read_bytes()) for file in files}
     return hashes
-
-
-def _seen_from(folder: Path, file: Path) -> str:
-    try:
-        return Path(os.path.relpath(file, folder)).as_posix()
-    except ValueError:  # the file is on another drive
-        return file.name
 
 
 class RunFacts(NamedTuple):
@@ -143,6 +111,9 @@ def manifest(
         error: Error that ended the run, or None.
     """
     recordings = recording_hashes(config)
+    inputs: dict[str, str] = {}
+    with contextlib.suppress(GivewayError, OSError):  # a file is gone that there was at the start
+        inputs = data_hashes(config, scenario)
     return {
         "ending": ending,
         "error": error,
@@ -153,6 +124,7 @@ def manifest(
         "sumo": dict(facts.sumo),
         "scenario": {"name": scenario.name, "sha256": scenario_hashes(scenario)},
         **({"recordings": recordings} if recordings else {}),
+        "inputs": inputs,
         "vehicles": dict(facts.vehicles),
         **facts.code,
         "pedestrians": facts.pedestrians,

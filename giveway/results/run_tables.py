@@ -27,12 +27,13 @@ from giveway.metrics.travel import SIGNAL_DELAY_FIELDS, TRAVEL_FIELDS
 from giveway.metrics.waiting import WAITING_FIELDS, waiting_by_footway
 from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
+from giveway.results.inputs import sha256
 from giveway.results.law import (
     ledger_table,
     people_table,
     signal_table,
 )
-from giveway.results.provenance import CONFIGURATION, sha256
+from giveway.results.provenance import CONFIGURATION
 from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
 from giveway.run_data.columns import (
     LEDGER_COLUMNS,

@@ -15,13 +15,10 @@ from fmus.text import printable
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
 from giveway.config.files.foreign_code import code_hashes
-from giveway.config.files.presets import is_preset_file
-from giveway.ego.vehicle_model import fmu_path
 from giveway.errors import ConfigError, GivewayError
 from giveway.plug_ins.finding import is_fmu, shown
-from giveway.recordings.clips import clip_files
-from giveway.results.provenance import scenario_hashes, scenario_inputs, sha256, software_versions
-from giveway.scenario_files.options import parse_options
+from giveway.results.inputs import data_files, data_hashes, file_hash
+from giveway.results.provenance import software_versions
 from giveway.studies.record import Task
 from sumo_scenarios import Scenario, ScenarioError, find
 
@@ -91,9 +88,7 @@ def differences(versions: Mapping[str, str]) -> str:
 
 def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
     """Return the SHA-256 of every file that the run reads: scenario, FMUs, profiles, presets."""
-    hashes = {f"scenario {name}": hash_ for name, hash_ in scenario_hashes(scenario).items()}
-    hashes |= {name: _hash(file) for name, file in _own_files(config)}
-    return hashes | code_hashes(config)
+    return data_hashes(config, scenario) | code_hashes(config)
 
 
 def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str:
@@ -143,11 +138,10 @@ def require_same(task: Task) -> None:
         )
     config = task.run_config
     try:
-        files = {f"scenario {name}": file for name, file in _scenario_files(find(config.scenario))}
-        files |= dict(_own_files(config))
+        files = data_files(config, find(config.scenario))
     except (ScenarioError, GivewayError):  # the file that names the inputs is missing
         files = {}
-    found = {name: _hash(file) for name, file in files.items() if file.is_file()}
+    found = {name: file_hash(file) for name, file in files.items() if file.is_file()}
     found |= code_hashes(config)
     for name, expected in task.inputs.items():
         if found.get(name) != expected:
@@ -157,88 +151,3 @@ def require_same(task: Task) -> None:
                 "this file; put the study's files under the same path on every machine; if it was "
                 "changed meanwhile, go on with --resume"
             )
-
-
-def _scenario_files(scenario: Scenario) -> tuple[tuple[str, Path], ...]:
-    """Return the scenario's inputs by name.
-
-    They are read again only when the files that name them have changed.
-    """
-    naming = (scenario.config_file, scenario.settings_file)
-    return _scenario_files_of(scenario, tuple(_stamp(file) for file in naming if file))
-
-
-@functools.lru_cache(maxsize=64)
-def _scenario_files_of(scenario: Scenario, _stamps: object) -> tuple[tuple[str, Path], ...]:
-    return tuple(scenario_inputs(scenario).items())
-
-
-def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """Return the files that a run reads apart from its scenario."""
-    files = [*_vehicle_files(config), *_preset_files(config), *_option_files(config)]
-    return [*files, *_recording_files(config)]
-
-
-def _recording_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """Return the files of the recordings whose people come in."""
-    return [
-        (f"recording '{entry.name}': {file.name}", file)
-        for entry in config.crowd.recorded
-        for file in clip_files(entry)
-    ]
-
-
-def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """Return the preset files of the pedestrian model: of the crowd, and as each ego expects it."""
-    named = [("preset of the crowd", config.crowd.preset)]
-    named += [
-        (f"preset that {ego.ego_id} predicts with", ego.perception.preset)
-        for ego in config.each_ego()
-    ]
-    return [(name, Path(preset)) for name, preset in named if is_preset_file(preset)]
-
-
-def _option_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """Return the files that ``sumo.options`` name, such as additional files."""
-    named = [
-        (option, Path(piece.strip()))
-        for option, value in parse_options(config.sumo.options).items()
-        for piece in value.split(",")
-        if piece.strip()
-    ]
-    return [
-        (f"SUMO's {option} {number}: {file.name}", file)
-        for number, (option, file) in enumerate(named, start=1)
-        if file.is_file()
-    ]
-
-
-def _vehicle_files(config: RunConfig) -> list[tuple[str, Path]]:
-    found = []
-    for ego in config.each_ego():
-        named: list[Path] = [fmu_path(ego.vehicle)]
-        named += [Path(ego.vehicle.profile)] if ego.vehicle.profile else []
-        found += [(f"vehicle of {ego.ego_id}: {f.name}", f) for f in named if f.is_file()]
-        if ego.controller_profile:
-            profile = Path(ego.controller_profile)
-            found.append((f"controller of {ego.ego_id}: {profile.name}", profile))
-    return found
-
-
-def _hash(file: Path) -> str:
-    """Return the file's SHA-256.
-
-    The file is read again only when it has changed.
-    """
-    return _hash_of(str(file.absolute()), _stamp(file))
-
-
-def _stamp(file: Path) -> tuple[int, int]:
-    """Return the time and size of a file, which change with it."""
-    status = file.stat()
-    return status.st_mtime_ns, status.st_size
-
-
-@functools.lru_cache(maxsize=1024)
-def _hash_of(file: str, _stamp: tuple[int, int]) -> str:
-    return sha256(Path(file).read_bytes())

@@ -10,7 +10,7 @@ from giveway.config.option import DEFAULT_PRESET
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError
 from giveway.metrics.plugged_in import metric_columns
-from giveway.results.provenance import scenario_inputs
+from giveway.results.inputs import scenario_inputs
 from giveway.scenario_files.declared_ids import declares_people
 from giveway.studies.definition import StudyDefinition
 from giveway.studies.design import Cell, Design, design

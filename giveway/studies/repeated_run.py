@@ -10,6 +10,7 @@ from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.errors import GivewayError
 from giveway.results.folder import NOWHERE, Destination
+from giveway.results.inputs import require_recorded
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending, Watcher
 from giveway.studies.execution.perform import rows_of
@@ -41,6 +42,7 @@ def checked_run(
     cell, seed = study.cell_of(run_id)
     origin = str(study.path / "study.toml")
     config, scenario = load([cell.layer(origin, study.definition)], trusted)
+    require_recorded(study.path, config, scenario)
     changes: dict[str, Any] = {"seed": seed}
     if predictions:
         changes["record"] = config.record.model_copy(update={"predictions": PREDICTIONS})

@@ -50,12 +50,17 @@ def run_command(
         GivewayError: one line that says what to do.
     """
     console = Console(quiet=outputs.quiet or outputs.as_json)
-    effective, found = load(layers_of(scenario, config, settings), outputs.trust or ())
+    layers = layers_of(scenario, config, settings)
+    effective, found = load(layers, outputs.trust or ())
     if outputs.parquet:
         require_parquet()
     from giveway.cosimulation.preflight import preflight
     from giveway.precompile import compile_kernels_once
+    from giveway.results.inputs import require_recorded
 
+    if scenario is None:  # one that the user names is the user's
+        for folder in filter(None, (layer.results for layer in layers)):
+            require_recorded(folder, effective, found)
     checked = preflight(effective, found)
     folder = outputs.out or default_folder(effective, found.name)
     check_folder(folder, force=outputs.force)

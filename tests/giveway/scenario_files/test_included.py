@@ -4,7 +4,7 @@ import gzip
 
 import pytest
 
-from giveway.results.provenance import scenario_hashes
+from giveway.results.inputs import scenario_hashes
 from giveway.scenario_files import with_included
 from sumo_scenarios import find
 

@@ -18,7 +18,9 @@ from giveway.config.files.loading import load
 from giveway.config.files.trust import is_own_folder
 from giveway.errors import ConfigError
 from giveway.gate import MANIFEST, fingerprint_of
+from giveway.results.inputs import require_recorded
 from giveway.run_data.seal import SEAL, sealed
+from sumo_scenarios import find
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -122,3 +124,23 @@ def test_a_replay_of_foreign_results_makes_no_run_and_says_so(
     assert note.startswith("note: No predictions: the run could not be made again (error: ")
     assert "somebody else's results folder names code" in note
     assert (folder / "replay.html").stat().st_size > 10_000
+
+
+def test_foreign_results_are_repeated_with_the_recorded_files_only(
+    folder: Path, tmp_path: Path
+) -> None:
+    mine = shutil.copytree(find("shared_space").config_file.parent, tmp_path / "mine")
+    settings = {"scenario": str(mine / "shared_space.sumocfg"), "time_limit": 0.1}
+    run(settings | {"crowd": {"pedestrians": 0}}, results=tmp_path / "r", pictures=False)
+    config, scenario = load([read_toml(tmp_path / "r" / "config.toml")])
+    routes = next(mine.glob("*.net.xml"))
+    for change in (False, True):
+        if change:
+            routes.write_text(routes.read_text() + "<!-- other -->")
+        require_recorded(tmp_path / "r", config, scenario)
+        theirs = foreign(shutil.copytree(tmp_path / "r", tmp_path / f"theirs{change}"))
+        if not change:
+            require_recorded(theirs, config, scenario)
+            continue
+        with pytest.raises(ConfigError, match=r"net\.xml: has another content"):
+            require_recorded(theirs, config, scenario)
