@@ -87,6 +87,19 @@ def is_number(value: object) -> bool:
     return number and math.isfinite(value)  # type: ignore[arg-type]
 
 
+def problem_of_name(name: str) -> str:
+    """Return what is wrong with a name that a user gives and tables show; empty if nothing is."""
+    if name.startswith(("=", "+", "-", "@", "\t", "\r")):
+        return "should not begin with =, +, -, @ or a tab: spreadsheets take it for a formula"
+    return ""
+
+
+def _name(value: str) -> str:
+    if problem := problem_of_name(value):
+        raise PydanticCustomError("name", "{expected}", {"expected": problem})
+    return value
+
+
 def _split(value: Any) -> Any:
     """Return a comma-separated flag value as the list that a TOML file would hold."""
     return [part.strip() for part in value.split(",")] if isinstance(value, str) else value
@@ -172,6 +185,10 @@ Rectangle = Annotated[tuple[float, float, float, float], BeforeValidator(_split)
 
 
 Displacement = Annotated[tuple[float, float], BeforeValidator(_split)]
+
+
+Name = Annotated[str, AfterValidator(_name)]
+"""A name that a user gives and tables show."""
 
 
 NameList = Annotated[tuple[str, ...], BeforeValidator(_split)]

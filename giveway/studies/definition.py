@@ -12,7 +12,7 @@ from pydantic import AfterValidator, Field, ValidationError, model_validator
 from giveway.config.files.layers import anchored
 from giveway.config.files.schema_names import STUDY, with_schema
 from giveway.config.files.toml import parse_toml, read_toml_file
-from giveway.config.option import Section
+from giveway.config.option import Name, Section
 from giveway.errors import ConfigError, in_words
 
 Situation = Literal["general", "stop-and-wait", "non-stop", "slowed"]
@@ -72,7 +72,7 @@ class PrimaryOutcome(Section):
 class StudyDefinition(Section):
     """One study, as its TOML file has it."""
 
-    name: str = Field(description="of the study; names its results folder", pattern=_NAME)
+    name: Name = Field(description="of the study; names its results folder", pattern=_NAME)
     description: str = Field("", description="for the report's title")
     replications: int = Field(
         100, description="seeds per cell; the most, with [precision]", ge=1, le=_MOST_SEEDS

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from giveway.config.files.layers import PLUGGED, Layer, merge, options, results_of
+from giveway.config.option import problem_of_name
 from giveway.config.renamed import RENAMED, advice
 from giveway.errors import ConfigError, suggestion
 from giveway.metrics.ego_fields import EGO_FIELDS
@@ -218,6 +219,9 @@ def _named_factor(
     name: str, levels: dict[str, Any], place: str, definition: StudyDefinition
 ) -> Factor:
     named = []
+    for called in (name, *levels):
+        if problem := problem_of_name(called):
+            raise ConfigError(f"{place}: {called!r}: {problem}")
     for label, settings in levels.items():
         _require_no_seed(settings, f"{place}.{label}:")
         if not label.strip():

@@ -5,6 +5,7 @@ import tomllib
 from pathlib import Path
 from typing import get_args
 
+import pandas as pd
 import pytest
 
 from fmus import VehicleProfile, make_profile
@@ -65,6 +66,16 @@ def test_every_column_is_documented_as_it_is_declared(columns: tuple) -> None:
     for column in columns:
         row = f"| `{column.name}` | {column.type} | {column.unit or ''} | {column.description} |"
         assert row in text
+
+
+def test_the_printed_call_keeps_every_id(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    call = re.search(r"`(pd\.read_csv\(\"traj.*\))`", (DOCS / "results.md").read_text("utf-8"))
+    ids = ["NaN", "None", "1695568738601786.12", "-E3", "007", "null"]
+    (tmp_path / "trajectories.csv").write_text("id,x\n" + "".join(f"{i},\n{i},1.5\n" for i in ids))
+    monkeypatch.chdir(tmp_path)
+    table = eval(call[1], {"pd": pd}) if call else pd.DataFrame()  # our own docs
+    assert list(table["id"]) == [name for name in ids for _ in range(2)]
+    assert table["x"].isna().tolist() == [True, False] * len(ids)
 
 
 @pytest.mark.parametrize("columns", [RECORDING_FIELDS, DRIVE_FIELDS, PERSON_FIELDS])

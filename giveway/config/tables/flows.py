@@ -7,7 +7,7 @@ from typing import Annotated, Any, Final
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from giveway.config.option import Section, expectation, is_number, option, read_tables
+from giveway.config.option import Name, Section, expectation, is_number, option, read_tables
 from giveway.config.tables.people import SHARE, PeopleConfig
 
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
@@ -96,7 +96,7 @@ class FlowConfig(Section):
 
     model_config = ConfigDict(serialize_by_alias=True)
 
-    name: str = option(
+    name: Name = option(
         "",
         None,
         "Name of the flow, of letters and digits. Its people are called name.0, name.1, ...",

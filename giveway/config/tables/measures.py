@@ -7,7 +7,7 @@ from typing import Any
 import shapely
 from pydantic import Field
 
-from giveway.config.option import Section, is_number, read_tables
+from giveway.config.option import Section, is_number, problem_of_name, read_tables
 
 _KEYS = ("name", "line", "area", "interval")
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
@@ -47,6 +47,8 @@ def _read(entry: dict[str, Any], number: int) -> MeasureConfig:
     name = entry.get("name")
     if not isinstance(name, str) or not name:
         raise ValueError(f"measure[{number}]: name = {name!r}: expected a text; name it")
+    if problem := problem_of_name(name):
+        raise ValueError(f"measure[{number}]: name = {name!r}: {problem}")
     called = f"measure '{name}'"
     unknown = sorted(set(entry) - set(_KEYS))
     if unknown:

@@ -6,7 +6,7 @@ from typing import Any, Final, Literal
 
 from pydantic import ValidationError
 
-from giveway.config.option import Section, expectation, option, read_tables
+from giveway.config.option import Name, Section, expectation, option, read_tables
 
 RECORDED: Final = "recorded"
 """Name of the model that moves people as they were recorded."""
@@ -32,7 +32,7 @@ class RecordedOptions(Section):
 class RecordedConfig(Section):
     """One recording whose people come into the run."""
 
-    name: str = option(
+    name: Name = option(
         "",
         None,
         "Name of the entry, of letters and digits. Its people are called name.ID by their ids in "

@@ -37,6 +37,18 @@ def test_an_option_without_quotes_means_the_same():
     assert cells(MINIMAL + "vehicle.mass = [900, 1000]\nvehicle.friction = [100]\n") == quoted
 
 
+@pytest.mark.parametrize("name", ["=a", "+a", "-a", "@a", "\\ta"])
+def test_a_name_that_spreadsheets_take_for_a_formula_is_refused(name):
+    fine = "{ controller = 'pid' }"
+    for text in (
+        f'name = "{name}"\n[factors]\ncontroller = ["mpc"]',
+        f'name = "s"\n[factors.driver]\n"{name}" = {fine}',
+        f'name = "s"\n[factors."{name}"]\n"a" = {fine}',
+    ):
+        with pytest.raises(ConfigError, match=r"should|expected letters"):
+            cells(text)
+
+
 def test_named_levels_may_set_several_options():
     text = """
         name = "mine"

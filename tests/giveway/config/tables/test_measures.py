@@ -23,6 +23,7 @@ def test_written_and_read_again() -> None:
         ("here", "expected tables"),
         ([{"line": [[0, 0], [1, 1]]}], "measure[0]: name"),
         ([LINE, LINE], "two have this name"),
+        ([{**LINE, "name": "=1+1"}], "name = '=1+1': should not begin with =, +, -, @ or a tab"),
         ([{**LINE, "width": 1}], "unknown key 'width'"),
         ([{"name": "a"}], "either line or area"),
         ([{**LINE, "area": [[0, 0], [1, 0], [1, 1]]}], "either line or area"),
