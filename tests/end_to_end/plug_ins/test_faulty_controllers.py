@@ -46,7 +46,7 @@ crowd = { pedestrians = 3 }
 [factors]
 "controller_options.kind" = ["none", "nan", "exit", "hang"]
 """
-    study = study_of(text, tmp_path / "study", jobs=2, hang_limit=3.0)
+    study = study_of(text, tmp_path / "study", jobs=1, hang_limit=3.0)
     failures = study.failures.set_index("run")["cause"]
     assert sorted(failures.index) == ["c2-s1", "c3-s1", "c4-s1"]
     assert "controller at step 20: 'broken' of 'ego' returned" in failures["c2-s1"]

@@ -155,7 +155,7 @@ crowd = { pedestrians = 3, model = "odd" }
 [factors]
 "model_options.kind" = ["none", "nan", "exit"]
 """
-    study = study_of(text, tmp_path / "study", jobs=2, hang_limit=10.0)
+    study = study_of(text, tmp_path / "study", jobs=1, hang_limit=10.0)
     failures = study.failures.set_index("run")["cause"]
     assert sorted(failures.index) == ["c2-s1", "c3-s1"]
     assert "'odd' returned" in failures["c2-s1"]

@@ -198,7 +198,7 @@ perception = { sensor = "toy" }
 [factors]
 "sensor_options.kind" = ["even", "ending"]
 """
-    study = study_of(text, tmp_path / "study", jobs=2, hang_limit=10.0)
+    study = study_of(text, tmp_path / "study", jobs=1, hang_limit=10.0)
     ((run, cause),) = study.failures[["run", "cause"]].to_numpy()
     assert run == "c2-s1"
     assert re.search(r"in the sensor 'toy' at .*step 20", cause)

@@ -76,10 +76,6 @@ def test_an_interrupted_study_with_twins_resumes_to_equal_bytes(study, study_of,
     assert bytes_of(whole.path) == bytes_of(study.path)
 
 
-def test_two_processes_give_the_same_bytes(study, study_of, tmp_path):
-    assert bytes_of(study_of(TEXT, tmp_path / "two", jobs=2).path) == bytes_of(study.path)
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
 def test_workers_killed_amid_runs_and_twins_change_no_bytes(study, tmp_path):
     file, out = tmp_path / "twins.toml", tmp_path / "out"
@@ -94,7 +90,7 @@ def test_workers_killed_amid_runs_and_twins_change_no_bytes(study, tmp_path):
         if workers and killed < 2 and made > 3 * killed:
             workers[killed % len(workers)].kill()
             killed += 1
-        time.sleep(0.01)
+        time.sleep(0.05)  # each look at all processes takes as long
     assert child.returncode == 0
     assert killed
     assert bytes_of(out) == bytes_of(study.path)
