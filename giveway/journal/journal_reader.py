@@ -3,6 +3,7 @@
 import json
 import mmap
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from giveway.errors import ResultsError
-from giveway.gate import LARGEST_TABLE, opened, read_json, require_no_link
+from giveway.gate import LARGEST_TABLE, LARGEST_TEXT, opened, read_json, require_no_link
 from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind, Rows, row_type
 from giveway.processes.heartbeat import HEARTBEAT_FILE, Heartbeat, Pulse
 
@@ -46,8 +47,9 @@ def read_journal(folder: Path) -> JournalContents:
         meta = read_json(meta_file)
     except FileNotFoundError:
         meta = {}
-    for file in (folder / HEARTBEAT_FILE, rows_file):
-        require_no_link(file)
+    require_no_link(rows_file)
+    with suppress(FileNotFoundError), opened(folder / HEARTBEAT_FILE, largest=LARGEST_TEXT):
+        pass
     pulse = Heartbeat(folder).read()
     if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)

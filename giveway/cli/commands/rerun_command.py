@@ -9,6 +9,7 @@ from giveway.cli.commands.run_command import interrupted, show
 from giveway.cli.option_groups import RerunOutputs
 from giveway.cli.screen.printing import escape
 from giveway.cli.screen.progress_bars import run_progress
+from giveway.gate import require_no_link
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import Destination, check_folder
 from giveway.run_data.progress import Ending
@@ -40,6 +41,7 @@ def rerun_command(
     folder = StudyFolder.open(study)
     checked = checked_run(folder, run, predictions=outputs.predictions, trusted=trusted)
     out = outputs.out or study / "reruns" / run
+    require_no_link(out / "manifest.json", study)
     check_folder(out, force=outputs.force)
     compile_kernels_once(console)
     with run_progress(console, checked.config) as watcher:

@@ -17,7 +17,7 @@ from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
 from giveway.config.tables.controllers import OWN_OPTIONS
 from giveway.errors import ConfigError, suggestion
-from giveway.gate import require_no_link
+from giveway.gate import read_text
 from giveway.plug_ins.finding import same_name
 from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES
 
@@ -116,10 +116,26 @@ def read_toml(path: Path) -> Layer:
         ConfigError: the file is missing, unreadable or not TOML.
     """
     results = results_of(path)
-    if results is not None:
-        require_no_link(path)
-    values = read_toml_file(path, "a giveway configuration")
+    if results is None:
+        values = read_toml_file(path, "a giveway configuration")
+    else:
+        values = _written_settings(path)
     return Layer(str(path), anchored(values, path.parent.absolute()), results=results)
+
+
+def _written_settings(path: Path) -> dict[str, Any]:
+    """Return the settings in a file of a results folder.
+
+    Raises:
+        ConfigError: the file cannot be read, or is not TOML.
+        RefusedFileError: it is a link, a pipe or a device, or too large.
+    """
+    try:
+        return parse_toml(read_text(path), str(path))
+    except OSError as error:
+        raise ConfigError(
+            f"{path}: cannot be read ({error.strerror}); expected a giveway configuration (TOML)"
+        ) from error
 
 
 def results_of(path: Path) -> Path | None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import filelock
 
 from giveway.errors import ResultsError
+from giveway.gate import require_no_link
 from giveway.studies.folder.atomic_files import finished_name
 from giveway.studies.folder.folder_contents import DEFINITION, MANIFEST, PACKAGE, read_manifest
 from giveway.studies.folder.sealing import ASIDE, BrokenFileError
@@ -43,6 +44,7 @@ def reserved(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
     _require_free(out, study, options)  # before a lock is put into a folder that is not the study's
     try:
         out.mkdir(parents=True, exist_ok=True)
+        require_no_link(out / LOCK)
         lock = filelock.FileLock(out / LOCK, timeout=0)
         lock.acquire()
     except filelock.Timeout:
