@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # scipy.signal is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.signal import savgol_filter
 
 from controller import SafetyParameters, WorstMotion
 from controller.safety.worst_motion import RECORDED
@@ -86,7 +86,8 @@ def _smoothed(
         position = clip.position[run, i]
         if window > 0.0:
             smooth = [
-                savgol_filter(position, width, ORDER, deriv=d, delta=dt, axis=0) for d in range(3)
+                scipy.signal.savgol_filter(position, width, ORDER, deriv=d, delta=dt, axis=0)
+                for d in range(3)
             ]
             edge = slice(width // 2, len(run) - width // 2)
         else:

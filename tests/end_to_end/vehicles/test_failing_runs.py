@@ -85,7 +85,7 @@ def test_ten_megabytes_of_talk_change_nothing(zoo, giveway, tmp_path):
     """5 MB a step to stdout, and messages."""
     car = zoo.car(behaviour=["flood_stdout", "message_control"], at=AT)
     done = giveway(
-        *WORDS, "--time-limit", AT + 0.3, "--vehicle", car, "--profile", car.with_suffix(".toml")
+        *WORDS, "--time-limit", AT + 0.1, "--vehicle", car, "--profile", car.with_suffix(".toml")
     )
     assert done.returncode == 0, done.stderr
     assert len(done.stdout) < 20_000

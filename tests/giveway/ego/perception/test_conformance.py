@@ -70,15 +70,20 @@ class Keeper(Sound):
 
 
 class Slow(Sound):
+    timed = False  # whether "is quick" is being checked; the other checks need not wait
+
     def observe(self, truth, person_ids, ego):
-        until = time.thread_time() + 0.006
+        until = time.thread_time() + 0.006 * self.timed
         while time.thread_time() < until:
             pass
         return Percept(truth.people, person_ids)
 
 
 def broken(kind) -> list[str]:
-    return [finding.rule for finding in check_sensor(kind, SETUP) if finding.problem]
+    def begins(rule: str) -> None:
+        Slow.timed = rule == "is quick"
+
+    return [finding.rule for finding in check_sensor(kind, SETUP, begins) if finding.problem]
 
 
 def test_a_sound_sensor_breaks_no_rule():

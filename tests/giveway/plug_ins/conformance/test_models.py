@@ -99,10 +99,12 @@ class Runner(Sound):
 
 
 class Slow(Sound):
+    timed = False  # whether "is quick" is being checked; the other checks need not wait
+
     def step(self, walkers):
         answer = super().step(walkers)
         began = time.thread_time()
-        while time.thread_time() - began < 8e-4:
+        while self.timed and time.thread_time() - began < 8e-4:
             pass
         return answer
 
@@ -142,7 +144,10 @@ class Unmakeable:
 
 
 def broken(kind: type) -> set[str]:
-    return {finding.rule for finding in check_model(kind, SETUP) if finding.problem}
+    def begins(rule: str) -> None:
+        Slow.timed = rule == "is quick"
+
+    return {finding.rule for finding in check_model(kind, SETUP, begins=begins) if finding.problem}
 
 
 def test_a_sound_model_passes():

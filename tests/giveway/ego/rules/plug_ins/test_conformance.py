@@ -56,15 +56,20 @@ class CornerCase(Sound):
 
 
 class Slow(Sound):
+    timed = False  # whether "is quick" is being checked; the other checks need not wait
+
     def demand(self, situation: Situation) -> Demand | None:
-        until = time.thread_time() + 0.001
+        until = time.thread_time() + 0.001 * self.timed
         while time.thread_time() < until:
             pass
         return None
 
 
 def broken(make: Callable[[Any], object]) -> set[str]:
-    return {finding.rule for finding in check_rule(make, ROUTE) if finding.problem}
+    def begins(rule: str) -> None:
+        Slow.timed = rule == "is quick"
+
+    return {finding.rule for finding in check_rule(make, ROUTE, begins) if finding.problem}
 
 
 def test_a_sound_rule_breaks_nothing() -> None:
