@@ -186,6 +186,7 @@ def _result_of(
     rows = RecordedRows(contents.tables, contents.names)
     ending = Ending.INTERRUPTED if verdict.interrupted else Ending.CRASHED
     failure = None if verdict.interrupted else error
+    configs = {ego.ego_id: ego for ego in config.each_ego()}
     endings = {
         ego.id: Ending.COMPLETED
         for ego in rows.egos()
@@ -197,7 +198,7 @@ def _result_of(
         ending=ending,
         error=failure,
         time=rows.time,
-        egos=results_of_egos(config, rows, ending, endings),
+        egos=results_of_egos(configs, rows, ending, endings),
         crowd_track=rows.crowd_track(),
         background_track=rows.background_track(),
         signal_track=rows.signal_track(),

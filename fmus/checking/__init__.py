@@ -2,7 +2,7 @@
 
 from fmus.checking.answers import Answers, measure
 from fmus.checking.check import CheckReport, check, expected_of
-from fmus.checking.coarse import coarse
+from fmus.checking.coarse import coarse, is_vehicle, quick_model
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, Mpc, identify
 from fmus.checking.judgement import Told, judge, told_of, too_weak
@@ -17,7 +17,6 @@ from fmus.checking.manoeuvres import (
 from fmus.checking.self_check import (
     Convergence,
     convergence,
-    goes_the_wrong_way,
     remedy,
     require_converged,
 )
@@ -39,11 +38,12 @@ __all__ = [
     "convergence",
     "drive",
     "expected_of",
-    "goes_the_wrong_way",
     "identify",
+    "is_vehicle",
     "judge",
     "measure",
     "opener_of",
+    "quick_model",
     "remedy",
     "require_converged",
     "told_of",

@@ -27,7 +27,6 @@ RELATIVE = 0.05  # largest difference, relative to the largest speed or distance
 SPEED_FLOOR = 0.05  # Speed difference [m/s] that is always allowed
 POSITION_FLOOR = 0.05  # Position difference [m] that is always allowed
 LARGEST_ACCELERATION = 15.0  # [m/s2] bound of the change in one step
-_CLEARLY = 0.1  # [m/s2] difference from which a response counts as reversed
 DRIVE, COAST, BRAKE = 1.0, 0.5, 1.5  # [s] durations of the manoeuvre's parts
 
 _UNABLE = (FmuInterfaceError, FmuProfileError, FmuStartError)  # the FMU cannot do this step
@@ -248,21 +247,6 @@ def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
             excess = float(ratio[at])
             worst = Disagreement(quantity, unit, at * step, float(one[at]), float(two[at]))
     return worst
-
-
-def goes_the_wrong_way(trace: Trace) -> bool:
-    """Return whether a forward force slows the vehicle more than no or a backward force.
-
-    With the right sign, driving helps even if a slope or a slow actuator makes the vehicle lose
-    speed.
-
-    Args:
-        trace: Trace of the :func:`manoeuvre`.
-    """
-    change = np.diff(trace.speed) / trace.step_size
-    driven, braked = change[trace.force > 0.0], change[trace.force < 0.0]
-    rolling = change[trace.force == 0.0][-1]  # a slow actuator has released its force by then
-    return bool(driven.mean() < min(0.0, rolling, braked.mean()) - _CLEARLY)
 
 
 def milliseconds(step: float) -> str:

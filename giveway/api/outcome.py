@@ -44,7 +44,8 @@ def outcome(
 ) -> RunResult:
     """Return the result of a run whose loop has ended."""
     rows = recorder.rows()
-    egos = results_of_egos(parts.config, rows, ending, loop.endings)
+    configs = {ego.id: ego.config for ego in parts.egos}
+    egos = results_of_egos(configs, rows, ending, loop.endings)
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]
     touched += [loop.meetings.touches.remark] if len(loop.meetings.touches) else []
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
+from fmus.profile.vehicle_profile import FittedModel
 from giveway.config.option import LANE, Section, expectation
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_BELIEFS
 from giveway.config.run_settings import Own, RunSettings
+from giveway.config.tables.basics import IDENTIFIED
 from giveway.config.tables.controllers import (
     OWN_OPTIONS,
     NoOptions,
@@ -38,6 +40,9 @@ EGO_TABLES = (
     "sensor_options",
 )
 """The settings that may differ from ego to ego."""
+
+OWN_FMU = frozenset({"fmu", "profile"})
+"""The keys of [vehicle] that name another FMU than the run's."""
 
 
 def _field_at(location: tuple[int | str, ...]) -> FieldInfo | None:
@@ -105,6 +110,11 @@ class RunConfig(RunSettings):
                 f"egos[{number}]: unknown key '{unknown[0]}'; expected one of {expected}"
             )
         values = self.model_dump(exclude={"egos"})
+        vehicle = entry.get("vehicle")
+        another = isinstance(vehicle, dict) and OWN_FMU & set(vehicle)
+        others = set(IDENTIFIED) if another else set()
+        # what is not set is not told; M of one FMU does not hold for another one
+        values["vehicle"] = self.vehicle.model_dump(exclude_unset=True, exclude=others)
         if entry.get("controller", self.controller) != self.controller:
             # these belong to another controller
             values["controller_options"], values["controller_profile"] = {}, ""
@@ -141,7 +151,13 @@ class RunConfig(RunSettings):
 
 
 class EgoRunConfig(RunConfig):
-    """The configuration of a run for one of its egos; ``egos`` is empty."""
+    """The configuration of a run for one of its egos; ``egos`` is empty.
+
+    Attributes:
+        found: Model of the vehicle that was found before the run, or None.
+    """
+
+    found: FittedModel | None = Field(default=None, exclude=True)
 
     @model_validator(mode="after")
     def _check_egos(self) -> EgoRunConfig:

@@ -36,8 +36,6 @@ from giveway.config.tables.controllers import PaperPidOptions
 from giveway.ego.vehicle_model import (
     fmu_path,
     impatient,
-    is_coarse,
-    is_told,
     model_margin,
     model_of,
     profile_of,
@@ -210,7 +208,8 @@ def _told_mass(config: EgoRunConfig, profile: VehicleProfile) -> float | None:
     mass = config.vehicle.mass
     if profile.model is not None:
         return None if mass == profile.model.mass else mass
-    return mass if is_told(config.vehicle, "mass") and not is_coarse(config.vehicle) else None
+    told = config.found is None and "mass" in config.vehicle.model_fields_set
+    return mass if told else None
 
 
 def _without_bound(profile: VehicleProfile) -> VehicleProfile:
@@ -244,7 +243,7 @@ def model_remark(config: EgoRunConfig, time_step: float) -> str:
     )
     if (settings.mass, settings.friction) != (model.mass, model.friction):
         text += f", overruled by M = {settings.mass:g} kg, alpha = {settings.friction:g} N.s/m"
-    if is_coarse(settings):
+    if config.found is not None:
         text += f", coarsely, as no profile has its [model]: giveway fmu identify {settings.fmu}"
     if config.optimises:
         margin = model_margin(config, time_step)

@@ -1,6 +1,5 @@
 """The model of an ego's vehicle: that of its profile, or one that is found before the run."""
 
-from hashlib import sha256
 from math import inf
 from pathlib import Path
 
@@ -14,8 +13,7 @@ from fmus import (
     prepare,
     read_profile,
 )
-from fmus.checking import coarse, opener_of, without_guards
-from fmus.checking.judgement import ROAD
+from fmus.checking import is_vehicle, quick_model
 from fmus.profile.vehicle_profile import FittedModel, SideModel
 from giveway.config import EgoRunConfig
 from giveway.config.files.identified import identified_vehicle
@@ -24,12 +22,7 @@ from giveway.errors import VehicleError, retold
 
 _NEAR = 0.1  # deviation of M, as a share, up to which the default car's flags suit a vehicle
 _LATE = 0.05  # lag plus dead time [s] up to which they do
-_WEAKEST = 0.3  # [m/s2] limit of driving or braking below which a model is none of a vehicle
-_FITS = 0.5  # share of the variation that a model explains, from which on it is driven with
 _QUICK = 1.5  # time [s] that a step may take before a run
-# Coarse models by hash of the FMU, profile and step; those that are driven, by FMU and profile
-_coarse: dict[tuple[str, str, float], FittedModel] = {}
-_found: dict[tuple[str, str], FittedModel] = {}
 
 
 def fmu_path(settings: VehicleConfig) -> Path:
@@ -50,30 +43,20 @@ def with_coarse_model(config: EgoRunConfig, time_step: float) -> EgoRunConfig:
         config: Configuration of the ego.
         time_step: Control step of the co-simulation [s].
     """
-    settings = config.vehicle
+    settings, told = config.vehicle, config.vehicle.model_fields_set
     path = fmu_path(settings)
-    _found.pop((settings.fmu, settings.profile), None)
-    known = is_told(settings, "mass") or is_told(settings, "friction")
-    if known or is_bundled(path) or model_of(config) is not None:
+    if {"mass", "friction"} & told or is_bundled(path) or model_of(config) is not None:
         return config
     try:
         profile = impatient(choose_profile(path, profile_of(settings)))
-        key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
-        if key not in _coarse:
-            opener = opener_of(path, step_size=time_step, profile=without_guards(profile))
-            _coarse[key] = coarse(opener, path=path, profile=profile)
+        model = quick_model(path, profile, step_size=time_step)
     except FmuError:
         return config
-    model = _coarse[key]
-    if _is_usual(model) or not _is_vehicle(model):
+    if _is_usual(model) or not is_vehicle(model):
         return config
-    _found[settings.fmu, settings.profile] = model
-    update = {
-        name: value
-        for name, value in identified_vehicle(model).items()
-        if not is_told(settings, name)
-    }
-    return config.model_copy(update={"vehicle": settings.model_copy(update=update)})
+    update = {key: value for key, value in identified_vehicle(model).items() if key not in told}
+    vehicle = settings.model_copy(update=update)
+    return config.model_copy(update={"vehicle": vehicle, "found": model})
 
 
 def impatient(profile: VehicleProfile) -> VehicleProfile:
@@ -88,11 +71,6 @@ def impatient(profile: VehicleProfile) -> VehicleProfile:
     )
 
 
-def is_told(settings: VehicleConfig, key: str) -> bool:
-    """Return whether a key of [vehicle] tells something: it has another value than by default."""
-    return bool(getattr(settings, key) != getattr(VehicleConfig(), key))
-
-
 def _is_usual(model: FittedModel) -> bool:
     """Return whether a model is so near the default car that this one's flags suit it."""
     usual = VehicleConfig()
@@ -100,15 +78,6 @@ def _is_usual(model: FittedModel) -> bool:
     strong = all(side.limit is None or side.limit > usual.acceleration_limit for side in sides)
     quick = all(side.lag + side.delay <= _LATE and side.rate is None for side in sides)
     return strong and quick and abs(model.mass / usual.mass - 1.0) <= _NEAR
-
-
-def _is_vehicle(model: FittedModel) -> bool:
-    """Return whether a model describes a vehicle; others are judged as what the flags tell."""
-    sides = [side for side in (model, model.drive, model.brake) if side is not None]
-    limits = [side.limit for side in (model.drive, model.brake) if side and side.limit]
-    strong = min(limits, default=inf) >= _WEAKEST
-    right = all(ROAD.excess(side.mass) == 1.0 for side in sides)
-    return model.r_squared >= _FITS and right and strong
 
 
 def model_margin(config: EgoRunConfig, time_step: float) -> float:
@@ -174,11 +143,13 @@ def driven_model(config: EgoRunConfig, time_step: float) -> FittedModel | None:
     Raises:
         VehicleError: the profile or the FMU cannot be read.
     """
+    model, path = model_of(config), fmu_path(config.vehicle)
+    if model is None:
+        return None
     with retold(FmuError, VehicleError):
-        path, profile = fmu_path(config.vehicle), profile_of(config.vehicle)
-        if profile is None or profile.model is None:
-            return model_of(config)
-        return prepare(path, step_size=time_step, profile=profile).fitted
+        profile = choose_profile(path, profile_of(config.vehicle))
+        known = profile.model_copy(update={"model": model})
+        return prepare(path, step_size=time_step, profile=known).fitted
 
 
 def model_of(config: EgoRunConfig) -> FittedModel | None:
@@ -190,15 +161,10 @@ def model_of(config: EgoRunConfig) -> FittedModel | None:
     with retold(FmuError, VehicleError):
         profile = profile_of(config.vehicle)
     if profile is None or profile.model is None:
-        return _found.get((config.vehicle.fmu, config.vehicle.profile))
+        return config.found
     return profile.model
 
 
 def profile_of(settings: VehicleConfig) -> VehicleProfile | None:
     """The profile that a configuration names, or None."""
     return read_profile(Path(settings.profile)) if settings.profile else None
-
-
-def is_coarse(settings: VehicleConfig) -> bool:
-    """Return whether the vehicle is driven with a coarse model."""
-    return (settings.fmu, settings.profile) in _found

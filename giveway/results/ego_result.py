@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from controller import WorstMotion
 from controller.driving_constants import COMFORTABLE
-from giveway.config import EgoRunConfig, RunConfig
+from giveway.config import EgoRunConfig
 from giveway.config.files.presets import parameters_of
 from giveway.config.option import LANE
 from giveway.ego.people_assumed import people_at_worst
@@ -225,18 +225,20 @@ class EgoResult:
 
 
 def results_of_egos(
-    config: RunConfig, rows: RecordedRows, ending: Ending, endings: Mapping[str, Ending]
+    configs: Mapping[str, EgoRunConfig],
+    rows: RecordedRows,
+    ending: Ending,
+    endings: Mapping[str, Ending],
 ) -> tuple[EgoResult, ...]:
     """Return the result of each ego.
 
     Args:
-        config: Configuration of the run.
+        configs: Configuration of each ego, by its id.
         rows: Recorded rows of the run.
         ending: Reason why the run ended.
         endings: Reason of each ego whose drive ended before the run.
     """
     crowd, background = rows.crowd_track(), rows.background_track()
-    configs = {own.ego_id: own for own in config.each_ego()}
     ways, signals, people = rows.ways(), rows.signal_track(), rows.people_track()
     recorded = list(rows.egos())
 

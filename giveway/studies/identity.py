@@ -113,6 +113,7 @@ def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str
     for entry in values["crowd"]["recorded"]:
         entry |= {key: Path(entry[key]).name for key in ("path", "dataset")}
     values["scenario"] = Path(values["scenario"]).name
+    values["told"] = sorted(config.vehicle.told)
     content = {"settings": values, "inputs": inputs, "software": software}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 

@@ -1,12 +1,7 @@
 """The values of [vehicle] that an identified model gives."""
 
-from typing import Final
-
 from fmus.profile.vehicle_profile import FittedModel
-from giveway.config.tables.basics import VehicleConfig
-
-IDENTIFIED: Final = ("mass", "friction", "force_limit", "force_rate_limit")
-"""The keys of [vehicle] that an identified model gives."""
+from giveway.config.tables.basics import IDENTIFIED, VehicleConfig
 
 
 def identified_vehicle(model: FittedModel) -> dict[str, float]:

@@ -15,6 +15,7 @@ from giveway.config.files.toml import parse_toml, read_toml_file
 from giveway.config.option import Section, declared, expectation
 from giveway.config.renamed import advice, renamed_in
 from giveway.config.run_config import RunConfig
+from giveway.config.tables.basics import BUNDLED_VEHICLES, IDENTIFIED
 from giveway.config.tables.controllers import OWN_OPTIONS
 from giveway.errors import ConfigError, suggestion
 from giveway.gate import read_text
@@ -278,6 +279,9 @@ def _did_you_mean(location: Location) -> str:
 def dump_toml(config: RunConfig) -> str:
     """Return the whole configuration as TOML, each key followed by its unit and meaning."""
     document = tomlkit.document()
+    foreign = any(ego.vehicle.fmu not in BUNDLED_VEHICLES for ego in config.each_ego())
+    # Values that are not told of a foreign vehicle are found before the run.
+    untold = set(IDENTIFIED) - set(config.vehicle.told) if foreign else set()
     for entry in options():
         *tables, key = entry.location
         node: Any = document
@@ -286,7 +290,7 @@ def dump_toml(config: RunConfig) -> str:
             node = node.setdefault(table, tomlkit.table())
             value = getattr(value, table)
         value = getattr(value, key)
-        if value is None:
+        if value is None or (tables == ["vehicle"] and key in untold):
             continue  # TOML has no null: an absent key means the default
         item = tomlkit.item(list(value) if isinstance(value, tuple) else value)
         unit = f"[{entry.unit}] " if entry.unit else ""

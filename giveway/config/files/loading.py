@@ -7,11 +7,11 @@ from typing import Any
 
 from fmus import FmuError, read_profile
 from giveway.config.files.declared import with_declared
-from giveway.config.files.identified import IDENTIFIED, identified_vehicle
+from giveway.config.files.identified import identified_vehicle
 from giveway.config.files.layers import Layer, build_config, merge, read_toml, undotted
 from giveway.config.files.presets import parameters_of
 from giveway.config.files.trust import require_trusted
-from giveway.config.run_config import RunConfig
+from giveway.config.run_config import OWN_FMU, RunConfig
 from giveway.config.tables.recorded import RecordedConfig
 from giveway.errors import ConfigError, ScenarioError, VehicleError, retold
 from sumo_scenarios import Scenario, available, find
@@ -51,8 +51,8 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
     config = build_config([*identified, *layers])
     require_trusted(config, layers, trusted)
     config = with_declared(config)
-    own_model = _model_of(build_config(layers) if identified else config)
-    config = _with_one_ego(_each_identified(config, own_model), layers)
+    known = identified[0].values["vehicle"] if identified else {}
+    config = _with_one_ego(_each_identified(config, known), layers)
     return _placed(config, scenario), scenario
 
 
@@ -69,26 +69,21 @@ def _identified(layers: Sequence[Layer]) -> list[Layer]:
     return [Layer(profile, {"vehicle": _model_in(profile)})]
 
 
-def _model_of(config: RunConfig) -> dict[str, float]:
-    return {key: getattr(config.vehicle, key) for key in IDENTIFIED}
-
-
-def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfig:
+def _each_identified(config: RunConfig, known: Mapping[str, float]) -> RunConfig:
     """Return ``config`` with the FMU's parameters in each entry of ``egos`` that names an FMU.
 
     Args:
         config: Configuration of the run. M, alpha and limits may come from the vehicle's profile.
-        set_model: M, alpha and limits without that profile, since those of one FMU do not hold for
-            another FMU.
+        known: What that profile says of them, which does not hold for another FMU.
     """
-    identified = {} if _model_of(config) == set_model else set_model
+    told = {key: value for key, value in config.vehicle.told.items() if value != known.get(key)}
     entries = []
     for entry in config.egos:
         vehicle = entry.get("vehicle")
-        if isinstance(vehicle, Mapping) and {"fmu", "profile"} & set(vehicle):
+        if isinstance(vehicle, Mapping) and OWN_FMU & set(vehicle):
             profile = vehicle.get("profile", "")
-            known = _model_in(profile) if profile else {}
-            entry = {**entry, "vehicle": {"profile": profile, **identified, **known, **vehicle}}
+            found = _model_in(profile) if profile else {}
+            entry = {**entry, "vehicle": {"profile": profile, **told, **found, **vehicle}}
         entries.append(entry)
     return config.model_copy(update={"egos": tuple(entries)})
 

@@ -94,6 +94,10 @@ class EgoConfig(Section):
     )
 
 
+IDENTIFIED: Final = ("mass", "friction", "force_limit", "force_rate_limit")
+"""The keys of [vehicle] that an identified model gives."""
+
+
 class VehicleConfig(Section):
     """The vehicle FMU, its body, and the plant parameters that the MPC shares with it."""
 
@@ -182,6 +186,11 @@ class VehicleConfig(Section):
         least=0.1,
         because="the narrowest vehicle is a scooter, the widest a machine on a field",
     )
+
+    @property
+    def told(self) -> dict[str, float]:
+        """What is set of the values that an identified model gives, by key."""
+        return {key: getattr(self, key) for key in IDENTIFIED if key in self.model_fields_set}
 
     @property
     def acceleration_limit(self) -> float:

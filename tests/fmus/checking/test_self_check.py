@@ -2,15 +2,12 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from fmus import FmuCrashError, FmuOutputError, FmuStartError, bundled_fmu
 from fmus.checking import (
-    Trace,
     convergence,
     drive,
-    goes_the_wrong_way,
     opener_of,
     require_converged,
 )
@@ -128,25 +125,3 @@ def test_the_comparison_sees_a_tenth_of_the_speed_and_the_way(car):
     assert found is not None
     assert found.quantity in ("speed", "position")
     assert compare(heavy, heavy) is None
-
-
-@pytest.mark.parametrize("speed", [0.0, 4.0])
-@pytest.mark.parametrize("values", [{}, {"lag": 0.5}, {"mass": 20_000.0}])
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_the_wrong_way_is_told_from_the_right_one(zoo, sign, values, speed):
-    path = zoo.car(spoken={"force": (sign, 0.0)}, values=values)
-    trace = drive(opener(zoo, path), manoeuvre(4000.0), speed=speed)
-    assert goes_the_wrong_way(trace) == (sign < 0.0)
-
-
-@pytest.mark.parametrize("speed", [0.0, 4.0])
-def test_a_truck_that_a_slope_pulls_back_drives_the_right_way(speed):
-    """18 t on 5 % under 4000 N: it loses speed all the same, and its brakes hold it."""
-    force = np.repeat([4000.0, 0.0, -4000.0], [20, 10, 30])
-    speeds = [speed]
-    for u in force:
-        v = speeds[-1] + 0.05 * (u / 18_000.0 - 0.05 * 9.81)
-        speeds.append(max(v, 0.0) if speed else min(v + (0.1 if u < 0.0 else 0.0), 0.0))
-    trace = Trace(0.05, force, np.zeros(61), np.array(speeds), np.zeros(61), np.zeros(60), ())
-    assert trace.speed[20] < trace.speed[0]
-    assert not goes_the_wrong_way(trace)

@@ -5,9 +5,7 @@ from pathlib import Path
 import pytest
 
 from giveway.config import RunConfig
-from giveway.config.files.layers import (
-    Layer,
-)
+from giveway.config.files.layers import Layer, dump_toml, read_toml_text
 from giveway.config.files.loading import as_layer, load
 from giveway.errors import ConfigError, ScenarioError
 
@@ -68,3 +66,43 @@ def test_settings_from_python_may_be_dotted() -> None:
     assert (dotted.crowd.pedestrians, dotted.crowd.two_sided, dotted.seed) == (7, True, 3)
     with pytest.raises(ConfigError, match=r"\[crowd\] pedestrains: unknown key; did you mean"):
         load([as_layer({"crowd.pedestrains": 7})])
+
+
+FOUND = """
+[inputs.force]
+variable = "force"
+[outputs.speed]
+variable = "speed"
+[model]
+mass = 1800.0
+friction = 90.0
+r_squared = 1.0
+speed_error = 0.01
+position_error = 0.1
+horizon = 0.75
+time_step = 0.05
+"""
+
+
+def test_a_default_that_is_set_is_told_of_a_foreign_vehicle(tmp_path):
+    """Also after a turn through config.toml: what is not told is found before the run."""
+    profile = tmp_path / "car.toml"
+    profile.write_text(FOUND, encoding="utf-8")
+    told = {"fmu": "car.fmu", "mass": 1000.0}
+    egos = [
+        {"ego": {"id": "a"}, "vehicle": told},
+        {"ego": {"id": "b"}, "vehicle": {"fmu": "b.fmu"}},
+    ]
+    known = {"mass": 1800.0, "friction": 90.0, "force_limit": 14400.0, "force_rate_limit": 1800.0}
+    run = {"fmu": "x.fmu", "profile": str(profile)}
+    for values, expected in (
+        ({"vehicle": told}, [{"mass": 1000.0}]),
+        ({"egos": egos}, [{"mass": 1000.0}, {}]),
+        ({"vehicle": run, "egos": egos}, [{"mass": 1000.0}, {}]),
+        ({"vehicle": run, "egos": [{"ego": {"id": "c"}}]}, [known]),
+    ):
+        config = load([Layer("user", values)])[0]
+        again = load([read_toml_text(dump_toml(config), "config.toml")])[0]
+        assert [ego.vehicle.told for ego in config.each_ego()] == expected
+        assert [ego.vehicle.told for ego in again.each_ego()] == expected
+        assert dump_toml(again) == dump_toml(config)
