@@ -85,14 +85,7 @@ class VehicleFmu(Drivable):
     ) -> None:
         prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
         with ExitStack() as stack:  # if a later part fails, the earlier ones are undone
-            folder = kept(prepared)
-            if folder is None:
-                own = tempfile.TemporaryDirectory(
-                    prefix=PREFIX, dir=unpacking_place(), ignore_cleanup_errors=True
-                )
-                folder = Path(stack.enter_context(own))
-                unpack(prepared, folder)
-            self._set_up(prepared, folder, stack)
+            self._set_up(prepared, self._place(prepared, stack), stack)
 
     @classmethod
     def unpacked(cls, prepared: Prepared, folder: Path) -> Self:
@@ -119,6 +112,17 @@ class VehicleFmu(Drivable):
         self._instance = self._load(prepared, folder)
         stack.callback(self._instance.close)
         self._resources = stack.pop_all()
+
+    def _place(self, prepared: Prepared, stack: ExitStack) -> Path:
+        """Return the folder in which the FMU is unpacked."""
+        folder = kept(prepared)
+        if folder is None:
+            own = tempfile.TemporaryDirectory(
+                prefix=PREFIX, dir=unpacking_place(), ignore_cleanup_errors=True
+            )
+            folder = Path(stack.enter_context(own))
+            unpack(prepared, folder)
+        return folder
 
     def _load(self, prepared: Prepared, folder: Path) -> Runner:
         """Return what runs the FMU that is unpacked in a folder."""

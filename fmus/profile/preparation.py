@@ -6,7 +6,7 @@ handed to another process.
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite, isnan
 from pathlib import Path
 
@@ -84,9 +84,16 @@ class Prepared(PreparedFmu):
 
     @property
     def fitted(self) -> FittedModel | None:
-        """Fitted model of the profile, with the delay of the FMU's own steps in its dead times."""
-        model = self.profile.model
-        return None if model is None else model.later(self.delay)
+        """Fitted model of the profile, with the longest wait for the FMU's steps in its dead times.
+
+        The dead times of the fit have the mean wait in them, half of the longest one then.
+        """
+        model, fmu = self.profile.model, self.profile.fmu
+        if model is None:
+            return None
+        interface, default = self.wiring.interface, self.model.default_step
+        then = step_plan_of(self.path, fmu.step, interface, default, model.time_step)
+        return model.later(self.delay - 0.5 * replace(self, step_plan=then).delay)
 
     @property
     def delay(self) -> float:

@@ -198,11 +198,11 @@ class FittedModel(StrictTable):
         """Return the model of the vehicle that gets each force later by ``delay`` [s]."""
         sides = {"drive": self.drive, "brake": self.brake}
         later: dict[str, object] = {
-            name: side.model_copy(update={"delay": side.delay + delay})
+            name: side.model_copy(update={"delay": max(side.delay + delay, 0.0)})
             for name, side in sides.items()
             if side is not None
         }
-        return self.model_copy(update={"delay": self.delay + delay, **later})
+        return self.model_copy(update={"delay": max(self.delay + delay, 0.0), **later})
 
 
 class VehicleProfile(StrictTable):
