@@ -1,12 +1,13 @@
 """The assumptions of a run about the checked vehicle."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 from fmus.checking.judgement import Told
-from fmus.checking.scale import KnownMass
-from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
+GENTLE = 3.0  # [m/s2] acceleration of the manoeuvres, by the controller's model
 USUAL = 8.0  # [m/s2] largest force over mass of a car, that of the default vehicle
 
 
@@ -17,24 +18,24 @@ class Expected:
     Attributes:
         mass: Mass M of the controller's model [kg].
         friction: Friction alpha of that model [N.s/m].
-        horizon: Horizon of the MPC [steps].
         start_speed: Start speed of the run [m/s].
         force: Force of the manoeuvres [N].
         largest_force: Largest force u_max [N].
         profile: Profile of the vehicle, or None for a shipped FMU.
-        known: Masses of the vehicle that the user or the profile states.
         told: What is told of the vehicle, for the judgement that a run makes, too.
+        assumed: True if neither a flag nor the profile tells M.
+        found: Model of a quick identification, with which a run drives if M is not told.
     """
 
     mass: float
     friction: float
-    horizon: int
     start_speed: float
     force: float
     largest_force: float
     profile: VehicleProfile | None
-    known: tuple[KnownMass, ...] = ()
-    told: Told | None = None
+    told: Told
+    assumed: bool = False
+    found: FittedModel | None = None
 
     @property
     def identified(self) -> FittedModel | None:
@@ -43,17 +44,18 @@ class Expected:
 
     @property
     def brake_force(self) -> float:
-        """The force [N] with which the brakes are judged: that of a car of the identified mass."""
-        known = 0.0 if self.identified is None else self.identified.mass
-        return max(self.largest_force, USUAL * known)
+        """The force [N] with which the brakes are judged: that of a car of the known mass."""
+        known = self.identified or self.found
+        return max(self.largest_force, 0.0 if known is None else USUAL * known.mass)
 
-    @property
-    def role(self) -> str:
-        """The first input that the profile wires."""
-        inputs = self.profile.inputs if self.profile else None
-        return next((name for name, axis in inputs or () if isinstance(axis, Axis)), "force")
+    def with_model(self, model: FittedModel, *, right: bool) -> Expected:
+        """Return the assumptions after a quick identification.
 
-    @property
-    def braking_role(self) -> str:
-        """The input that brakes."""
-        return {"drive_force": "brake_force", "throttle": "brake"}.get(self.role, self.role)
+        Args:
+            model: Model that was found.
+            right: True if it is that of a vehicle; a run then drives with it if M is not told.
+        """
+        force = GENTLE * model.mass
+        if not (right and self.assumed):
+            return replace(self, force=min(self.force, force))
+        return replace(self, mass=model.mass, friction=model.friction, force=force, found=model)

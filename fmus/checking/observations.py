@@ -1,30 +1,28 @@
-"""The tests of a check. Each function examines traces and returns one finding."""
+"""The tests of a check that look at traces. Each function returns what was seen as one finding."""
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fmus.checking.consistency import SPEED_UNITS, unit_of
 from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
-from fmus.checking.identification import modelled
 from fmus.checking.manoeuvres import Trace
-from fmus.checking.model_fit.prediction import position_errors
-from fmus.checking.scale import GROSS, gross_error
-from fmus.errors import FmuOutputError
-from fmus.profile.advice import gain_line
-from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
+from fmus.checking.model_fit.measurements import STANDSTILL
+from fmus.profile.vehicle_profile import FittedModel
 
-MOVES = 0.02  # [m/s] change of speed above which the vehicle moves
-CREEPS = 0.1  # [m/s] tolerated speed in the wrong direction
-START_TOLERANCE = 0.05  # Largest error of the start speed [m/s]
-MASS_TOLERANCE = 0.05  # Largest relative error of the controller's M
-POSITION_TOLERANCE = 0.1  # [m] tolerance at the controller's horizon
-NO_VEHICLE = 0.3  # R squared below which M and alpha say nothing
-WEAK = 2.0  # [m/s2] deceleration below which a force limit hardly fits the vehicle
-FIRM = 6.0  # [m/s2] hard braking of a loaded truck on a dry road
-LATE = 2.0  # steps of lag and dead time from which on a warning is given
+MOVES: Final = 0.02  # [m/s] change of speed above which the vehicle moves
+CREEPS: Final = 0.1  # [m/s] tolerated speed in the wrong direction
+START_TOLERANCE: Final = 0.05  # largest error of the start speed [m/s]
+MASS_TOLERANCE: Final = 0.05  # largest relative error of the controller's M
+RATIO_TOLERANCE: Final = 0.02  # largest relative error of the way by the speed
+MISFIT: Final = 0.05  # largest deviation from a constant ratio, relative to the largest value
+NO_VEHICLE: Final = 0.3  # R squared below which M and alpha say nothing
+HARD: Final = 7.5  # [m/s2] limit above which a car is not thought weaker than told
+LATE: Final = 2.0  # steps of lag and dead time from which on a warning is given
+FILTERS: Final = tuple(0.05 * n for n in range(1, 31))  # [s] time constants that are tried
+IDENTIFY: Final = "'giveway fmu identify' writes its own model into the profile"
 
 
 def start_speed(rolling: Trace, expected: Expected) -> Finding:
@@ -32,16 +30,7 @@ def start_speed(rolling: Trace, expected: Expected) -> Finding:
     name, wanted, got = "start speed", expected.start_speed, float(rolling.speed[0])
     if abs(got - wanted) <= START_TOLERANCE:
         return Finding(name, "pass", f"{got:.3f} m/s, as asked")
-    unit = unit_of(got / wanted if wanted else np.nan, SPEED_UNITS)
-    if unit:
-        return Finding(
-            name, "fail", f"asked for {wanted:g} m/s it says {got:.4g} m/s: that is in {unit}",
-            f'set `unit = "{unit}"` in [outputs.speed]',
-        )  # fmt: skip
-    return Finding(
-        name, "fail", f"asked for {wanted:g} m/s it starts at {got:.4g} m/s",
-        "name its parameter for it in [initial.speed]; without that table it drives up to it",
-    )  # fmt: skip
+    return Finding(name, "fail", f"asked for {wanted:g} m/s it starts at {got:.4g} m/s")
 
 
 def reproducible(one: Trace, other: Trace) -> Finding:
@@ -62,68 +51,25 @@ def idles(idle: Trace) -> Finding:
     if abs(fastest) <= MOVES:
         return Finding(name, "pass", "no force, no motion")
     if fastest < -MOVES:
-        return Finding(
-            name, "fail", f"without force it goes backwards ({fastest:.3g} m/s)",
-            "a spring, or a slope? A vehicle stands still: see the start values under [parameters]",
-        )  # fmt: skip
+        return Finding(name, "fail", f"without force it goes backwards ({fastest:.3g} m/s)")
     return Finding(
         name, "warn", f"without force it creeps to {fastest:.3g} m/s",
         "as an automatic gearbox does; the controllers have to brake against it",
     )  # fmt: skip
 
 
-def drives(response: Trace, expected: Expected) -> Finding:
-    """Test whether a forward force drives the vehicle forwards."""
-    name = "drives"
-    end = int(np.flatnonzero(response.force > 0.0)[-1]) + 1
-    gained = float(response.speed[end] - response.speed[0])
-    seconds = end * response.step_size
-    text = f"{seconds:g} s of {response.force[0]:.4g} N: {gained:+.4g} m/s"
-    if gained > MOVES:
-        return Finding(name, "pass", text)
-    if gained < -MOVES:
-        return Finding(
-            name, "fail", f"{text}: it goes the wrong way",
-            f"set {gain_line(expected.profile, 'inputs', expected.role, -1.0)} "
-            "(or in [outputs.speed])",
-        )  # fmt: skip
+def holds(rolling: Trace, braking_role: str) -> Finding:
+    """Test whether brakes that are held on let a vehicle stand."""
+    name, slowest = "brakes hold", float(rolling.speed.min())
+    if slowest >= -CREEPS:
+        return Finding(name, "pass", f"held on, they slow it down to {slowest:.3g} m/s")
     return Finding(
-        name, "fail", f"{text}: it does not move",
-        f"is [inputs.{expected.role}] the right variable? A gear, ignition or hand brake may have "
-        "to be set under [parameters]",
+        name, "fail" if braking_role in ("brake", "brake_force") else "warn",
+        f"held on, the brakes drive it backwards, with {-slowest:.3g} m/s",
     )  # fmt: skip
 
 
-def brakes(rolling: Trace, expected: Expected) -> Finding:
-    """Test whether a backward force slows the vehicle down and finally holds it."""
-    name = "brakes"
-    first = int(np.flatnonzero(rolling.force < 0.0)[0])
-    before, slowest = float(rolling.speed[first]), float(rolling.speed[first:].min())
-    halfway = float(rolling.speed[min(first + round(0.5 / rolling.step_size), len(rolling.force))])
-    text = f"from {before:.3g} m/s with {expected.force:.0f} N to {slowest:.3g} m/s"
-    role = expected.braking_role
-    if halfway > before + MOVES:
-        return Finding(
-            name, "fail", f"{text}: braking makes it faster ({halfway:.3g} m/s)",
-            f"set {gain_line(expected.profile, 'inputs', role, -1.0)}",
-        )  # fmt: skip
-    if slowest > before - MOVES:
-        return Finding(
-            name,
-            "fail",
-            f"{text}: it does not slow down",
-            f"is [inputs.{role}] the right variable?",
-        )
-    if slowest < -CREEPS:
-        return Finding(
-            name, "fail" if role in ("brake", "brake_force") else "warn",
-            f"{text}: held on, the brakes drive it backwards",
-            "brakes hold a standing vehicle; let the FMU keep speed 0 there",
-        )  # fmt: skip
-    return Finding(name, "pass", text)
-
-
-def coasts(response: Trace, expected: Expected) -> Finding:
+def coasts(response: Trace) -> Finding:
     """Test whether the vehicle rolls ever more slowly without a force."""
     name = "coasts"
     edges = np.flatnonzero(np.diff(response.force)) + 1
@@ -133,137 +79,111 @@ def coasts(response: Trace, expected: Expected) -> Finding:
     seconds = 0.5 * (end - begin) * response.step_size
     text = f"{seconds:g} s without force: {before:.3g} to {after:.3g} m/s"
     if after < -CREEPS:
-        return Finding(
-            name, "fail", f"{text}: it turns round like a spring", "this is not a vehicle"
-        )
+        return Finding(name, "fail", f"{text}: it turns round like a spring")
     if after > before + CREEPS:
-        return Finding(
-            name, "warn", f"{text}: it gets faster",
-            f"zero force may not be zero of [inputs.{expected.role}]: see its `offset`",
-        )  # fmt: skip
+        return Finding(name, "warn", f"{text}: it gets faster; is zero force its zero?")
     return Finding(name, "pass", text)
 
 
-def quick_fit(traces: Sequence[Trace], profile: VehicleProfile | None = None) -> FittedModel | None:
-    """Return the coarse model of the drives of a check, or None if forces do not move it."""
-    try:
-        return modelled(traces, traces[0], 1, Path(), profile, coarse=True).model
-    except FmuOutputError:
-        return None
-
-
-def matches_model(model: FittedModel | None, response: Trace, expected: Expected) -> Finding:
-    """Test whether the controller's M and alpha describe this vehicle."""
+def described(model: FittedModel, expected: Expected, step: float) -> Finding:
+    """Test whether M and alpha describe this vehicle, and whether they are the controller's."""
     name = "controller's model"
-    if model is None or model.r_squared < NO_VEHICLE:
-        how = "" if model is None else f" (R² = {model.r_squared:.2f})"
-        return Finding(
-            name, "fail", f"M v' + alpha v = u does not describe how it moves{how}",
-            "is this a vehicle driven by the input that the profile names?",
-        )  # fmt: skip
-    errors = position_errors(response, expected.mass, expected.friction, expected.horizon)
-    off = float(np.quantile(errors, 0.95)) if errors.size else 0.0
-    seconds = expected.horizon * response.step_size
-    text = (
-        f"M = {model.mass:.5g} kg, alpha = {model.friction:.4g} N.s/m; the controller's: "
-        f"{expected.mass:g}, {expected.friction:g}: its prediction is off by {_small(off)} m "
-        f"after {seconds:g} s"
-    )
-    ratio = model.mass / expected.mass
-    lead = _missing_lead(model.mass, response.step_size, expected)
-    for weight in expected.known:
-        gross = gross_error(model.mass, weight, expected.role, _speed_unit(expected))
-        if gross is not None:
-            remedy = gross[1] if lead is None else _lead_remedy(lead)
-            return Finding(name, "fail", f"{text}: {gross[0]}", remedy)
-    if abs(ratio * 1000.0 - 1.0) < 0.3:
-        return Finding(
-            name, "fail", f"{text}: 1000 times too strong, the force seems to be in kN",
-            f'set `unit = "kN"` in [inputs.{expected.role}]',
-        )  # fmt: skip
-    known = 0.0 if expected.identified is None else 1.5 * expected.identified.position_error
-    if abs(ratio - 1.0) <= MASS_TOLERANCE and off <= max(POSITION_TOLERANCE, known):
-        return Finding(name, "pass", text)
-    if lead is not None:
-        return Finding(name, "warn", text, _lead_remedy(lead))
-    identify = "'giveway fmu identify' writes its own M and alpha into the profile"
-    if not expected.known and not 1.0 / GROSS < ratio < GROSS:
-        return Finding(
-            name, "ask", f"{text}: does it weigh {model.mass:.3g} kg?",
-            f"if so, {identify}; else a unit is wrong: 'giveway fmu check --mass' with what it "
-            "weighs [kg], or --ego-class, says which",
-        )  # fmt: skip
-    return Finding(name, "warn", text, identify)
-
-
-def _lead_remedy(lead: float) -> str:
-    return (
-        f"it takes about {lead:.2g} s to its set-point: write `lead = {lead:.2g}` in "
-        "[inputs.speed_setpoint], and it answers as the controller thinks"
-    )
-
-
-def _speed_unit(expected: Expected) -> str:
-    """Return the unit that the profile gives to the speed, or "" if the FMU's own counts."""
-    return (expected.profile.outputs.speed.unit or "") if expected.profile else ""
-
-
-def _missing_lead(mass: float, step: float, expected: Expected) -> float | None:
-    """Return the time constant [s] that a speed controller's profile lacks, or None.
-
-    With a lead T of one step, v' = (v_set - v) / tau = T / tau (u - alpha v) / M. Therefore the
-    vehicle seems tau / T times as heavy as M of the inverse map.
-    """
-    setpoint = expected.profile.inputs.speed_setpoint if expected.profile else None
-    if setpoint is None or setpoint.lead is not None or expected.profile is None:
-        return None
-    lead = step * mass / expected.profile.inverse_map.mass
-    return lead if lead >= LATE * step else None
-
-
-def actuator_limits(
-    model: FittedModel | None, response: Trace, full: Trace, rolling: Trace, expected: Expected
-) -> Finding:
-    """Test whether the controller's largest forces arrive and suffice."""
-    name, largest = "force limits", expected.largest_force
-    if model is None:
-        return Finding(name, "skip", "not to be said without a model")
-    known = quick_fit([full, response, rolling], expected.profile) or model
-    sides = (("drive", known.drive), ("brake", known.brake))
-    limits = [(side.limit * side.mass, name) for name, side in sides if side and side.limit]
-    if not limits:
-        hardest = largest / known.mass
-        lagging = _missing_lead(known.mass, response.step_size, expected) is not None
-        if hardest >= WEAK or lagging:  # a lead is missing then
-            return Finding(name, "pass", f"{largest:.0f} N drive as they should")
-        enough = float(f"{FIRM * known.mass:.1g}")
-        return Finding(
-            name, "warn", f"{largest:.0f} N brake it with {hardest:.2g} m/s² at most",
-            f"check and identify it with --force-limit {enough:.0f}, run it with "
-            f"--vehicle-force-limit {enough:.0f}",
-        )  # fmt: skip
-    lowest, which = min(limits)
-    return Finding(
-        name, "warn", f"no more than {lowest:.0f} N of {which} force arrive",
-        f"run it with --vehicle-force-limit {lowest:.0f} or less",
-    )  # fmt: skip
-
-
-def actuator_lag(model: FittedModel | None, step: float, expected: Expected) -> Finding:
-    """Test whether forces act late."""
-    name = "actuator lag"
-    if model is None:
-        return Finding(name, "skip", "not to be said without a model")
+    if model.r_squared < NO_VEHICLE:
+        how = f"does not describe how it moves (R² = {model.r_squared:.2f})"
+        return Finding(name, "fail", f"M v' + alpha v = u {how}")
     late = model.lag + model.delay
-    if late <= 0.0:
-        return Finding(name, "pass", "forces act at once")
-    text = f"forces act {late:.2g} s late (lag {model.lag:.2g} s, dead time {model.delay:.2g} s)"
-    if late <= LATE * step or expected.identified is not None:
+    text = f"M = {model.mass:.5g} kg, alpha = {model.friction:.4g} N.s/m"
+    if late > 0.0:
+        text += f"; forces act {late:.2g} s late (lag {model.lag:.2g}, dead time {model.delay:.2g})"
+    sides = (("drive", model.drive), ("brake", model.brake))
+    for which, side in sides:
+        if side is not None and side.limit is not None:
+            text += f"; no more than {side.limit * side.mass:.0f} N of {which} force arrive"
+    limited = any(side and side.limit and side.limit < HARD for _, side in sides)
+    plain = late <= LATE * step and not limited
+    if abs(model.mass / expected.mass - 1.0) <= MASS_TOLERANCE and (expected.identified or plain):
         return Finding(name, "pass", text)
+    return Finding(name, "warn", f"{text}; the controller's: {expected.mass:g} kg", IDENTIFY)
+
+
+def position_follows_speed(response: Trace, expected: Expected) -> Finding:
+    """Test whether the speed is the rate of change of the position."""
+    name = "speed and position"
+    if expected.profile and expected.profile.outputs.position is None:
+        return Finding(name, "skip", "no position among the outputs: the speed is integrated")
+    way = np.cumsum(0.5 * (response.speed[1:] + response.speed[:-1])) * response.step_size
+    ratio, misfit = _ratio(way, response.position[1:] - response.position[0])
+    if not np.isfinite(ratio) or (ratio == 0.0 and misfit == 0.0):
+        return Finding(name, "skip" if not np.any(way) else "fail", "the position does not move")
+    if misfit <= MISFIT:
+        right = abs(ratio - 1.0) <= RATIO_TOLERANCE
+        text = f"the position moves {ratio:.4g} m per metre that the speed accounts for"
+        return Finding(name, "pass" if right else "fail", text)
+    late = _filtered(response)
+    if late is None:
+        off = f"off by {100 * misfit:.0f} %"
+        return Finding(name, "fail", f"the position is not the way driven ({off})")
     return Finding(
-        name, "warn", text,
-        "'giveway fmu identify' measures what that costs, and the run keeps more distance",
+        name, "warn", f"the speed follows the position's rate {late:.2g} s late: filtered",
+        "'giveway fmu identify' measures it as `sensor_lag`",
     )  # fmt: skip
+
+
+def _filtered(response: Trace) -> float | None:
+    """Return the time constant [s] of a filter that makes the speed of the position, or None."""
+    h = response.step_size
+    best: tuple[float, float | None] = (MISFIT, None)
+    rate = np.diff(response.position) / h
+    for lag in FILTERS:
+        share, speed = -np.expm1(-h / lag), float(response.speed[0])
+        filtered = np.empty_like(rate)
+        for k, value in enumerate(rate):
+            speed += share * (value - speed)
+            filtered[k] = speed
+        ratio, misfit = _ratio(filtered, response.speed[1:])
+        if misfit < best[0] and abs(ratio - 1.0) <= RATIO_TOLERANCE:
+            best = misfit, lag
+    return best[1]
+
+
+def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
+    """Test whether the acceleration is the rate of change of the speed."""
+    name = "acceleration"
+    if expected.profile and expected.profile.outputs.acceleration is None:
+        return Finding(name, "skip", "not among the outputs: the speed's difference is taken")
+    ratio, misfit = _acceleration_ratio(response)
+    if not np.isfinite(ratio):
+        return Finding(name, "skip", "the speed does not change")
+    text = f"{ratio:.4g} times what the speed does per second"
+    if misfit > 0.1:
+        return Finding(name, "warn", f"{text}, and not always; it may be left out")
+    return Finding(name, "pass" if abs(ratio - 1.0) <= 0.05 else "fail", text)
+
+
+def _acceleration_ratio(response: Trace) -> tuple[float, float]:
+    """Return the factor from the speed's slope to the acceleration, and the misfit.
+
+    Some FMUs give the mean over the step, others the value at its end. The better fit is used.
+    """
+    v, h = response.speed, response.step_size
+    changes = np.flatnonzero(np.diff(response.force)) + 1
+    near = np.abs(np.arange(1, v.size - 1)[:, None] - changes).min(axis=1, initial=v.size)
+    around = np.stack((v[:-2], v[1:-1], v[2:]))
+    stops = (around.min(axis=0) <= STANDSTILL) & (around.max(axis=0) > STANDSTILL)
+    steady = (near > 1) & ~stops
+    measured = response.acceleration[1:-1][steady]
+    slopes = ((v[1:-1] - v[:-2]) / h, (v[2:] - v[:-2]) / (2.0 * h))
+    return min((_ratio(slope[steady], measured) for slope in slopes), key=lambda found: found[1])
+
+
+def _ratio(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the least-squares factor from x to y, and the misfit relative to y's largest value."""
+    power = float(x @ x)
+    if power == 0.0:
+        return np.nan, 0.0
+    ratio = float(x @ y) / power
+    largest = float(np.abs(y).max())
+    return ratio, float(np.abs(y - ratio * x).max()) / largest if largest else 0.0
 
 
 def time_per_step(response: Trace) -> Finding:
@@ -282,8 +202,3 @@ def warnings(traces: Mapping[str, Trace]) -> Finding:
         return Finding("warnings", "pass", "none")
     more = f" (and {len(seen) - 1} more)" if len(seen) > 1 else ""
     return Finding("warnings", "warn", f"{seen[0]}{more}")
-
-
-def _small(value: float) -> str:
-    """Return the value with two digits; mere rounding becomes 0."""
-    return f"{value:.2g}" if value > 1e-9 else "0"

@@ -6,11 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fmus.checking import CheckReport, Convergence, Mpc, Trace, check, expected_of, identify
+from fmus.checking import (
+    CheckReport,
+    Convergence,
+    Mpc,
+    Trace,
+    check,
+    expected_of,
+    identify,
+    told_of,
+)
 from fmus.checking.expected import Expected
 from giveway.figures.vehicle_response import check_figure, identification_figure
 
-EXPECTED = Expected(1000.0, 100.0, 15, 4.0, 3000.0, 8000.0, None)
+EXPECTED = Expected(1000.0, 100.0, 4.0, 3000.0, 8000.0, None, told_of(None, None))
 
 
 def trace(speed):

@@ -21,7 +21,7 @@ from giveway.cli.screen.printing import findings_table, print_json, print_place
 from giveway.errors import ConfigError
 
 _OF_STEPS = {"step halving", "starts", "reproducible"}  # tests that an edited axis does not mend
-_NOTHING = "no line that was tried mends it all; perhaps"
+_NOTHING = "none of the lines that were tried mends it"
 _FILTERED = (
     "the position is right, the speed is filtered: a larger `position_jump` in [limits] allows it"
 )
@@ -91,7 +91,7 @@ def check_command(path: Path, profile: Path | None, trial: DryRun) -> int:
 
 
 def _with_remedies(path: Path, report: CheckReport, step: float) -> list[Finding]:
-    """Return the findings; lines for the profile are in them only if the check passes with them."""
+    """Return the findings; a line that mends the profile is in them only if it was tried."""
     open_ones = {f.name for f in report.findings if f.verdict in ("fail", "ask")} - _OF_STEPS
     if not open_ones:
         return report.findings
@@ -105,8 +105,8 @@ def _with_remedies(path: Path, report: CheckReport, step: float) -> list[Finding
                 finding = replace(finding, remedy=line)
             elif filtered:
                 finding = replace(finding, remedy=_FILTERED)
-            elif finding.verdict == "fail" and "`" in finding.remedy:
-                finding = replace(finding, remedy=f"{_NOTHING}; {finding.remedy}")
+            elif finding.verdict == "fail":
+                finding = replace(finding, remedy=_NOTHING)
         found.append(finding)
     return found
 

@@ -49,29 +49,6 @@ def test_all_four_resistances_come_back(car):
     assert quadratic == pytest.approx(0.8, rel=0.1)
 
 
-def test_forces_too_small_for_a_truck_are_told_with_the_flag(car):
-    force = {"inputs": {"force": {"variable": "F"}}, "outputs": {"speed": {"variable": "v"}}}
-    profile = make_profile(force, "test")
-    report = check(car(**TRUCK), expected_of(profile), step_size=0.05)
-    found = finding(report, "force limits")
-    assert found.verdict == "warn"
-    assert "m/s² at most" in found.text
-    assert (
-        "identify it with --force-limit 100000, run it with --vehicle-force-limit" in found.remedy
-    )
-
-
-def test_a_set_point_without_a_lead_is_told_its_lead(zoo):
-    path = zoo.car(role="speed_setpoint", values={"response": 0.6})
-    values = zoo.profile(path)
-    values["inputs"]["speed_setpoint"].pop("lead", None)
-    profile = make_profile(values, "test")
-    opener = opener_of(path, step_size=0.05, profile=profile, isolated=False)
-    report = check(opener, expected_of(profile), step_size=0.05)
-    assert "lead = 0.6" in finding(report, "controller's model").remedy
-    assert finding(report, "force limits").verdict == "pass"
-
-
 def test_a_gearbox_that_is_weaker_in_higher_gears_is_no_limit(zoo):
     values = {"gear_speed": 3.0, "gear_ratio": 0.6}
     path = zoo.car(fmi="2.0", kind="model-exchange", values=values)
@@ -79,7 +56,5 @@ def test_a_gearbox_that_is_weaker_in_higher_gears_is_no_limit(zoo):
     opener = opener_of(path, step_size=0.05, profile=profile, isolated=False)
     found = identified(opener, 8_000.0)
     assert found.model.drive.limit is None
-    assert (
-        finding(check(opener, expected_of(profile), step_size=0.05), "force limits").verdict
-        == "pass"
-    )
+    seen = finding(check(opener, expected_of(profile), step_size=0.05), "controller's model")
+    assert "arrive" not in seen.text
