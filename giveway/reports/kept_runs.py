@@ -18,10 +18,13 @@ import numpy as np
 from giveway.errors import ResultsError
 from giveway.gate import (
     LARGEST_TABLE,
+    MAKER,
     fingerprint_of,
+    is_own,
     read_bytes,
     read_json,
     require_no_link,
+    signed,
     write_whole,
 )
 from giveway.reports.examples import Drive
@@ -37,7 +40,8 @@ class KeptRuns:
     """Pages and drives of runs, in the folder ``replays`` of a study.
 
     A list beside them has, for each run, the key of its record, the code that drew its page, and
-    the SHA-256 of both files. Files that do not match their line are not used.
+    the SHA-256 of both files. Files that do not match their line are not used, and a list that
+    this user's key has not signed is none.
 
     Args:
         study: Study that has the runs.
@@ -48,9 +52,12 @@ class KeptRuns:
         self._folder = study.path / REPLAYS
         self._list: dict[str, Any] = {}
         try:
-            self._list = read_json(self._folder / _LIST, within=study.path)
+            kept = read_json(self._folder / _LIST, within=study.path)
         except (FileNotFoundError, NotADirectoryError):
             return
+        if is_own(kept):  # a page runs scripts in the reader's browser
+            del kept[MAKER]
+            self._list = kept
 
     def has(self, run: str) -> bool:
         """Return whether page and drives of a run exist and were made from the study's record."""
@@ -137,7 +144,7 @@ class KeptRuns:
         }
 
     def _write(self) -> None:
-        text = json.dumps(self._list, indent=1, sort_keys=True) + "\n"
+        text = json.dumps(signed(self._list), indent=1, sort_keys=True) + "\n"
         write_whole(self._folder / _LIST, text.encode("utf-8"), within=self._study.path)
 
 

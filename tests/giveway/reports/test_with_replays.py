@@ -10,6 +10,8 @@ import sys
 
 import pytest
 
+from giveway.errors import ConfigError
+from giveway.gate import signed
 from giveway.reports import with_replays
 from giveway.reports.report_page import shown_runs
 from giveway.reports.with_replays import write_report_of
@@ -55,7 +57,9 @@ def made(monkeypatch):
     return found
 
 
-def test_a_report_makes_each_run_once_and_the_next_one_none(small_study, tmp_path, made):
+def test_a_report_makes_each_run_once_and_the_next_one_none(
+    small_study, tmp_path, made, monkeypatch
+):
     folder = shutil.copytree(small_study.path, tmp_path / "copy")
     shutil.rmtree(folder / "replays", ignore_errors=True)
     study, told = StudyFolder.open(folder), []
@@ -81,9 +85,26 @@ def test_a_report_makes_each_run_once_and_the_next_one_none(small_study, tmp_pat
     (folder / "replays" / f"{runs[1]}.npz").unlink()
     listed = json.loads((folder / "replays" / "kept.json").read_text())
     listed[runs[2]]["record"] = "another"
-    (folder / "replays" / "kept.json").write_text(json.dumps(listed))
+    del listed["maker"]
+    (folder / "replays" / "kept.json").write_text(json.dumps(signed(listed)))
     (folder / "replays" / "c9-s9.html").write_text("of a former report")
     write_report_of(StudyFolder.open(folder))
     assert made == runs[:3]
     assert page.read_bytes() == report
     assert {path.name: path.read_bytes() for path in (folder / "replays").iterdir()} == first
+
+    # Pages run scripts: without the user's signature they are made again, or not shown.
+    made.clear()
+    listed = json.loads((folder / "replays" / "kept.json").read_text())
+    (folder / "replays" / "kept.json").write_text(json.dumps(listed | {"maker": "0" * 64}))
+
+    def refused(*_, **__):
+        raise ConfigError("study.toml: somebody else's results folder names code")
+
+    monkeypatch.setattr(with_replays, "checked_run", refused)
+    warned = []
+    page = write_report_of(StudyFolder.open(folder), warn=warned.append)
+    assert made == []
+    (line,) = warned
+    assert line.startswith(f"{len(runs)} of {len(runs)} shown runs have no replay: study.toml: ")
+    assert "replays/" not in page.read_text()
