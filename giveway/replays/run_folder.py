@@ -27,7 +27,7 @@ from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"
 # Columns with a number in every row
-_ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})
+_ALWAYS = frozenset({"time", "look_ahead", "x", "y", "vx", "vy", "angle", "speed", "position"})
 _SHOWN = 40  # Characters shown of a text that is not a number
 
 

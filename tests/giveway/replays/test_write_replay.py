@@ -128,6 +128,7 @@ def test_a_folder_that_is_no_run_is_one_clear_line(
         ("ego.csv", "gap", "1.5x", "'1.5x'"),
         ("trajectories.csv", "y", "inf", "'inf'"),
         ("trajectories.csv", "vx", "<b>", "'<b>'"),
+        ("trajectories.csv", "vy", "", "nothing"),
         ("pedestrians.csv", "minimum_clearance", "ped2", "'ped2'"),
     ],
 )
