@@ -186,7 +186,7 @@ def merge(layers: Sequence[Layer]) -> dict[str, Any]:
         for table, socket in PLUGGED.items():
             before = same_name(_at(merged, socket.location))
             named = same_name(_at(layer.values, socket.location))
-            if before is not None and named not in {None, before}:
+            if before is not None and named is not None and named != before:
                 merged.pop(table, None)  # these options belong to another plug-in
                 if socket is CONTROLLER:
                     merged.pop("controller_profile", None)

@@ -100,3 +100,9 @@ def test_another_reference_speed_is_refused(given: object, expected: str) -> Non
         build_config([Layer("file", entry)])
     with pytest.raises(ConfigError, match=rf"egos\[0\]: regulation.reference_speed = .*{expected}"):
         build_config([Layer("file", {"egos": [entry]})])
+
+
+def test_a_table_in_place_of_a_plug_ins_name_is_one_line() -> None:
+    layers = [Layer("a.toml", {"controller": "mpc"}), Layer("b.toml", {"controller": {"a": 1}})]
+    with pytest.raises(ConfigError, match="controller"):
+        build_config(layers)
