@@ -74,9 +74,9 @@ def coasts(response: Trace) -> Finding:
     name = "coasts"
     edges = np.flatnonzero(np.diff(response.force)) + 1
     begin, end = int(edges[0]), int(edges[1])
-    # In the first half the drive force may still fade.
-    before, after = float(response.speed[(begin + end) // 2]), float(response.speed[end])
-    seconds = 0.5 * (end - begin) * response.step_size
+    # In the first two thirds the drive force may still fade.
+    before, after = float(response.speed[(begin + 2 * end) // 3]), float(response.speed[end])
+    seconds = (end - (begin + 2 * end) // 3) * response.step_size
     text = f"{seconds:g} s without force: {before:.3g} to {after:.3g} m/s"
     if after < -CREEPS:
         return Finding(name, "fail", f"{text}: it turns round like a spring")

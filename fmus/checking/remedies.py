@@ -19,6 +19,7 @@ from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
 from fmus.checking.judgement import judge
 from fmus.checking.manoeuvres import Phase, drive, opener_of, without_guards
+from fmus.checking.scale import NAMED
 from fmus.description.model import Model
 from fmus.description.reading import read_model
 from fmus.errors import FmuError
@@ -27,6 +28,7 @@ from fmus.profile.vehicle_profile import VehicleProfile, make_profile
 
 MOST: Final = 100  # largest number of edits that are tried
 CLOSE: Final = 1.25  # largest factor between a measured mass and the one that is told
+FILTERED: Final = 4.0  # [m] difference of position and speed that a filter of half a second makes
 EQUAL: Final = 0.02  # logarithm of factors that differ by no more than errors of measurement
 UNITS: Final = {
     "speed": ("m/s", "km/h", "mph", "kn", "ft/s"),
@@ -35,21 +37,10 @@ UNITS: Final = {
     "force": ("N", "kN", "lbf", "kgf"),
     "throttle": ("1", "%"),
 }
-SWITCHES: Final = (
-    "gear",
-    "ignit",
-    "engage",
-    "enable",
-    "clutch",
-    "park",
-    "brake",
-    "key",
-    "mode",
-    "start",
-    "power",
-    "select",
-    "direction",
-)
+SWITCHES: Final = (  # parts of the names of gears, ignitions and the like
+    "gear", "ignit", "engage", "enable", "clutch", "park", "brake", "key", "mode", "start", "power",
+    "select", "direction",
+)  # fmt: skip
 
 Values = dict[str, Any]
 Edit = tuple[str, Values]  # the lines to write, and the profile's values with them
@@ -147,7 +138,7 @@ def _groups(
     """Yield the groups of edits, the most likely one first."""
     axes = [role for role in values["inputs"] if isinstance(values["inputs"][role], dict)]
     driving = [role for role in axes if role != "grade"]
-    yield _leads(values, answers, expected)
+    yield chain(_leads(values, answers, expected), _jumps(values))
     yield _plain(values, driving)
     yield _units(values, "outputs", ["position"])
     yield _signs(values, driving)
@@ -159,6 +150,7 @@ def _groups(
     yield chain.from_iterable(_units(values, *place) for place in places)
     yield _gains(values, driving, answers, expected)
     yield _switches(values, model)
+    yield _named(values, driving)
     yield _others(values, model)
 
 
@@ -216,6 +208,14 @@ def _leads(values: Values, answers: Answers, expected: Expected) -> Iterator[Edi
         yield _edited(values, ("inputs", "speed_setpoint", "lead", float(f"{lead:.2g}")))
 
 
+def _jumps(values: Values) -> Iterator[Edit]:
+    """Yield a larger tolerance between position and speed, which a filtered speed needs."""
+    if "position" in values["outputs"]:
+        changed = copy.deepcopy(values)
+        changed.setdefault("limits", {})["position_jump"] = FILTERED
+        yield f"`position_jump = {FILTERED:g}` in [limits]", changed
+
+
 def _signs(values: Values, driving: list[str]) -> Iterator[Edit]:
     places = [("inputs", role) for role in driving]
     places += [("outputs", role) for role in ("speed", "position", "acceleration")]
@@ -254,8 +254,9 @@ def _switches(values: Values, model: Model) -> Iterator[Edit]:
     yield from (
         _set(values, choice) for several in options for choice in ([one] for one in several)
     )
-    for first, second in combinations(options, 2):
-        yield from (_set(values, list(pair)) for pair in product(first, second))
+    for number in (2, 3):
+        for several in combinations(options, number):
+            yield from (_set(values, list(choice)) for choice in product(*several))
 
 
 def _settings(kind: str, now: object) -> tuple[object, ...]:
@@ -263,7 +264,7 @@ def _settings(kind: str, now: object) -> tuple[object, ...]:
     if kind == "Boolean":
         return (str(now).lower() not in ("true", "1"),)
     whole = "Int" in kind or "Enum" in kind
-    return tuple(n for n in ((1, 2, 3) if whole else (1.0, 0.0)) if str(n) != str(now))
+    return tuple(n for n in ((1, 2, 3, 4) if whole else (1.0, 0.0)) if str(n) != str(now))
 
 
 def _set(values: Values, settings: list[tuple[str, object]]) -> Edit:
@@ -300,6 +301,14 @@ def _gains(
         yield _edited(values, edit, ("initial", "speed", "gain", float(f"{gain:.4g}")))
     if "acceleration" in driving:
         yield from _as_force(values, factors[0], expected)
+
+
+def _named(values: Values, driving: list[str]) -> Iterator[Edit]:
+    """Yield gains of the inputs by named factors, where no factor can be measured."""
+    for factor in chain.from_iterable((value, 1.0 / value) for value, _ in NAMED):
+        gains = {role: (values["inputs"][role].get("gain") or 1.0) * factor for role in driving}
+        edits = [("inputs", role, "gain", float(f"{gain:.4g}")) for role, gain in gains.items()]
+        yield _edited(values, *edits)
 
 
 def _as_force(values: Values, factor: float, expected: Expected) -> Iterator[Edit]:

@@ -1,9 +1,12 @@
 """A line is told only if the vehicle drives and stops right with it."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from fmus.checking import expected_of
-from fmus.checking.remedies import tried
+from fmus.checking.remedies import MOST, _switches, tried
+from fmus.description.model import Variable
 from fmus.profile.vehicle_profile import make_profile
 
 
@@ -34,3 +37,16 @@ def test_the_lead_of_a_set_point_is_found(zoo):
     without = {"inputs": {"speed_setpoint": {"variable": "speed_setpoint"}}}
     found = lines(zoo, changes=without, role="speed_setpoint")
     assert found == "`lead = 0.53` in [inputs.speed_setpoint]"
+
+
+def test_gear_ignition_and_selector_are_tried_together():
+    starts = {"Mode": ("Enumeration", "1"), "gear": ("Int8", "0"), "ignition": ("Boolean", "false")}
+    variables = {
+        name: Variable(name, 1, kind, "input", start=start)
+        for name, (kind, start) in starts.items()
+    }
+    edits = [edit for _, edit in _switches({"inputs": {}}, SimpleNamespace(variables=variables))]
+    assert {"parameters": {"Mode": 4, "gear": 1, "ignition": True}} in [
+        {"parameters": edit["parameters"]} for edit in edits
+    ]
+    assert len(edits) < MOST // 2

@@ -22,9 +22,6 @@ from giveway.errors import ConfigError
 
 _OF_STEPS = {"step halving", "starts", "reproducible"}  # tests that an edited axis does not mend
 _NOTHING = "none of the lines that were tried mends it"
-_FILTERED = (
-    "the position is right, the speed is filtered: a larger `position_jump` in [limits] allows it"
-)
 _STYLES = {
     "pass": "green", "skip": "cyan", "warn": "yellow", "ask": "bold magenta", "fail": "bold red",
 }  # fmt: skip
@@ -95,16 +92,13 @@ def _with_remedies(path: Path, report: CheckReport, step: float) -> list[Finding
     open_ones = {f.name for f in report.findings if f.verdict in ("fail", "ask")} - _OF_STEPS
     if not open_ones:
         return report.findings
-    filtered = any(f.name == "speed and position" and "filtered" in f.text for f in report.findings)
-    remedy = None if filtered else tried(path, report.expected, step_size=step)
+    remedy = tried(path, report.expected, step_size=step)
     found = []
     for finding in report.findings:
         if finding.name in open_ones:
             if remedy is not None:
                 line = f"write {remedy.lines}: tried, and the vehicle then drives and stops right"
                 finding = replace(finding, remedy=line)
-            elif filtered:
-                finding = replace(finding, remedy=_FILTERED)
             elif finding.verdict == "fail":
                 finding = replace(finding, remedy=_NOTHING)
         found.append(finding)
