@@ -12,7 +12,6 @@ import hmac
 import json
 import math
 import os
-import secrets
 import stat
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -299,7 +298,7 @@ def _make_key(file: Path) -> None:
     handle, name = tempfile.mkstemp(prefix=_KEY_FILE, dir=file.parent)  # mode 600
     try:
         with os.fdopen(handle, "wb") as stream:
-            stream.write(secrets.token_bytes(_KEY_LENGTH))
+            stream.write(os.urandom(_KEY_LENGTH))
         with contextlib.suppress(FileExistsError):
             os.link(name, file)
     finally:

@@ -9,10 +9,11 @@ import numpy as np
 
 from giveway.api import in_journal, keep
 from giveway.config import RunConfig
-from giveway.config.files.foreign_code import foreign_code, named_in
+from giveway.config.files.foreign_code import named_in
 from giveway.config.files.layers import build_config, read_toml_text
 from giveway.config.files.loading import load
 from giveway.config.files.toml import parse_toml
+from giveway.config.files.trust import code_of
 from giveway.errors import CrashError, GivewayError, ResultsError
 from giveway.gate import is_own
 from giveway.journal.journal_reader import JournalContents, read_journal
@@ -131,11 +132,11 @@ def recover_left(
             if not left.steps:
                 raise ResultsError(f"{journal}: the run was killed before its first row")
             layer = read_toml_text(contents.meta["config"], "the run's configuration")
-            code = [] if own else foreign_code(build_config([layer]))
+            code = [] if own else code_of(build_config([layer]))
             if code:
                 raise ResultsError(
                     f"{journal}: another user or another giveway wrote this journal, and it names "
-                    f"code, '{code[0].name}', which is not imported; recover it as that user"
+                    f"code, '{code[0].name}', which would run; recover it as that user"
                 )
             config, scenario = load([layer])
             verdict = verdict_on_left(journal)

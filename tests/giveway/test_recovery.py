@@ -192,12 +192,15 @@ def test_a_journal_of_somebody_else_decides_nothing(
     file.write_text(json.dumps(meta | {"results": str(tmp_path / "precious")}))
     refused = type_here("recover", journal)
     assert "whose folder for the results" in refused.stderr
-    code = meta["config"].replace('controller = "mpc"', 'controller = "own_code:Evil"')
-    file.write_text(json.dumps(meta | {"config": code}))
-    assert (
-        "'own_code:Evil', which is not imported"
-        in type_here("recover", journal, "--out", "o").stderr
-    )
+    (tmp_path / "evil.fmu").write_text("code")
+    for mine, theirs in (
+        ('controller = "mpc"', 'controller = "own_code:Evil"'),
+        ('fmu = "fmi2"', f'fmu = "{tmp_path / "evil.fmu"}"'),
+    ):
+        assert mine in meta["config"]
+        code = meta["config"].replace(mine, theirs)
+        file.write_text(json.dumps(meta | {"config": code}))
+        assert "it names code" in type_here("recover", journal, "--out", "o").stderr
     os.mkfifo(tmp_path / "giveway-journal-pipe")
     (tmp_path / "giveway-journal-link").symlink_to(tmp_path / "precious")
     assert f"{journal}  " in type_here("recover").stdout

@@ -37,7 +37,7 @@ def require_trusted(
         ControlError: a plug-in is not installed.
     """
     words = {_name(one) for one in trusted} | set(trusted)
-    for code in sorted((*foreign_code(config), *_vehicles(config)), key=lambda code: code.key):
+    for code in sorted(code_of(config), key=lambda code: code.key):
         socket, name = code.socket, _name(code.name)
         naming = [layer for layer in layers if name in _named_in(layer.values, socket)]
         told = [(layer.origin, layer.results) for layer in naming if layer.results is not None]
@@ -57,9 +57,9 @@ def require_trusted(
         _require_same(code, origin, folder, own=own)
 
 
-def _vehicles(config: RunConfig) -> list[Named]:
-    """Return the vehicles of a run whose code is not giveway's."""
-    return [
+def code_of(config: RunConfig) -> list[Named]:
+    """Return all code of a run that is not giveway's: plug-ins, controller and vehicle FMUs."""
+    return foreign_code(config) + [
         Named(VEHICLE, ego.ego_id, fmu, {})
         for ego in config.each_ego()
         if (fmu := ego.vehicle.fmu) not in BUNDLED_VEHICLES
@@ -125,6 +125,7 @@ def hashes_in(folder: Path, code: Named) -> set[str]:
         else:
             told = [one for one in told.values() if same_name(one["name"]) == same_name(name)]
         inputs = [cell["inputs"] for cell in manifest.get("cells", ())]  # manifest of a study
+        inputs.append(manifest.get("inputs", {}))
         return {str(one["sha256"]) for one in told} | {
             str(hash_)
             for files in inputs

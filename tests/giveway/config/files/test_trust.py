@@ -109,7 +109,7 @@ def test_a_vehicle_that_was_swapped_is_not_loaded(
 
 def test_foreign_results_without_a_hash_are_not_believed(folder: Path) -> None:
     manifest = json.loads((folder / MANIFEST).read_text())
-    del manifest["vehicles"]["ego"]["sha256"]
+    del manifest["vehicles"]["ego"]["sha256"], manifest["inputs"]
     (folder / MANIFEST).write_text(json.dumps(manifest))
     with pytest.raises(ConfigError, match="has no hash of this code"):
         load([read_toml(folder / "config.toml")], trusted=["car.fmu"])
