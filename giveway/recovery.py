@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from giveway.api import in_journal, keep
+from giveway.api import Outputs, in_journal, keep
 from giveway.config import RunConfig
 from giveway.config.files.foreign_code import named_in
 from giveway.config.files.layers import build_config, read_toml_text
@@ -59,9 +59,8 @@ def recover(journal: Path, verdict: Verdict) -> CrashError:
         return error
     error.result = result = _result_of(config, scenario, contents, error, verdict)
     if folder is not None:
-        wanted = {name: contents.meta[name] for name in ("parquet", "pictures", "taken")}
         try:
-            keep(result, folder, **wanted)
+            keep(result, folder, contents.meta["taken"], _outputs(contents))
         except ResultsError as failure:
             Heartbeat(journal).keep()
             failure.args = (f"{report}; {failure}; {in_journal(journal)}",)
@@ -142,9 +141,8 @@ def recover_left(
             verdict = verdict_on_left(journal)
             error = CrashError(f"{scenario.config_file}: the run was {verdict.message}")
             result = _result_of(config, scenario, contents, error, verdict)
-            wanted = {name: contents.meta[name] for name in ("parquet", "pictures")}
             with taken_folder(folder, force=force or is_marked_only(folder)) as taken:
-                keep(result, folder, taken=taken, **wanted)
+                keep(result, folder, taken, _outputs(contents))
             shutil.rmtree(journal, ignore_errors=True)
     except FolderInUseError:
         raise ResultsError(f"{journal}: its run is still at work; wait for it, or end it") from None
@@ -158,6 +156,14 @@ def recover_left(
             "those that there are"
         ) from error
     return result, folder
+
+
+def _outputs(contents: JournalContents) -> Outputs:
+    """Return the outputs that the run was to write."""
+    meta = contents.meta
+    return Outputs(
+        parquet=meta["parquet"], trajectories=meta["trajectories"], pictures=meta["pictures"]
+    )
 
 
 def _look_at(journal: Path, contents: JournalContents) -> LeftJournal:

@@ -11,6 +11,7 @@ from giveway.cosimulation.counterfactual.follow_up import Followed
 from giveway.cosimulation.loop import Loop
 from giveway.ego.vehicle_model import model_margin
 from giveway.journal.recorder import Recorder
+from giveway.journal.stored_rows import LONG
 from giveway.measures import unreached
 from giveway.metrics import delays
 from giveway.metrics.plugged_in import declared, measured
@@ -28,6 +29,11 @@ from sumo_scenarios import Scenario
 TRAFFIC_DIFFERS = (
     "twin: traffic lights or background vehicles did something else than in the run, so that the "
     "delays of people are not the egos' alone"
+)
+
+NO_VIEW = (
+    f"more than {LONG:,} records of people: too many for a picture from above; "
+    "--record-far-period keeps fewer"
 )
 
 NO_EGO = "twin: no ego was on the road, so that there is nothing to compare with"
@@ -51,6 +57,8 @@ def outcome(
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
     crowd_track = rows.crowd_track()
     remarks = (*remarks, *unreached(parts.config.measure, crowd_track))
+    if crowd_track.is_long:
+        remarks = (*remarks, NO_VIEW)
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
     return RunResult(

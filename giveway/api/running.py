@@ -3,7 +3,7 @@
 import shlex
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 from giveway.api.simulation import simulate
 from giveway.config import RunConfig
@@ -20,14 +20,23 @@ from giveway.results.folder import (
     NOWHERE,
     Destination,
     release_folder,
-    require_parquet,
     sumo_folder,
     taken_folder,
     write_results,
 )
 from giveway.results.inputs import require_recorded
 from giveway.results.run_result import RunResult
+from giveway.results.table_files import require_parquet
 from giveway.run_data.progress import Watcher
+from giveway.run_data.seal import Form
+
+
+class Outputs(TypedDict):
+    """The outputs that a user wants in the results folder."""
+
+    parquet: bool  # True to write the tables also as Parquet
+    trajectories: Form  # form of the longest table
+    pictures: bool  # True to draw the pictures
 
 
 def run(
@@ -36,6 +45,7 @@ def run(
     results: str | Path | None = None,
     force: bool = False,
     parquet: bool = False,
+    trajectories: Form = "csv",
     pictures: bool = True,
     watcher: Watcher | None = None,
 ) -> RunResult:
@@ -51,6 +61,7 @@ def run(
         results: Folder for tables, summary, manifest and pictures, or None to write nothing.
         force: True to replace existing results.
         parquet: True to write the tables also as Parquet.
+        trajectories: Form of the longest table.
         pictures: True to draw also the state figure and the top view.
         watcher: Function that is called with a ``Progress`` at every control step.
 
@@ -68,7 +79,12 @@ def run(
     return run_checked(
         preflight(*loaded),
         Destination(
-            None if results is None else Path(results), force, parquet, pictures, ARGUMENTS
+            None if results is None else Path(results),
+            force,
+            parquet,
+            trajectories,
+            pictures,
+            ARGUMENTS,
         ),
         watcher=watcher,
         baseline=True,
@@ -93,8 +109,8 @@ def run_checked(
         baseline: True to let plain SUMO make the egos' trips as well, if the configuration leaves
             that open.
     """
-    folder, force, parquet, pictures, wording = destination
-    if parquet:
+    folder, force, parquet, trajectories, pictures, wording = destination
+    if parquet or trajectories == "parquet":
         require_parquet()
     with ExitStack() as stack:
         taken = folder is not None and stack.enter_context(
@@ -102,7 +118,8 @@ def run_checked(
         )
         rows = Journal(journal)
         where = None if folder is None else str(folder.absolute())
-        wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
+        outputs: Outputs = {"parquet": parquet, "trajectories": trajectories, "pictures": pictures}
+        wanted = {"results": where, "taken": taken, **outputs}
         rows.write_meta({"config": dump_toml(checked.config), **wanted})
         native_log = None if journal is None or rows.failure else journal / STDERR_FILE
         # writing must not be interrupted, either
@@ -124,7 +141,7 @@ def run_checked(
         rows.heartbeat.beat(Phase.WRITING)
         if folder is not None:
             try:
-                keep(result, folder, parquet=parquet, pictures=pictures, taken=taken)
+                keep(result, folder, taken, outputs)
             except ResultsError as error:
                 if journal is not None and not rows.failure:
                     rows.heartbeat.keep()
@@ -142,15 +159,23 @@ def in_journal(journal: Path) -> str:
     return f"every row is kept: 'giveway recover {shlex.quote(str(journal))} --force' writes them"
 
 
-def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, taken: bool) -> None:
+def keep(result: RunResult, folder: Path, taken: bool, outputs: Outputs) -> None:
     """Write the result into ``folder``, or free the folder if there is nothing to write.
+
+    Args:
+        result: Result of the run.
+        folder: Results folder.
+        taken: True if the folder was empty before the run.
+        outputs: Outputs that are wanted.
 
     Raises:
         ResultsError: the result cannot be written.
     """
     if len(result.time):
-        write_results(result, folder, parquet=parquet)
-        if pictures:
+        write_results(
+            result, folder, parquet=outputs["parquet"], trajectories=outputs["trajectories"]
+        )
+        if outputs["pictures"]:
             from giveway.results.pictures import write_pictures
 
             write_pictures(result, folder)

@@ -13,6 +13,7 @@ import typer
 
 from giveway.cli.completion import complete_study
 from giveway.cli.help import JsonFlag
+from giveway.run_data.seal import Form
 
 Force = Annotated[bool, typer.Option("--force", help="Replace the results there.")]
 Pictures = Annotated[bool, typer.Option(help="Draw the pictures.")]
@@ -41,6 +42,9 @@ class RunOutputs(NamedTuple):
         bool,
         typer.Option("--parquet", help="Write the tables as Parquet too.", rich_help_panel="Run"),
     ] = False
+    trajectories: Annotated[
+        Form, typer.Option(help="Form of the longest table.", rich_help_panel="Run")
+    ] = "csv"
     pictures: Annotated[bool, typer.Option(help="Draw the pictures.", rich_help_panel="Run")] = True
     quiet: NoSummary = False
     as_json: JsonFlag = False

@@ -37,7 +37,7 @@ class Instants:
     def __init__(self, recorder: Recorder, record: RecordConfig, time_step: float) -> None:
         self._recorder, self._time_step = recorder, time_step
         self._near = record.near
-        self._far_steps = max(1, round(record.far_period / time_step))
+        self._far_steps, self._thin = record.steps(time_step), record.far_period is not None
         self._far_background = -self._far_steps
         self.looks = looks_ahead(record.predictions, time_step)
         self._named = self._changes = 0
@@ -49,7 +49,7 @@ class Instants:
             k: Number of the control step.
             roster: The crowd and its members.
             places: Front bumpers (e, 2) [m] of the egos.
-            everybody: True to record everybody now.
+            everybody: True to record everybody now, unless [record] says how often.
         """
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :], roster.traits)
@@ -58,7 +58,9 @@ class Instants:
             self._recorder.reacting(roster.index(name), reacts)
         self._changes = len(roster.written.changes)
         crowd = roster.crowd
-        within = np.inf if everybody or k % self._far_steps == 0 else self._near
+        within = (
+            np.inf if (everybody and not self._thin) or k % self._far_steps == 0 else self._near
+        )
         self._recorder.crowd(roster.person_ids, crowd.position, crowd.velocity, places, within)
 
     def background(

@@ -98,10 +98,10 @@ def sampled(run: RunFolder, step: float | None = None) -> Sampled:
         raise ConfigError(f"--step {step:g}: expected 0.001 to 10 [s], whole milliseconds")
     rows = run.trajectories
     if not len(rows):
-        raise ResultsError(f"{run.path}: trajectories.csv has no rows; there is nothing to export")
+        raise ResultsError(f"{run.path}: the trajectories have no rows; there is nothing to export")
     begin = float(rows["time"].min())
     count = math.floor((float(rows["time"].max()) - begin) / step + 1e-6) + 1
-    away = _AWAY * max(run.config.record.far_period, run.sumo_step, run.step)
+    away = _AWAY * max(run.config.record.longest_period, run.sumo_step, run.step)
     tracks: list[Track] = []
     for name, of in rows.groupby("id", sort=False):
         of = of.sort_values("time", kind="stable")

@@ -2,7 +2,8 @@
 
 Native code (SUMO, the FMU, a solver) can end the process at any instruction. Rows that have been
 handed to the operating system by then are kept. Therefore the run's tables live in memory, and once
-per control step all new rows are appended to one file by one write:
+per control step all new rows are appended to one file by one write. The longest table, the crowd,
+leaves the memory with that write:
 
     magic | record | record | ... ;  record = kind, table, bytes | payload
 
@@ -28,15 +29,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.gate import signed
+from giveway.journal.stored_rows import Rows, StoredRows
 from giveway.processes.heartbeat import Heartbeat
 
 Array = NDArray[np.float64]
-Rows = NDArray[np.void]
-"""Rows (n,) of float64 whose columns have names: ``rows["speed"]`` is one of them."""
-
 ROWS_FILE = "rows"
 META_FILE = "meta.json"
-MAGIC = b"giveway3"  # Format number; the columns of a table are in the journal
+MAGIC = b"giveway4"  # Format number; the columns of a table are in the journal
 RECORD = struct.Struct("=IIQ")  # kind, table, bytes of payload; 16 bytes
 _FIRST_ROWS = 1024  # Initial number of rows of a table, which then doubles
 
@@ -65,12 +64,14 @@ class JournalRows:
     Args:
         columns: Names of the columns, in order.
         number: Number of the table in its journal.
+        stored: Place of the rows that leave the memory when they are written, or None to keep all.
     """
 
-    def __init__(self, columns: Sequence[str], number: int = 0) -> None:
-        self._number = number
-        self._count = 0
-        self._journalled = 0
+    def __init__(
+        self, columns: Sequence[str], number: int = 0, stored: StoredRows | None = None
+    ) -> None:
+        self._number, self._stored = number, stored
+        self._count = self._journalled = self._record = 0
         self._type = row_type(columns)
         self._row_bytes = self._type.itemsize
         self._fill = struct.Struct(f"={len(columns)}d").pack_into
@@ -107,16 +108,31 @@ class JournalRows:
 
     @property
     def filled(self) -> Rows:
-        """The rows filled so far (a view), with columns by name."""
+        """The rows filled so far that are in memory (a view), with columns by name."""
         return self._buffer[: self._count].view(self._type)[:, 0]
+
+    @property
+    def whole(self) -> Rows | StoredRows:
+        """All rows filled so far; those that left the memory are read again unless too many."""
+        if self._stored is None:
+            return self.filled
+        return self._stored.with_rest(self.filled).unless_long()
 
     def append_new(self, records: list[bytes | memoryview]) -> None:
         """Append the rows that the journal does not have yet."""
         start, end = self._journalled * self._row_bytes, self._count * self._row_bytes
         if end > start:
             records.append(RECORD.pack(Kind.ROWS, self._number, end - start))
+            self._record = len(records)
             records.append(self._bytes[start:end])
             self._journalled = self._count
+
+    def leave(self, records: Sequence[bytes | memoryview], begin: int) -> None:
+        """Let the rows leave the memory: ``records`` begin at ``begin`` in the file."""
+        if self._stored is not None and self._count:
+            place = begin + sum(map(len, records[: self._record]))
+            self._stored.append(place, self._count * self._row_bytes)
+            self._count = self._journalled = 0
 
 
 class NameTable:
@@ -169,6 +185,8 @@ class Journal:
         self._names: list[NameTable] = []
         self._rows: list[JournalRows] = []
         self._file: FileIO | None = None
+        self._leaving: list[JournalRows] = []
+        self._size = 0  # bytes in the file
         self._records: list[bytes | memoryview] = [MAGIC]
         try:
             self.heartbeat = heartbeat or Heartbeat(folder)
@@ -178,12 +196,17 @@ class Journal:
             self.heartbeat = Heartbeat(None)
             self._give_up(error)
 
-    def rows(self, name: str, columns: Sequence[str]) -> JournalRows:
-        """Add a table of rows with these columns."""
-        rows = JournalRows(columns, len(self._rows))
-        declaration = {"name": name, "columns": list(columns)}
+    def rows(self, name: str, columns: Sequence[str], *, stored: bool = False) -> JournalRows:
+        """Add a table of rows with these columns; ``stored`` ones leave the memory when written."""
+        place = None
+        if stored and self._folder is not None:
+            place = StoredRows(self._folder / ROWS_FILE, row_type(columns))
+        rows = JournalRows(columns, len(self._rows), place)
+        declaration = {"name": name, "columns": list(columns), "stored": stored}
         self._records += _json_record(Kind.ROWS_TABLE, len(self._rows), declaration)
         self._rows.append(rows)
+        if place is not None:
+            self._leaving.append(rows)
         return rows
 
     def names(self, name: str) -> NameTable:
@@ -216,10 +239,15 @@ class Journal:
         if not records:
             return
         records.append(_COMMIT)
+        content = b"".join(records)
         try:
-            _write(self._file, b"".join(records))
+            _write(self._file, content)
         except OSError as error:
             self._give_up(error)
+        else:
+            for rows in self._leaving:
+                rows.leave(records, self._size)
+            self._size += len(content)
         records.clear()
 
     def close(self) -> None:

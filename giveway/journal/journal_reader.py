@@ -1,18 +1,17 @@
 """The reading of a journal, however the process that wrote it ended."""
 
 import json
-import mmap
+import os
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import Any, BinaryIO
 
 from giveway.errors import ResultsError
 from giveway.gate import LARGEST_TABLE, LARGEST_TEXT, opened, read_json, require_no_link
-from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind, Rows, row_type
+from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind, row_type
+from giveway.journal.stored_rows import Rows, StoredRows
 from giveway.processes.heartbeat import HEARTBEAT_FILE, Heartbeat, Pulse
 
 
@@ -22,14 +21,14 @@ class JournalContents:
 
     Attributes:
         meta: Facts about the run; empty if the run ended before they were written.
-        tables: Rows (n,) of each table, by its name.
+        tables: Rows (n,) of each table, by its name; a long one stays in the file.
         names: Strings of each name table, by its name and in the order of their indices.
         commits: Number of whole steps found.
         pulse: Progress of the run when it last reported.
     """
 
     meta: dict[str, Any]
-    tables: dict[str, Rows]
+    tables: dict[str, Rows | StoredRows]
     names: dict[str, tuple[str, ...]]
     commits: int
     pulse: Pulse
@@ -54,21 +53,20 @@ def read_journal(folder: Path) -> JournalContents:
     if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)
     with opened(rows_file, largest=LARGEST_TABLE) as stream:
-        content = memoryview(mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ))
-    # the process may have died while writing this
-    begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")
-    if not MAGIC.startswith(begun):
-        raise ResultsError(
-            f"{rows_file}: is not a journal of giveway, or another version's ({MAGIC.decode()} "
-            "expected at its start); the run has to be made again"
-        )
-    reader = _Reader()
-    try:
-        for step in _steps(content):
-            reader.take(step)
-        return JournalContents(meta, *reader.contents(), pulse)
-    except (ValueError, LookupError, TypeError):
-        raise _broken(rows_file) from None
+        # the process may have died while writing this
+        begun = stream.read(len(MAGIC)).rstrip(b"\0")
+        if not MAGIC.startswith(begun):
+            raise ResultsError(
+                f"{rows_file}: is not a journal of giveway, or another version's "
+                f"({MAGIC.decode()} expected at its start); the run has to be made again"
+            )
+        reader = _Reader(rows_file)
+        try:
+            for step in _steps(stream):
+                reader.take(step)
+            return JournalContents(meta, *reader.contents(), pulse)
+        except (ValueError, LookupError, TypeError):
+            raise _broken(rows_file) from None
 
 
 def _broken(file: Path) -> ResultsError:
@@ -77,52 +75,59 @@ def _broken(file: Path) -> ResultsError:
     )
 
 
-_Record = tuple[Kind, int, memoryview]
+_Record = tuple[Kind, int, bytes, int, int]
+"""Kind, table, payload unless it is rows, place and size of the payload in the file."""
 
 
-def _steps(content: memoryview) -> Iterator[list[_Record]]:
+def _steps(file: BinaryIO) -> Iterator[list[_Record]]:
     """Yield the records of each whole step; a torn end is left out."""
-    at, step = len(MAGIC), list[_Record]()
-    while at + RECORD.size <= len(content):
-        kind, table, size = RECORD.unpack_from(content, at)
+    length = file.seek(0, os.SEEK_END)
+    at, step = file.seek(len(MAGIC)), list[_Record]()
+    while at + RECORD.size <= length:
+        kind, table, size = RECORD.unpack(file.read(RECORD.size))
         at += RECORD.size
         if kind == Kind.COMMIT:
             yield step
             step = []
             continue
-        if kind not in Kind.__members__.values() or at + size > len(content):
+        if kind not in Kind.__members__.values() or at + size > length:
             return
-        step.append((Kind(kind), table, content[at : at + size]))
-        at += size
+        payload = b"" if kind == Kind.ROWS else file.read(size)
+        step.append((Kind(kind), table, payload, at, size))
+        at = file.seek(at + size)
 
 
 class _Reader:
-    """Puts the tables together from the records."""
+    """Puts the tables together from the records.
 
-    def __init__(self) -> None:
-        self._columns: list[tuple[str, list[str]]] = []
-        self._blocks: list[list[memoryview]] = []
+    Args:
+        file: File of the journal.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        self._tables: list[tuple[str, bool, StoredRows]] = []
         self._names: list[tuple[str, list[str]]] = []
         self._commits = 0
 
     def take(self, step: list[_Record]) -> None:
         self._commits += 1
-        for kind, table, payload in step:
+        for kind, table, payload, place, size in step:
             if kind is Kind.ROWS:
-                self._blocks[table].append(payload)
+                self._tables[table][-1].append(place, size)
                 continue
-            value = json.loads(bytes(payload))
+            value = json.loads(payload)
             if kind is Kind.ROWS_TABLE:
-                self._columns.append((value["name"], value["columns"]))
-                self._blocks.append([])
+                rows = StoredRows(self._file, row_type(value["columns"]))
+                self._tables.append((value["name"], value["stored"], rows))
             elif kind is Kind.NAME_TABLE:
                 self._names.append((value, []))
             else:
                 self._names[table][1].extend(value)
 
-    def contents(self) -> tuple[dict[str, Rows], dict[str, tuple[str, ...]], int]:
+    def contents(self) -> tuple[dict[str, Rows | StoredRows], dict[str, tuple[str, ...]], int]:
         tables = {
-            name: np.frombuffer(bytearray().join(blocks), row_type(columns))
-            for (name, columns), blocks in zip(self._columns, self._blocks, strict=True)
+            name: rows.unless_long() if stored else rows.read()
+            for name, stored, rows in self._tables
         }
         return tables, {name: tuple(names) for name, names in self._names}, self._commits

@@ -41,5 +41,7 @@ ROWS: dict[str, tuple[str, ...]] = {
     "outputs": ("step", "output", "value"),
 }
 """Columns of each table of rows; a text is given by its index in a table of names."""
+STORED = "crowd"
+"""The longest table, whose rows leave the memory."""
 NAMES = ("ways", "outputs", "words", "egos", "pedestrians", "traits", "vehicles")
 """The tables of names. Ways, outputs and traits are JSON texts."""

@@ -1,18 +1,21 @@
 """The recorded rows of a run, from a recorder or a journal, and as tracks."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.journal.journal import Array, Rows
-from giveway.journal.layout import EGO_COUNTS, EGO_NUMBERS, EGO_TEXTS, ROWS
+from giveway.journal.journal import Array
+from giveway.journal.layout import EGO_COUNTS, EGO_NUMBERS, EGO_TEXTS, ROWS, STORED
+from giveway.journal.stored_crowd import StoredCrowd
+from giveway.journal.stored_rows import Rows, StoredRows
 from giveway.run_data.outputs import Output
 from giveway.run_data.rows import LEDGER
 from giveway.run_data.tracks import (
+    COORDINATES,
     NEVER,
     BackgroundTrack,
     CrowdTrack,
@@ -21,11 +24,11 @@ from giveway.run_data.tracks import (
     PredictionTrack,
     SignalTrack,
     Timings,
+    as_indices,
 )
 from giveway.run_data.way import EgoWay
 
 _NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
-_MOST = 2.0**53  # Largest number whose float64 is an exact integer
 
 
 class RecordedEgo(NamedTuple):
@@ -49,12 +52,15 @@ class RecordedRows:
         names: Strings to which the indices in the rows refer.
     """
 
-    def __init__(self, rows: dict[str, Rows], names: dict[str, tuple[str, ...]]) -> None:
-        self._rows = rows
+    def __init__(
+        self, rows: Mapping[str, Rows | StoredRows], names: dict[str, tuple[str, ...]]
+    ) -> None:
+        self._crowd = rows[STORED]
+        self._rows = {k: part for k, part in rows.items() if not isinstance(part, StoredRows)}
         self._names = names
-        instants = len(rows["clock"])  # the last instant may lack rows, which are left out
-        self.time = np.ascontiguousarray(rows["clock"]["time"])  # (T,) [s] control instants
-        self._ego = rows["ego"][rows["ego"]["step"] < instants]
+        clock, ego = self._rows["clock"], self._rows["ego"]
+        self.time = np.ascontiguousarray(clock["time"])  # (T,) [s] control instants
+        self._ego = ego[ego["step"] < len(clock)]  # the last instant may lack rows
         self._background: BackgroundTrack | None = None
 
     @property
@@ -83,7 +89,7 @@ class RecordedRows:
 
     def _track(self, rows: Rows) -> EgoTrack:
         columns: dict[str, Any] = {
-            name: _indices(rows[name]) if name in EGO_COUNTS else np.ascontiguousarray(rows[name])
+            name: as_indices(rows[name]) if name in EGO_COUNTS else np.ascontiguousarray(rows[name])
             for name in EGO_NUMBERS
         }
         texts = {name: self._words(rows[name]) for name in EGO_TEXTS}
@@ -93,8 +99,8 @@ class RecordedRows:
         rows = self._rows["predictions"]
         rows = rows[(rows["step"] < len(self.time)) & (rows["ego"] == number)]
         return PredictionTrack(
-            time=self.time[_indices(rows["step"])],
-            pedestrian=_indices(rows["pedestrian"]),
+            time=self.time[as_indices(rows["step"])],
+            pedestrian=as_indices(rows["pedestrian"]),
             look_ahead=rows["look_ahead"],
             x=rows["x"],
             y=rows["y"],
@@ -109,34 +115,36 @@ class RecordedRows:
                 own = recorded[recorded["output"] == key]
                 values = np.full(len(self.time), np.nan)
                 known = own[own["step"] < len(values)]
-                values[_indices(known["step"])] = known["value"]
-                found.append(Output(name, unit, description, values[_indices(rows["step"])]))
+                values[as_indices(known["step"])] = known["value"]
+                found.append(Output(name, unit, description, values[as_indices(rows["step"])]))
         return tuple(found)
 
     def _hasty_of(self, number: float) -> NDArray[np.int64]:
         """Return the pedestrians who broke the safety layer's assumption by a sudden start."""
         rows = self._rows["hasty"]
-        return np.unique(_indices(rows["pedestrian"][rows["ego"] == number]))
+        return np.unique(as_indices(rows["pedestrian"][rows["ego"] == number]))
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
-        return np.array(self._names["words"], dtype=np.str_)[_indices(indices)]
+        return np.array(self._names["words"], dtype=np.str_)[as_indices(indices)]
 
     def crowd_track(self) -> CrowdTrack:
-        """Return the crowd's rows as arrays."""
-        rows = self._rows["crowd"]
-        # a view, which needs no memory
-        rows = rows[: np.searchsorted(rows["step"], len(self.time))]
+        """Return the crowd's rows as arrays, or a track that reads them if there are too many."""
         told = {name: about for name, *about in map(json.loads, self._names.get("traits", ()))}
         traits = [told.get(name, ("", "")) for name in self._names["pedestrians"]]
-        return CrowdTrack(
-            step=_indices(rows["step"]),
-            pedestrian=_indices(rows["pedestrian"]),
-            **{name: np.ascontiguousarray(rows[name]) for name in ("x", "y", "vx", "vy")},
-            ids=self._names["pedestrians"],
-            kinds=tuple(kind for kind, _ in traits),
-            groups=tuple(group for _, group in traits),
-            reacts_from=self._reacts_from(),
-        )
+        about: dict[str, Any] = {
+            "ids": self._names["pedestrians"],
+            "kinds": tuple(kind for kind, _ in traits),
+            "groups": tuple(group for _, group in traits),
+            "reacts_from": self._reacts_from(),
+        }
+        rows, instants = self._crowd, len(self.time)
+        if isinstance(rows, StoredRows):
+            return StoredCrowd(rows, 0, instants, about)
+        # a view, which needs no memory
+        rows = rows[: np.searchsorted(rows["step"], instants)]
+        about |= {name: np.ascontiguousarray(rows[name]) for name in COORDINATES}
+        about |= {name: as_indices(rows[name]) for name in ("step", "pedestrian")}
+        return CrowdTrack(**about)
 
     def _reacts_from(self) -> NDArray[np.int64] | None:
         """Return the instant (n,) from which each pedestrian reacts; None if all always do."""
@@ -144,9 +152,9 @@ class RecordedRows:
         if not len(rows):
             return None
         first = np.zeros(len(self._names["pedestrians"]), dtype=np.int64)
-        first[_indices(rows["pedestrian"])] = NEVER
+        first[as_indices(rows["pedestrian"])] = NEVER
         reacts = rows[rows["reacts"] > 0.0]
-        first[_indices(reacts["pedestrian"])] = _indices(reacts["step"])
+        first[as_indices(reacts["pedestrian"])] = as_indices(reacts["step"])
         return first
 
     def background_track(self) -> BackgroundTrack:
@@ -156,7 +164,7 @@ class RecordedRows:
             columns: dict[str, Any] = {
                 name: np.ascontiguousarray(rows[name]) for name in ROWS["background"]
             }
-            texts = {name: names[_indices(columns[name])] for name in ("id", "type")}
+            texts = {name: names[as_indices(columns[name])] for name in ("id", "type")}
             self._background = BackgroundTrack(**columns | texts)
         return self._background
 
@@ -185,14 +193,3 @@ class RecordedRows:
         """Return the computing times as an array."""
         rows = self._rows["timing"]
         return Timings(np.column_stack([rows[name] for name in Timings.NAMES]))
-
-
-def _indices(numbers: Array) -> NDArray[np.int64]:
-    """Return numbers as indices or counts.
-
-    Raises:
-        ValueError: a number is no index or count, since a broken journal may hold anything.
-    """
-    if not (np.abs(numbers) < _MOST).all():  # false for nan, too
-        raise ValueError("no index")
-    return numbers.astype(np.int64)

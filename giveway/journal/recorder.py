@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, kernel
 from giveway.journal.journal import Journal
-from giveway.journal.layout import EGO_NUMBERS, EGO_TEXTS, NAMES, ROWS
+from giveway.journal.layout import EGO_NUMBERS, EGO_TEXTS, NAMES, ROWS, STORED
 from giveway.journal.recorded import RecordedRows
 from giveway.run_data.rows import LEDGER
 from giveway.run_data.tracks import EgoRow
@@ -31,7 +31,10 @@ class Recorder:
 
     def __init__(self, journal: Journal | None = None) -> None:
         self.journal = journal or Journal(None)
-        self._rows = {name: self.journal.rows(name, columns) for name, columns in ROWS.items()}
+        self._rows = {
+            name: self.journal.rows(name, columns, stored=name == STORED)
+            for name, columns in ROWS.items()
+        }
         self._names = {name: self.journal.names(name) for name in NAMES}
         self._word = self._names["words"].index
         self._ego, self._crowd = self._rows["ego"], self._rows["crowd"]
@@ -185,7 +188,7 @@ class Recorder:
     def rows(self) -> RecordedRows:
         """Return all rows recorded so far."""
         return RecordedRows(
-            {name: rows.filled for name, rows in self._rows.items()},
+            {name: rows.whole for name, rows in self._rows.items()},
             {name: names.names for name, names in self._names.items()},
         )
 

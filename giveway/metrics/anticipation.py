@@ -5,7 +5,7 @@ stream of people or flows through it. Lengths are in m, times in s.
 """
 
 from dataclasses import fields
-from math import nan
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -89,16 +89,14 @@ def _time_to_contact(
         "heading": there(np.unwrap(ego.heading)),
     }
     kept = EgoTrack(**taken)
-    people = crowd.during(begin, count)
-    apart = proximity(kept, people, shape, body_radius).clearance
-    touching = np.flatnonzero(apart < 0.0)
-    if not touching.size:
-        return nan
-    instant = people.step[touching[0]]
-    if instant == 0:
-        return 0.0
-    now = touching[people.step[touching] == instant]
-    return float(min(_contact(people, apart, r, time) for r in now) - time[0])
+    contacts = [(inf, nan)]  # control instant and time [s] of the first ones
+    for people in crowd.during(begin, count).by_people():
+        apart = proximity(kept, people, shape, body_radius).clearance
+        touching = np.flatnonzero(apart < 0.0)
+        now = touching[people.step[touching] == people.step[touching].min(initial=count)]
+        contacts += [(int(people.step[r]), _contact(people, apart, r, time)) for r in now]
+    instant, contact = min(contacts)
+    return float(contact - time[0]) if instant else 0.0
 
 
 def _contact(
@@ -119,7 +117,8 @@ def _among(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, stop_speed: fl
     stands = stops(ego, stop_speed)
     if not len(stands):
         return 0.0
-    time, place = _passages(ego, crowd, shape)
+    parts = [_passages(ego, part, shape) for part in crowd.by_people()]
+    time, place = (np.concatenate(column) for column in zip(*parts, strict=True))
     total = 0.0
     for first, last in stands:
         during = (time >= ego.time[first]) & (time <= ego.time[last])

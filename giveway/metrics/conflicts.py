@@ -121,14 +121,17 @@ def critical_encounters(
     Raises:
         ValueError: a record points outside the ego's track.
     """
-    ttc = proximity(ego, crowd, shape, body_radius).time_to_collision
-    moving = ego.speed[crowd.step] > stop_speed
-    critical = (ttc < CRITICAL_TTC) & moving
-    soonest = float(ttc[moving].min(initial=inf))
-    instants = np.unique(crowd.step[critical]).size
+    pedestrians, soonest, instants = 0, inf, np.zeros(ego.time.size, dtype=np.bool_)
+    for part in crowd.by_people():
+        ttc = proximity(ego, part, shape, body_radius).time_to_collision
+        moving = ego.speed[part.step] > stop_speed
+        critical = (ttc < CRITICAL_TTC) & moving
+        soonest = float(ttc[moving].min(initial=soonest))
+        instants[part.step[critical]] = True
+        pedestrians += np.unique(part.pedestrian[critical]).size
     return Critical(
-        pedestrians=int(np.unique(crowd.pedestrian[critical]).size),
-        share=instants / ego.time.size if ego.time.size else 0.0,
+        pedestrians=pedestrians,
+        share=int(instants.sum()) / ego.time.size if ego.time.size else 0.0,
         minimum_ttc=soonest if soonest < inf else nan,
     )
 
@@ -167,6 +170,11 @@ def check_records(ego: EgoTrack, crowd: CrowdTrack) -> None:
     Raises:
         ValueError: a record is out of range; the message names column, value and range.
     """
+    for part in crowd.pieces():
+        _check_records(ego, part)
+
+
+def _check_records(ego: EgoTrack, crowd: CrowdTrack) -> None:
     limits = (("step", crowd.step, ego.time.size), ("pedestrian", crowd.pedestrian, len(crowd.ids)))
     for name, column, count in limits:
         wrong = column[(column < 0) | (column >= count)]

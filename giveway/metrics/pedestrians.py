@@ -1,6 +1,6 @@
 """One row per pedestrian: their walk, and their proximity to the ego."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -140,6 +140,22 @@ def pedestrian_columns(
     Raises:
         ValueError: a record points outside the ego's track.
     """
+    return _joined(_columns(ego, part, shape, body_radius) for part in crowd.by_people())
+
+
+def _joined(parts: Iterable[dict[str, Any]]) -> dict[str, Any]:
+    """Return the columns of all people from those of some at a time."""
+    first, *more = parts
+    return {
+        name: np.concatenate([column, *(part[name] for part in more)]) if more else column
+        for name, column in first.items()
+    }
+
+
+def _columns(
+    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
+) -> dict[str, Any]:
+    """Return the columns of :func:`pedestrian_columns` of people whose records are in memory."""
     near = clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
     time = ego.time[crowd.step]
@@ -169,16 +185,23 @@ def pedestrian_columns(
     }
 
 
-def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":
+def walks_without_ego(
+    time: NDArray[np.float64], crowd: CrowdTrack, every: int = 1
+) -> "pd.DataFrame":
     """Return the walk of every pedestrian in a run without an ego.
 
     Args:
         time: Control instants (T,) [s].
         crowd: Track of the crowd.
+        every: Control steps from one record of a pedestrian to the next; their peak acceleration
+            is known only if it is 1.
     """
     import pandas as pd
 
-    return pd.DataFrame(_walks(crowd, PedestrianGroups(crowd), time[crowd.step]))
+    columns = _joined(
+        _walks(part, PedestrianGroups(part), time[part.step], every) for part in crowd.by_people()
+    )
+    return pd.DataFrame(columns)
 
 
 @dataclass(frozen=True)
@@ -206,12 +229,13 @@ def summarise_walks(table: "pd.DataFrame") -> WalkSummary:
 
 
 def _walks(
-    crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
+    crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64], every: int = 1
 ) -> dict[str, Any]:
     """Return the columns about walks; ``time`` (R,) [s] is the time of each record."""
     first_seen, last_seen = groups.at(time, groups.first), groups.at(time, groups.last)
     path = groups.total(groups.walked(crowd))
-    lasting, change = _changes(crowd, groups, time)
+    lasting, change = _changes(crowd, groups, time, every)
+    peak = -groups.at(-change, groups.first_minimum(-change))
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_speed = np.where(last_seen > first_seen, path / (last_seen - first_seen), np.nan)
     return {
@@ -223,22 +247,21 @@ def _walks(
         "path_length": path,
         "mean_speed": mean_speed,
         "slow_time": groups.total(np.where(np.hypot(crowd.vx, crowd.vy) < SLOW, lasting, 0.0)),
-        "peak_acceleration": -groups.at(-change, groups.first_minimum(-change)),
+        "peak_acceleration": peak if every == 1 else np.full(len(peak), np.nan),
     }
 
 
 def _changes(
-    crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
+    crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64], every: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return each record's duration (R,) [s], and the acceleration (R,) [m/s^2] before it.
 
-    A duration lasts until the same pedestrian's record of the next control instant. Duration and
-    acceleration are 0 if there is no record at the next or the previous control instant,
-    respectively.
+    A duration lasts until the same pedestrian's record ``every`` control steps later. Duration and
+    acceleration are 0 if there is no record so much later or earlier, respectively.
     """
     order = groups.order
     step = crowd.step[order]
-    follows = (np.diff(groups.pedestrian) == 0) & (np.diff(step) == 1)
+    follows = (np.diff(groups.pedestrian) == 0) & (np.diff(step) == every)
     period = np.where(follows, np.diff(time[order]), 0.0)
     speeding = np.hypot(np.diff(crowd.vx[order]), np.diff(crowd.vy[order]))
     lasting, change = np.zeros(step.size), np.zeros(step.size)

@@ -4,7 +4,7 @@ The time to a collision ranks encounters, while the speed ranks collisions. No s
 both (Laureshyn, Svensson & Hydén 2010). Therefore class and speed have columns of their own.
 """
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +84,24 @@ def severities(
     """
     import pandas as pd
 
+    tables, first = [], 0
+    for part in crowd.by_people():
+        some = per_pedestrian.iloc[first : first + len(part.ids)]
+        tables.append(pd.DataFrame(_columns(ego, part, shape, body_radius, stop_speed, some)))
+        first += len(part.ids)
+    table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
+    return table[[column.name for column in SEVERITY_FIELDS]]
+
+
+def _columns(
+    ego: EgoTrack,
+    crowd: CrowdTrack,
+    shape: VehicleShape,
+    body_radius: float,
+    stop_speed: float,
+    per_pedestrian: "pd.DataFrame",
+) -> dict[str, NDArray[Any]]:
+    """Return the columns of :func:`severities` of people whose records are in memory."""
     clear, ttc, _ = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
     moving = np.where(ego.speed[crowd.step] > stop_speed, ttc, np.inf)
@@ -101,7 +119,7 @@ def severities(
     step = crowd.step
     away_x = ego.speed[step] * np.cos(ego.heading[step]) - crowd.vx
     away_y = ego.speed[step] * np.sin(ego.heading[step]) - crowd.vy
-    columns = {
+    return {
         "severity": classes,
         "conflict_time": then(ego.time[step]),
         "conflict_ttc": np.where(some & by_time, smallest, np.nan),
@@ -109,7 +127,6 @@ def severities(
         "conflict_x": then(crowd.x),
         "conflict_y": then(crowd.y),
     }
-    return pd.DataFrame(columns, columns=[column.name for column in SEVERITY_FIELDS])
 
 
 def _classes(ttc: NDArray[np.float64], per_pedestrian: "pd.DataFrame") -> NDArray[np.object_]:

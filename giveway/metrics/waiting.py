@@ -56,13 +56,26 @@ def waiting_by_footway(time: Array, crowd: CrowdTrack, footways: Footways) -> tu
         crowd: The people.
         footways: Crossings and edges of the network.
     """
-    if not len(crowd.step):
+    recorded, counted = np.zeros(len(time), dtype=np.bool_), []
+    for part in crowd.by_people():
+        recorded[part.step] = True
+        counted.append(_counted(part, footways))
+    steps = np.flatnonzero(recorded)
+    if not len(steps):
         return ()
-    steps = np.unique(crowd.step)
     each = float(np.median(np.diff(time[steps]))) if len(steps) > 1 else 0.0
+    at, stood = (np.concatenate(column) for column in zip(*counted, strict=True))
+    return tuple(_rows(at, each * stood, footways))
+
+
+def _counted(crowd: CrowdTrack, footways: Footways) -> tuple[NDArray[np.int64], Array]:
+    """Return the footway (m,) of each person who counts there, and their records that stand."""
     stands = np.hypot(crowd.vx, crowd.vy) < _STANDING
     at, counts = _places(crowd, stands, footways)
-    return tuple(_rows(crowd, (at, counts, stands), each, footways))
+    here, people = counts & (at >= 0), len(crowd.ids)
+    keys, inverse = np.unique(at[here] * people + crowd.pedestrian[here], return_inverse=True)
+    stood = np.bincount(inverse, weights=stands[here], minlength=len(keys))
+    return keys // people, stood.astype(np.float64)
 
 
 def _places(
@@ -91,35 +104,26 @@ def _places(
     return at, counts
 
 
-def _rows(
-    crowd: CrowdTrack,
-    records: tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.bool_]],
-    each: float,
-    footways: Footways,
-) -> Iterator[Waiting]:
+def _rows(at: NDArray[np.int64], stood: Array, footways: Footways) -> Iterator[Waiting]:
     """Yield the rows of footways with people, crossings first.
 
     Args:
-        crowd: The people.
-        records: Footway of each record, whether it counts, and whether the person stands.
-        each: Time [s] of one record.
+        at: Footway (m,) of each person on it.
+        stood: Time (m,) [s] for which this person stood there.
         footways: Crossings and edges of the network.
     """
-    at, counts, stands = records
     ways = (*footways.crossings, *footways.edges)
-    for number in np.unique(at[counts & (at >= 0)]).tolist():
-        here = (at == number) & counts
-        who, inverse = np.unique(crowd.pedestrian[here], return_inverse=True)
-        stood = each * np.bincount(inverse, weights=stands[here], minlength=len(who))
-        mean, is_crossing = float(stood.mean()), number < len(footways.crossings)
+    for number in np.unique(at).tolist():
+        here = stood[at == number]
+        mean, is_crossing = float(here.mean()), number < len(footways.crossings)
         levels = LIGHT_LEVELS if ways[number].light else GAP_LEVELS
         yield Waiting(
             id=ways[number].id,
             kind="crossing" if is_crossing else "edge",
-            people=len(who),
-            stood=int((stood > 0.0).sum()),
+            people=len(here),
+            stood=int((here > 0.0).sum()),
             mean_waiting=mean,
-            waiting_95=float(np.percentile(stood, 95)),
-            longest_waiting=float(stood.max()),
+            waiting_95=float(np.percentile(here, 95)),
+            longest_waiting=float(here.max()),
             level_of_service=level_of_service(mean, levels) if is_crossing else "",
         )

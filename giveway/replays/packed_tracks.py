@@ -154,7 +154,7 @@ def thinning(rows: pd.DataFrame, step: float, most: int = MOST_SAMPLES) -> float
 
 def longest_gap(run: RunFolder) -> float:
     """Return the longest gap [s] between rows that does not mean that the object was away."""
-    period = min(run.config.record.far_period, _LONGEST_GAP)
+    period = min(run.config.record.longest_period, _LONGEST_GAP)
     return 1.5 * max(period, run.step, run.sumo_step)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pandas as pd
@@ -22,7 +23,7 @@ from giveway.run_data.columns import (
     Column,
 )
 from giveway.run_data.scene import Scene
-from giveway.run_data.seal import is_sealed, require_sealed
+from giveway.run_data.seal import Form, is_sealed, require_sealed
 from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"
@@ -108,7 +109,7 @@ class RunFolder:
         except ConfigError as error:
             raise ResultsError(f"{error}; expected a folder that 'giveway run' wrote") from error
         ego = _table(folder / "ego.csv", EGO_COLUMNS)
-        trajectories = _table(folder / "trajectories.csv", TRAJECTORY_COLUMNS)
+        trajectories = _table(_trajectories(folder), TRAJECTORY_COLUMNS)
         time = np.union1d(*(rows["time"].to_numpy(np.float64) for rows in (ego, trajectories)))
         if not len(time):
             raise ResultsError(f"{folder}: the run left no rows; there is nothing to play")
@@ -139,7 +140,7 @@ def read_predictions(file: Path) -> pd.DataFrame:
 
 
 def _require_run(folder: Path) -> None:
-    needed = ("config.toml", "manifest.json", "ego.csv", "trajectories.csv")
+    needed = ("config.toml", "manifest.json", "ego.csv", _trajectories(folder).name)
     missing = [name for name in needed if not (folder / name).is_file()]
     if not missing:
         return
@@ -152,6 +153,12 @@ def _require_run(folder: Path) -> None:
     raise ResultsError(f"{folder}: {what}; expected a results folder that 'giveway run' wrote")
 
 
+def _trajectories(folder: Path) -> Path:
+    """Return the file of the trajectories, which has one of three forms."""
+    names = [f"trajectories.{form}" for form in get_args(Form)]
+    return next((folder / name for name in names if (folder / name).exists()), folder / names[0])
+
+
 def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
     """Read a table in which ids are texts, even those of digits only.
 
@@ -160,14 +167,26 @@ def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
     texts = {column.name: str for column in columns if column.type == "string"}
     try:
         with opened(file, largest=LARGEST_TABLE) as stream:
-            frame = pd.read_csv(
-                stream, dtype={"ego": str} | texts, na_values=[""], keep_default_na=False
+            frame = (
+                pd.read_parquet(stream)
+                if file.suffix == ".parquet"
+                else pd.read_csv(
+                    stream,
+                    dtype={"ego": str} | texts,
+                    na_values=[""],
+                    keep_default_na=False,
+                    compression="gzip" if file.suffix == ".gz" else None,
+                )
             )
     except FileNotFoundError:
         return pd.DataFrame()
     except OSError as error:
-        raise ResultsError(f"{file}: cannot be read ({error.strerror})") from error
-    except (ValueError, pd.errors.ParserError) as error:
+        raise ResultsError(f"{file}: cannot be read ({error.strerror or error})") from error
+    except ImportError:
+        raise ResultsError(
+            f"{file}: Parquet needs pyarrow; install it with: pip install 'giveway[parquet]'"
+        ) from None
+    except (ValueError, EOFError, zlib.error, pd.errors.ParserError) as error:
         reason = " ".join(str(error).split())
         raise ResultsError(
             f"{file}: not a table of giveway ({reason}); make the run again"

@@ -3,7 +3,7 @@
 import contextlib
 import json
 import shutil
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,16 +14,22 @@ from giveway.errors import ResultsError
 from giveway.gate import MANIFEST, read_bytes
 from giveway.processes.locks import FolderInUseError, locked
 from giveway.results.json_text import DECIMALS, json_text
-from giveway.results.names import FILES, SUMO_FOLDER
+from giveway.results.names import FILES, LONGEST, SUMO_FOLDER
 from giveway.results.run_tables import RunTables
 from giveway.results.scene import scene_of
+from giveway.results.table_files import write_csv, write_parquet
 from giveway.run_data.columns import Column
 from giveway.run_data.scene import SCENE_FILE
-from giveway.run_data.seal import sealed
+from giveway.run_data.seal import Form, sealed
 
 if TYPE_CHECKING:
     import pandas as pd
 
+_PACKED: dict[Form, dict[str, str]] = {
+    "csv": {},
+    "csv.gz": {"compression": "gz"},
+    "parquet": {"format": "parquet", "mediatype": "application/vnd.apache.parquet"},
+}
 _RUNNING = '{"ending": "running"}\n'
 
 
@@ -44,6 +50,7 @@ class Destination(NamedTuple):
     folder: Path | None = None  # None if nothing is written
     force: bool = False  # True to replace existing results
     parquet: bool = False  # True to write the tables also as Parquet
+    trajectories: Form = "csv"  # form of the longest table
     pictures: bool = True  # True to draw the state figure and the top view
     wording: Wording = FLAGS  # wording of messages
 
@@ -156,23 +163,33 @@ def release_folder(folder: Path) -> None:
         folder.rmdir()
 
 
-def write_results(result: RunTables, folder: Path, *, parquet: bool = False) -> None:
+def write_results(
+    result: RunTables, folder: Path, *, parquet: bool = False, trajectories: Form = "csv"
+) -> None:
     """Write everything except the pictures into ``folder``.
+
+    Args:
+        result: Result of the run.
+        folder: Results folder.
+        parquet: True to write all tables as Parquet, too.
+        trajectories: Form of the longest table.
 
     Raises:
         ResultsError: the disk is full, or the folder is no longer writable.
     """
-    frames = {
-        name: _rounded(result.summary_table if name == "summary" else getattr(result, name))
-        for name in result.schemas
+    tables: dict[str, Callable[[], Iterable[pd.DataFrame]]] = {
+        name: partial(iter, [result.summary_table if name == "summary" else getattr(result, name)])
+        for name in result.schemas.keys() - {LONGEST}
     }
+    tables[LONGEST] = result.trajectory_pieces
     contents: dict[str, Callable[[Path], object]] = {"config.toml": _text(result.config_text)}
-    for name in frames:
-        contents[f"{name}.csv"] = partial(frames[name].to_csv, index=False, lineterminator="\n")
-        if parquet:
-            contents[f"{name}.parquet"] = partial(_write_parquet, frames[name])
+    for name in result.schemas:
+        form = trajectories if name == LONGEST else "csv"
+        for suffix in dict.fromkeys([form, "parquet"] if parquet else [form]):
+            writer = write_parquet if suffix == "parquet" else write_csv
+            contents[f"{name}.{suffix}"] = partial(writer, tables[name])
     contents["summary.json"] = _json(_summary(result))
-    contents["datapackage.json"] = _json(data_package(result))
+    contents["datapackage.json"] = _json(data_package(result, trajectories))
     contents[SCENE_FILE] = _text(scene_of(result).to_json())
     if result.sumo_messages:
         contents["sumo.log"] = _text(result.sumo_messages)
@@ -237,25 +254,15 @@ def sumo_folder(folder: Path) -> Path:
     return folder / SUMO_FOLDER
 
 
-def require_parquet() -> None:
-    """Make sure, before anything is computed, that Parquet can be written.
-
-    Raises:
-        ResultsError: pyarrow is missing.
-    """
-    try:
-        import pyarrow  # noqa: F401
-    except ImportError as error:
-        raise ResultsError(
-            "--parquet needs pyarrow; install it with: pip install 'giveway[parquet]'"
-        ) from error
-
-
-def data_package(result: RunTables) -> dict[str, Any]:
-    """Return the Frictionless description of a run's CSV files."""
+def data_package(result: RunTables, trajectories: Form = "csv") -> dict[str, Any]:
+    """Return the Frictionless description of a run's tables; one has the form ``trajectories``."""
     name = f"giveway-{result.scenario.name}-{result.config.seed}"
     title = f"giveway run of {result.scenario.name}, seed {result.config.seed}"
-    return package_of(name, title, result.schemas)
+    package = package_of(name, title, result.schemas)
+    for resource in package["resources"]:
+        if resource["name"] == LONGEST:
+            resource |= {"path": f"{LONGEST}.{trajectories}"} | _PACKED[trajectories]
+    return package
 
 
 def package_of(name: str, title: str, schemas: Mapping[str, Sequence[Column]]) -> dict[str, Any]:
@@ -294,22 +301,6 @@ def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
             field["unit"] = column.unit
         fields.append(field | {"description": column.description})
     return fields
-
-
-def _rounded(frame: "pd.DataFrame") -> "pd.DataFrame":
-    """Return the frame with floats of six decimals and no negative zeros: equal on every system."""
-    frame = frame.copy()
-    for name in frame.columns:
-        if frame[name].dtype == np.float64:
-            frame[name] = np.round(frame[name].to_numpy(), DECIMALS) + 0.0
-    return frame
-
-
-def _write_parquet(frame: "pd.DataFrame", path: Path) -> None:
-    import pyarrow
-    import pyarrow.parquet
-
-    pyarrow.parquet.write_table(pyarrow.Table.from_pandas(frame, preserve_index=False), path)
 
 
 def _text(text: str) -> Callable[[Path], object]:

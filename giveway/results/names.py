@@ -5,6 +5,8 @@ from giveway.run_data.scene import SCENE_FILE
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))
 """Suffixes of the names of pictures: of the first ego, the second one and so on."""
+LONGEST = "trajectories"
+"""The longest table, which has other forms than CSV, too."""
 TABLES = (
     "ego",
     "trajectories",
@@ -23,6 +25,7 @@ TABLES = (
 FILES = frozenset(
     {
         *(f"{name}{suffix}" for name in TABLES for suffix in (".csv", ".parquet")),
+        f"{LONGEST}.csv.gz",
         "config.toml",
         "summary.json",
         "manifest.json",

@@ -47,7 +47,10 @@ def write_pictures(result: RunTables, folder: Path) -> None:
 def _write_pictures(result: RunTables, folder: Path) -> None:
     for ego, mark in zip(result.egos, MARKS, strict=False):
         save_figure(state_picture(result, ego), folder / f"state{mark}.png")
-        save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
+        if not result.crowd_track.is_long:
+            save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
+    if result.crowd_track.is_long:
+        return
     if result.config.measure and len(result.crowd_track.x) > 1:
         save_figure(density_picture(result), folder / "density.png")
     if not result.egos and result.crowd_track.x.size:

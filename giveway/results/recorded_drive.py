@@ -149,7 +149,7 @@ def recording_of_run(run: RunFolder, dataset: Dataset | None = None) -> Recordin
     heading = np.radians(90.0 - ego["angle"].to_numpy(dtype=np.float64))
     return Recording(
         name=run.path.resolve().name,
-        file=run.path / "trajectories.csv",
+        file=run.path,
         dataset=dataset or dataset_of("sumo_fcd"),
         frame_rate=1.0 / step,
         first_frame=0,

@@ -1,6 +1,7 @@
 """The numbers of a run: tracks, tables and summaries."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -28,13 +29,9 @@ from giveway.metrics.waiting import WAITING_FIELDS, waiting_by_footway
 from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
 from giveway.results.inputs import sha256
-from giveway.results.law import (
-    ledger_table,
-    people_table,
-    signal_table,
-)
+from giveway.results.law import ledger_table, people_table, signal_table
 from giveway.results.provenance import CONFIGURATION
-from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
+from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_pieces
 from giveway.run_data.columns import (
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
@@ -76,8 +73,7 @@ class RunTables:
         egos: Egos that were on the road, in the order of their departure.
         crowd_track, background_track: Rows as arrays, in SI units.
         signal_track: Changes of the traffic lights that govern something on an ego's path.
-        people_track: Planned routes of people, if the law of the road rules anything on an ego's
-            path.
+        people_track: Planned routes of people, if the law of the road rules an ego's path.
         elapsed: Wall clock time of the loop [s].
         facts: Manifest, which may lack the hash of the configuration.
         sumo_messages: Messages that SUMO printed.
@@ -158,8 +154,14 @@ class RunTables:
     @cached_property
     def trajectories(self) -> "pd.DataFrame":
         """The table of all positions and velocities, with the names of SUMO's FCD."""
+        import pandas as pd
+
+        return pd.concat(list(self.trajectory_pieces()), ignore_index=True)
+
+    def trajectory_pieces(self) -> "Iterator[pd.DataFrame]":
+        """Yield the rows of :attr:`trajectories`, as many at a time as fit into the memory."""
         egos = [(ego.id, ego.track) for ego in self.egos]
-        return trajectory_table(self.time, egos, self.crowd_track, self.background_track)
+        return trajectory_pieces(self.time, egos, self.crowd_track, self.background_track)
 
     @cached_property
     def pedestrians(self) -> "pd.DataFrame":
@@ -180,7 +182,10 @@ class RunTables:
         """The table of walks in a run without an ego, or None if it had an ego or no people."""
         if self.egos or not self.crowd_track.ids:
             return None
-        return walks_without_ego(self.time, self.crowd_track)
+        record, time = self.config.record, self.time
+        thin = record.far_period is not None and len(time) > 1
+        every = record.steps(float(time[1] - time[0])) if thin else 1
+        return walks_without_ego(self.time, self.crowd_track, every)
 
     @cached_property
     def predictions(self) -> "pd.DataFrame":
@@ -328,11 +333,7 @@ class RunTables:
 
 _EGO = Column("ego", "string", None, "SUMO id of the ego that the row is about")
 SIGNAL_DELAY_COLUMNS = (_EGO, *SIGNAL_DELAY_FIELDS)
-PEDESTRIAN_TABLE = (
-    _EGO,
-    *PEDESTRIAN_FIELDS,
-    *SEVERITY_FIELDS,
-)
+PEDESTRIAN_TABLE = (_EGO, *PEDESTRIAN_FIELDS, *SEVERITY_FIELDS)
 
 
 def _stacked(

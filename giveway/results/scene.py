@@ -1,5 +1,7 @@
 """The scene that a run keeps for replays: the outlines near its road users, and all bodies."""
 
+from itertools import chain
+
 import numpy as np
 
 from giveway.geometry.kernel import Array
@@ -37,11 +39,11 @@ def _rounded(outline: Array) -> list[list[float]]:
 
 def _extent(result: RunTables) -> tuple[Array, Array]:
     """Return the corners of the area in which road users were, with some room around it."""
-    tracks = [(result.crowd_track.x, result.crowd_track.y)]
+    tracks = [(ego.track.front_x, ego.track.front_y) for ego in result.egos]
     tracks += [(result.background_track.x, result.background_track.y)]
-    tracks += [(ego.track.front_x, ego.track.front_y) for ego in result.egos]
-    x = np.concatenate([x for x, _ in tracks])
-    y = np.concatenate([y for _, y in tracks])
-    if not x.size:
+    people = ((part.x, part.y) for part in result.crowd_track.pieces())
+    corners = [(x.min(), y.min(), x.max(), y.max()) for x, y in chain(tracks, people) if x.size]
+    if not corners:
         return np.full(2, -np.inf), np.full(2, np.inf)
-    return np.array((x.min(), y.min())) - _AROUND, np.array((x.max(), y.max())) + _AROUND
+    low, high = np.min(corners, axis=0)[:2], np.max(corners, axis=0)[2:]
+    return low - _AROUND, high + _AROUND

@@ -1,7 +1,7 @@
 """The run's tables as pandas frames, columns as in :mod:`giveway.run_data.columns`."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -58,21 +58,23 @@ def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) ->
     return pd.DataFrame(columns, index=range(len(track.time)))[names]
 
 
-def trajectory_table(
+def trajectory_pieces(
     time: Array,
     egos: Sequence[tuple[str, EgoTrack]],
     crowd: CrowdTrack,
     background: BackgroundTrack,
-) -> "pd.DataFrame":
-    """Return ``trajectories.csv``: all egos, SUMO's vehicles and pedestrians by instant."""
+) -> "Iterator[pd.DataFrame]":
+    """Yield ``trajectories.csv``: all egos, SUMO's vehicles and pedestrians by instant.
+
+    The rows come at once, or in the crowd's pieces if it is too long for the memory.
+    """
     import pandas as pd
 
-    driven = [
+    waiting = [
         _moving(ego.time, name, "ego", ego.front_x, ego.front_y, ego.heading, ego.speed)
         for name, ego in egos
     ]
-    frames = [
-        *driven,
+    waiting.append(
         _moving(
             background.time,
             background.id,
@@ -81,16 +83,31 @@ def trajectory_table(
             background.y,
             background.heading,
             background.speed,
-        ),
-        _walking(time, crowd),
-    ]
-    frames = [frame for frame in frames if len(frame)]
+        )
+    )
     names = [column.name for column in TRAJECTORY_COLUMNS]
-    if not frames:
-        return pd.DataFrame(columns=names)
-    table = pd.concat(frames, ignore_index=True)
-    table["time"] = table["time"].round(6)  # SUMO's clock and giveway's differ in the last digit
-    return table.sort_values("time", kind="stable", ignore_index=True)[names]
+    angles = np.zeros(len(crowd.ids))  # the latest ones
+    parts = crowd.pieces()
+    part: CrowdTrack | None = next(parts)
+    while part is not None:
+        following = next(parts, None)
+        frames = [*waiting, _walking(time, part, angles)]
+        if following is not None:
+            until = _rounded(time[following.step[0]])
+            waiting = [frame[frame["time"] >= until] for frame in waiting]
+            frames = [frame[frame["time"] < until] for frame in frames]
+        frames = [frame for frame in frames if len(frame)]
+        if frames:
+            table = pd.concat(frames, ignore_index=True)
+            yield table.sort_values("time", kind="stable", ignore_index=True)[names]
+        elif following is None:
+            yield pd.DataFrame(columns=names)
+        part = following
+
+
+def _rounded(time: Any) -> Any:
+    """Return times without the last digits, in which SUMO's clock and giveway's differ."""
+    return np.round(time, 6)
 
 
 def _moving(
@@ -105,21 +122,24 @@ def _moving(
     import pandas as pd
 
     velocity = {"vx": speed * np.cos(heading), "vy": speed * np.sin(heading)}
-    placed = {"time": time, "id": name, "type": kind, "x": x, "y": y}
+    placed = {"time": _rounded(time), "id": name, "type": kind, "x": x, "y": y}
     angle = headings_to_angles(heading)
     return pd.DataFrame({**placed, "angle": angle, "speed": speed, **velocity})
 
 
-def _walking(time: Array, crowd: CrowdTrack) -> "pd.DataFrame":
+def _walking(time: Array, crowd: CrowdTrack, angles: Array) -> "pd.DataFrame":
+    """Return the rows of people; ``angles`` (n,) has the latest angle of each [deg]."""
     import pandas as pd
 
     speed = np.hypot(crowd.vx, crowd.vy)
     angle = headings_to_angles(directions(np.column_stack([crowd.vx, crowd.vy])))
-    angle = np.where(speed < _STANDING, np.nan, angle)
-    angles = pd.Series(angle).groupby(crowd.pedestrian).ffill().fillna(0.0)
+    walked = pd.Series(np.where(speed < _STANDING, np.nan, angle))
+    last = walked.groupby(crowd.pedestrian).ffill().to_numpy()
+    known: Array = np.where(np.isnan(last), angles[crowd.pedestrian], last)
+    angles[crowd.pedestrian] = known
     ids = np.array(crowd.ids, dtype=object)[crowd.pedestrian]
-    placed = {"time": time[crowd.step], "id": ids, "type": "pedestrian"}
-    moving = {"angle": angles, "speed": speed, "vx": crowd.vx, "vy": crowd.vy}
+    placed = {"time": _rounded(time[crowd.step]), "id": ids, "type": "pedestrian"}
+    moving = {"angle": known, "speed": speed, "vx": crowd.vx, "vy": crowd.vy}
     return pd.DataFrame({**placed, "x": crowd.x, "y": crowd.y, **moving})
 
 

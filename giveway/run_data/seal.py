@@ -8,13 +8,15 @@ import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 from giveway.errors import ResultsError
 from giveway.gate import MAKER, MANIFEST, RefusedFileError, fingerprint_of, signed
 
 SEAL: Final = "seal"
-_TABLES: Final = frozenset({".csv", ".parquet"})
+Form = Literal["csv", "csv.gz", "parquet"]
+"""Form of the longest table."""
+_TABLES: Final = frozenset({".csv", ".gz", ".parquet"})
 
 
 class Fault(NamedTuple):

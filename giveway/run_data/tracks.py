@@ -6,8 +6,9 @@ mathematical (radians, counter-clockwise from +x), and x, y are coordinates of t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, ClassVar, Generic
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, ClassVar, Generic
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,6 +123,21 @@ EGO_COLUMNS = (_TIME, Column("id", "string", None, "SUMO id of the ego"), *_OWN)
 NEVER = 2**53
 """Index of a control instant that no run reaches."""
 
+COORDINATES = ("x", "y", "vx", "vy")
+_RECORDS = ("step", "pedestrian", *COORDINATES)
+_MOST = 2.0**53  # Largest number whose float64 is an exact integer
+
+
+def as_indices(numbers: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return numbers as indices or counts.
+
+    Raises:
+        ValueError: a number is no index or count, since a broken journal may hold anything.
+    """
+    if not (np.abs(numbers) < _MOST).all():  # false for nan, too
+        raise ValueError("no index")
+    return numbers.astype(np.int64)
+
 
 @dataclass(frozen=True)
 class CrowdTrack:
@@ -139,6 +155,41 @@ class CrowdTrack:
     groups: tuple[str, ...] = ()  # first member of each one's group; empty if there are no groups
     # instant (n,) from which each pedestrian reacts to vehicles; None if all of them always do
     reacts_from: NDArray[np.int64] | None = None
+    is_long: ClassVar[bool] = False  # True if the records do not fit into the memory
+
+    def pieces(self) -> Iterator[CrowdTrack]:
+        """Yield the records in order of time; all at once if they are in memory."""
+        yield self
+
+    def by_people(self) -> Iterator[CrowdTrack]:
+        """Yield the records of some people at a time, in the order of ``ids``; or of all."""
+        yield self
+
+    def of_people(self, begin: int, end: int) -> CrowdTrack:
+        """Return the records of the people from ``begin`` to before ``end``, who count from 0."""
+        part = self.where((self.pedestrian >= begin) & (self.pedestrian < end))
+        reacts = self.reacts_from
+        return replace(
+            part,
+            pedestrian=part.pedestrian - begin,
+            ids=self.ids[begin:end],
+            kinds=self.kinds[begin:end],
+            groups=self.groups[begin:end],
+            reacts_from=None if reacts is None else reacts[begin:end],
+        )
+
+    def where(self, rows: NDArray[np.bool_]) -> CrowdTrack:
+        """Return the records at which ``rows`` (R,) is true."""
+        columns: dict[str, Any] = {name: getattr(self, name)[rows] for name in _RECORDS}
+        return replace(self, **columns)
+
+    @classmethod
+    def joined(cls, parts: Sequence[CrowdTrack]) -> CrowdTrack:
+        """Return the records of at least one track, of the same people, behind one another."""
+        columns: dict[str, Any] = {
+            name: np.concatenate([getattr(part, name) for part in parts]) for name in _RECORDS
+        }
+        return replace(parts[0], **columns)
 
     def during(self, first: int, instants: int) -> CrowdTrack:
         """Return the records of ``instants`` control instants from ``first`` on, as step 0."""

@@ -16,8 +16,9 @@ from giveway.config import RunConfig
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.errors import GivewayError
-from giveway.results.folder import Destination, check_folder, require_parquet
+from giveway.results.folder import Destination, check_folder
 from giveway.results.run_result import RunResult
+from giveway.results.table_files import require_parquet
 from giveway.run_data.progress import Ending
 
 
@@ -52,7 +53,7 @@ def run_command(
     console = Console(quiet=outputs.quiet or outputs.as_json)
     layers = layers_of(scenario, config, settings)
     effective, found = load(layers, outputs.trust or ())
-    if outputs.parquet:
+    if outputs.parquet or outputs.trajectories == "parquet":
         require_parquet()
     from giveway.cosimulation.preflight import preflight
     from giveway.precompile import compile_kernels_once
@@ -66,12 +67,17 @@ def run_command(
     check_folder(folder, force=outputs.force)
     compile_kernels_once(console, threads=effective.crowd.threads)
     from giveway.api import run_checked
+    from giveway.api.expected_size import size_note
 
+    if note := size_note(checked, outputs.trajectories, journal):
+        console.print(f"[yellow]note[/yellow] {escape(note)}", highlight=False)
     with run_progress(console, effective) as watcher:
         try:
             result = run_checked(
                 checked,
-                Destination(folder, outputs.force, outputs.parquet, outputs.pictures),
+                Destination(
+                    folder, outputs.force, outputs.parquet, outputs.trajectories, outputs.pictures
+                ),
                 watcher=watcher,
                 journal=journal,
                 baseline=True,

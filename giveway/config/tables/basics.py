@@ -252,10 +252,11 @@ class RecordConfig(Section):
         le=1e6,
         because="no network is larger",
     )
-    far_period: float = option(
-        1.0,
+    far_period: float | None = option(
+        None,
         "s",
-        "Period at which all other people are recorded",
+        "Period at which all other people are recorded, and everybody without an ego. By default "
+        "it is 1 s, and without an ego every control step",
         gt=0,
         le=1e6,
         least=0.001,
@@ -280,3 +281,12 @@ class RecordConfig(Section):
         least=0.001,
         because="a faster vehicle does not stand",
     )
+
+    @property
+    def longest_period(self) -> float:
+        """The longest time [s] from one record of a person to the next."""
+        return 1.0 if self.far_period is None else self.far_period
+
+    def steps(self, time_step: float) -> int:
+        """Return the control steps of ``time_step`` [s] between records of people far away."""
+        return max(1, round(self.longest_period / time_step))

@@ -142,16 +142,16 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
 
 def _people_ahead(drive: Drive, stand: _Stand, sight: float) -> Mask:
     """Return when a person was on the ego's path up to ``sight`` [m] in front, as flags (T,)."""
-    crowd, front = drive.crowd, stand.front
+    front, there = stand.front, np.zeros(len(drive.ego.time), dtype=np.bool_)
     x, y, _ = drive.path.pose(front)
-    rows = _during(drive, stand, drive.ego.time[crowd.step])
     reach = sight + drive.shape.width + _ASIDE
-    rows = rows[np.hypot(crowd.x[rows] - x, crowd.y[rows] - y) <= reach]
-    station, aside = _on_path(drive, stand, crowd.x[rows], crowd.y[rows])
-    on = aside <= drive.shape.width / 2 + drive.body_radius + _ASIDE
-    on &= (station > front - drive.body_radius) & (station <= front + sight)
-    there = np.zeros(len(drive.ego.time), dtype=np.bool_)
-    there[crowd.step[rows[on]]] = True
+    for crowd in drive.crowd.pieces():
+        rows = _during(drive, stand, drive.ego.time[crowd.step])
+        rows = rows[np.hypot(crowd.x[rows] - x, crowd.y[rows] - y) <= reach]
+        station, aside = _on_path(drive, stand, crowd.x[rows], crowd.y[rows])
+        on = aside <= drive.shape.width / 2 + drive.body_radius + _ASIDE
+        on &= (station > front - drive.body_radius) & (station <= front + sight)
+        there[crowd.step[rows[on]]] = True
     return there
 
 

@@ -104,11 +104,11 @@ def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDA
 
 def _used(drive: Drive, area: Area) -> NDArray[np.bool_]:
     """Return flags (T,): people are on a crossing."""
-    crowd = drive.crowd
-    u, w = area.place(crowd.x, crowd.y)
-    on = (u >= 0.0) & (u <= area.length) & (np.abs(w) <= area.crossing.width / 2)
     used = np.zeros(len(drive.ego.time), dtype=np.bool_)
-    used[crowd.step[on]] = True
+    for crowd in drive.crowd.pieces():
+        u, w = area.place(crowd.x, crowd.y)
+        on = (u >= 0.0) & (u <= area.length) & (np.abs(w) <= area.crossing.width / 2)
+        used[crowd.step[on]] = True
     return used
 
 
@@ -137,13 +137,14 @@ def somebody_in_front(drive: Drive, within: float = NEAR) -> NDArray[np.bool_]:
         drive: Drive of the ego.
         within: Distance [m] from the front bumper.
     """
-    ego, crowd = drive.ego, drive.crowd
-    k = crowd.step
-    d_x, d_y = crowd.x - ego.front_x[k], crowd.y - ego.front_y[k]
-    c, s = np.cos(ego.heading[k]), np.sin(ego.heading[k])
-    ahead, aside = d_x * c + d_y * s, np.abs(d_y * c - d_x * s)
-    near = (ahead > -drive.body_radius) & (ahead <= within + drive.body_radius)
-    near &= aside <= drive.shape.width / 2 + drive.body_radius
+    ego = drive.ego
     found = np.zeros(len(ego.time), dtype=np.bool_)
-    found[k[near]] = True
+    for crowd in drive.crowd.pieces():
+        k = crowd.step
+        d_x, d_y = crowd.x - ego.front_x[k], crowd.y - ego.front_y[k]
+        c, s = np.cos(ego.heading[k]), np.sin(ego.heading[k])
+        ahead, aside = d_x * c + d_y * s, np.abs(d_y * c - d_x * s)
+        near = (ahead > -drive.body_radius) & (ahead <= within + drive.body_radius)
+        near &= aside <= drive.shape.width / 2 + drive.body_radius
+        found[k[near]] = True
     return found

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from giveway.geometry.kernel import Array
 from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive
+from giveway.run_data.tracks import CrowdTrack
 
 KERB = 1.0
 """Distance [m] to a crossing's kerb within which a person who heads for it is about to use it."""
@@ -43,16 +44,14 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
         drive: Drive of the ego, with its crowd.
         area: Area of the crossing.
     """
-    crowd, people = drive.crowd, drive.people
-    if not len(crowd.step) or not len(people.step):
+    if not len(drive.people.step):
         return []
+    crowd = CrowdTrack.joined([_near(area, part) for part in drive.crowd.pieces()])
     u, w = area.place(crowd.x, crowd.y)
-    margin = area.crossing.width / 2 + KERB
-    near = (u >= -KERB) & (u <= area.length + KERB) & (np.abs(w) <= margin)
     open_at = is_open(drive, area)
     walks = []
     for route in _routes(drive, area):
-        mine = (crowd.pedestrian == route.pedestrian) & near
+        mine = crowd.pedestrian == route.pedestrian
         rows = np.flatnonzero(mine & (crowd.step >= route.begin) & (crowd.step < route.end))
         if not len(rows):
             continue
@@ -77,6 +76,13 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
             )
         )
     return walks
+
+
+def _near(area: Area, crowd: CrowdTrack) -> CrowdTrack:
+    """Return the records at an area's crossing, or close to its kerbs."""
+    u, w = area.place(crowd.x, crowd.y)
+    margin = area.crossing.width / 2 + KERB
+    return crowd.where((u >= -KERB) & (u <= area.length + KERB) & (np.abs(w) <= margin))
 
 
 def is_open(drive: Drive, area: Area) -> NDArray[np.bool_]:
