@@ -65,6 +65,11 @@ class RunConfig(RunSettings):
         egos = self.each_ego()
         for ego in egos:
             ego.require_sound()
+        if self.measure and not egos and self.record.far_period is not None:
+            raise ValueError(
+                f"[record] far_period = {self.record.far_period:g}: a [[measure]] needs people at "
+                "every control step; leave far_period out, or the measures"
+            )
         self._meet_people({ego.defaults.crowd_preset for ego in egos or (self,)})
         # they are read, and refused if they cannot be used
         self.vci_options, self.recorded_options  # noqa: B018

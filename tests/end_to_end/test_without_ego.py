@@ -25,6 +25,18 @@ def test_everybody_is_recorded_at_every_instant(alone):
     assert rows.groupby("time")["id"].nunique().iloc[:200].eq(12).all()
 
 
+def test_people_are_recorded_as_often_as_wanted():
+    thinned = {"crowd.pedestrians": 3, "record.far_period": 0.5, **NOBODY, "time_limit": 2.0}
+    rows = giveway.run(thinned).trajectories
+    assert rows.groupby("time")["id"].nunique().to_dict() == dict.fromkeys((0, 0.5, 1, 1.5, 2), 3)
+
+
+def test_measures_need_people_at_every_step():
+    line = [{"name": "a", "line": [[20.0, 0.0], [36.0, 0.0]]}]
+    with pytest.raises(giveway.GivewayError, match=r"far_period = 0\.5: .* at every control step"):
+        giveway.run({"measure": line, "record.far_period": 0.5, **NOBODY})
+
+
 def test_the_tables_tell_how_people_walked(alone):
     table = alone.pedestrians
     assert (table["peak_acceleration"] > 0.0).all()
