@@ -63,7 +63,7 @@ class RefusedFileError(ResultsError):
         self.file, self.reason = file, reason
         super().__init__(
             f"{file}: {reason}; expected a file that giveway wrote; put the file itself there, or "
-            "make the results again"
+            "remove this one and make the results again"
         )
 
 

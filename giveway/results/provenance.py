@@ -60,24 +60,6 @@ def _processor_name() -> str:
     return named[1] if named else platform.machine()
 
 
-def recording_hashes(config: RunConfig) -> dict[str, dict[str, str]]:
-    """Return the SHA-256 of each file of the recordings whose people came in, entry by entry.
-
-    A recording that is no longer there has none.
-    """
-    hashes = {}
-    for entry in config.crowd.recorded:
-        # imported here, since pandas comes with it
-        from giveway.recordings.clips import clip_files
-
-        try:
-            files = clip_files(entry)
-        except GivewayError:
-            files = ()
-        hashes[entry.name] = {file.name: sha256(file.read_bytes()) for file in files}
-    return hashes
-
-
 class RunFacts(NamedTuple):
     """The facts about a run that its configuration does not tell."""
 
@@ -110,7 +92,6 @@ def manifest(
         ending: Reason why the run ended.
         error: Error that ended the run, or None.
     """
-    recordings = recording_hashes(config)
     inputs: dict[str, str] = {}
     with contextlib.suppress(GivewayError, OSError):  # a file is gone that there was at the start
         inputs = data_hashes(config, scenario)
@@ -123,7 +104,6 @@ def manifest(
         "time_step": facts.time_step,
         "sumo": dict(facts.sumo),
         "scenario": {"name": scenario.name, "sha256": scenario_hashes(scenario)},
-        **({"recordings": recordings} if recordings else {}),
         "inputs": inputs,
         "vehicles": dict(facts.vehicles),
         **facts.code,
