@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from giveway.gate import fingerprint
+from giveway.gate import MAKER, fingerprint, signed
 from giveway.reports.examples import drives_of
 from giveway.reports.report_page import write_report
 from giveway.studies.definition import parse_definition
@@ -77,8 +77,8 @@ def changed(study: StudyFolder, tmp_path: Path) -> Callable[..., StudyFolder]:
         for entry, cell in zip(manifest["cells"], cells, strict=True):
             entry["label"] = cell.label
         manifest["definition"] = fingerprint(path.read_bytes())
-        del manifest[SEAL]
-        text = json.dumps(sealed(manifest, software))
+        del manifest[SEAL], manifest[MAKER]
+        text = json.dumps(signed(sealed(manifest, software)))
         (folder / "manifest.json").write_text(text, encoding="utf-8")
         for name in ("comparison", "situations"):
             (folder / f"{name}.csv").unlink()
