@@ -45,7 +45,9 @@ def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunCon
     if scenario.settings_file is not None:
         layer = read_toml(scenario.settings_file)
         settings = {key: value for key, value in layer.values.items() if key != "description"}
-        own = [Layer(layer.origin, settings)]
+        # what a scenario names is the word of whoever names the scenario
+        naming = [one.results for one in layers if one.holds(("scenario",))]
+        own = [Layer(layer.origin, settings, results=naming[-1] if naming else None)]
     layers = [*own, *layers]
     identified = _identified(layers)
     config = build_config([*identified, *layers])

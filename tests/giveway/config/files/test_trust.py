@@ -76,6 +76,21 @@ def test_foreign_results_need_the_users_word_for_a_vehicle(folder: Path, made: P
     assert load([layer, named])
 
 
+def test_a_scenario_that_foreign_results_name_brings_no_vehicle(
+    folder: Path, made: Path, tmp_path: Path
+) -> None:
+    theirs = shutil.copytree(find("shared_space").config_file.parent, tmp_path / "theirs")
+    settings = theirs / "shared_space.giveway.toml"
+    car = made.parent / "car.fmu"
+    settings.write_text(settings.read_text() + f'\n[vehicle]\nfmu = "{car}"\n')
+    scenario = f'scenario = "{theirs / "shared_space.sumocfg"}"\n'
+    (foreign(folder) / "config.toml").write_text(scenario)
+    with pytest.raises(ConfigError, match=r"giveway\.toml: .*somebody else's results folder"):
+        load([read_toml(folder / "config.toml")])
+    (tmp_path / "my.toml").write_text(scenario)
+    assert load([read_toml(tmp_path / "my.toml")])
+
+
 def test_settings_that_were_changed_are_not_ones_own(folder: Path) -> None:
     config = folder / "config.toml"
     config.write_text(config.read_text() + "\n")
