@@ -102,7 +102,3 @@ LAW_COLUMNS = (
     FRONTAL,
     SIDE,
 )
-LIGHT_COLUMNS = less(
-    WAIT, Column("total_wait", "all waits [s]"), Column("stops", "stops", 2), TIME,
-    JERK._replace(digits=2), BELOW_TTC._replace(digits=2),
-)  # fmt: skip

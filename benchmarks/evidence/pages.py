@@ -17,7 +17,6 @@ from makers import (
     JERK,
     LAW_COLUMNS,
     LAYER,
-    LIGHT_COLUMNS,
     MODEL_COLUMNS,
     ROAD_COLUMNS,
     TIME,
@@ -198,7 +197,6 @@ PAGES: dict[str, Page] = {
             "docs/law.md",
             (
                 Block("law", samples.LAW, means(*LAW_COLUMNS)),
-                Block("lights", samples.LIGHTS, means(*LIGHT_COLUMNS)),
                 _told(
                     "drawn networks",
                     "law/road_campaign.py --drawn 1-12 --drives 8 --brief "

@@ -61,20 +61,6 @@ BELIEFS = Study(
     },
 )
 LAW = Study("law", 60, first_seed=1)
-LIGHTS = Study(
-    {
-        "name": "lights",
-        "factors": {
-            "scenario": ROADS,
-            "plans": {
-                "told": {"rules": {"signal_advice": True}},
-                "not told": {},
-            },
-        },
-        "comparison": {"factor": "plans", "baseline": "not told"},
-    },
-    30,
-)
 FIRST_DRIVES = Study(
     {"name": "encounter", "run": {"scenario": "encounter"}, "factors": {"controller": ["mpc"]}},
     20,

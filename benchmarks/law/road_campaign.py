@@ -16,8 +16,7 @@ campaign can be ended at any time, and another state of the repository needs ano
 drive is a process of its own: one that dies has a row with the cause. The end prints all drives,
 each violation, and the pooled numbers with 95 % intervals beside the bars of a good driver.
 ``--table`` prints that without driving, and ``--beside FOLDER`` the values of the same drives in
-another state of the repository, with the ratio of the times of pairs. ``--advice`` gives egos the
-plans of their lights (``signal_advice``): in a folder of its own, beside one without. Drawn
+another state of the repository, with the ratio of the times of pairs. Drawn
 networks need netgenerate: pip install 'giveway[build]'.
 """
 
@@ -66,7 +65,6 @@ class Drive:
         seed: Seed of SUMO and of the people.
         controller: Controller of the ego.
         lane: Index of the departure lane of an inserted ego.
-        advice: Whether the lights on its path tell the ego their plans.
     """
 
     scenario: str
@@ -75,7 +73,6 @@ class Drive:
     seed: int
     controller: str
     lane: int | None = None
-    advice: bool = False
 
     @property
     def name(self) -> str:
@@ -93,7 +90,6 @@ class Drive:
             "controller": self.controller,
             "ego": inserted if "," in self.ego else {"take_over": [self.ego]},
             "regulation": {"reference_speed": "lane"},
-            "rules": {"signal_advice": self.advice},
             "sumo": {"seed": self.seed},
             "seed": self.seed,
             "time_limit": LIMIT,
@@ -192,7 +188,7 @@ def planned(options: argparse.Namespace) -> list[Drive]:
             print(f"{name}: left out: {why}", file=sys.stderr)
             continue
         drives += [
-            Drive(name, str(config), ego, number, options.controller, advice=options.advice)
+            Drive(name, str(config), ego, number, options.controller)
             for ego, number in draw(egos, options.drives, seed)
         ]
     return drives + roads(options)
@@ -213,7 +209,6 @@ def roads(options: argparse.Namespace) -> list[Drive]:
             seed,
             options.controller,
             way.lane,
-            options.advice,
         )
         for seed in options.roads
         for way in ways
@@ -263,7 +258,6 @@ def main() -> None:
     parser.add_argument("--window", type=float, default=600.0, help="[s] in which they depart")
     parser.add_argument("--route", action="append", default=[], help="edges of an inserted ego")
     parser.add_argument("--controller", default="mpc")
-    parser.add_argument("--advice", action="store_true", help="lights tell egos their plans")
     parser.add_argument("--out", type=Path, required=True, help="folder of the results")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--table", action="store_true", help="drive nothing, print all rows")

@@ -82,8 +82,8 @@ RENAMED: Final[Mapping[Location, Location | str]] = {
     ("regulation", "priority"): "write [rules] crossings, right_of_way and merging, true or false "
     "(--no-rules-crossings, ...)",
     ("ego", "keep_stops"): ("rules", "stops"),
-    ("perception", "signal_plans"): "write [rules] signal_plans for walkers' lights, and "
-    "signal_advice for the approach to the ego's own light",
+    ("perception", "signal_plans"): ("rules", "signal_plans"),
+    ("rules", "signal_advice"): "leave it out: advice on the speed saved no time",
     ("planner", "terminal"): "leave it out: it is always off",
     ("planner", "block_growth"): "leave it out: it is always 0.25",
     **{

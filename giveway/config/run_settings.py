@@ -25,7 +25,7 @@ from giveway.config.tables.metrics import MetricsConfig
 from giveway.config.tables.perception import PerceptionConfig
 from giveway.config.tables.recorded import RECORDED, RecordedOptions
 from giveway.config.tables.regulation import RegulationConfig
-from giveway.config.tables.rules import OF_PRIORITY, OFF_BY_DEFAULT, RulesConfig
+from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.plug_ins.finding import shown
 from giveway.plug_ins.options import read_options
 from giveway.plug_ins.sockets import MODEL
@@ -176,8 +176,6 @@ class RunSettings(Section):
             return said
         if rule == "speed_limits":
             return self.reference_speed == LANE
-        if rule in OFF_BY_DEFAULT:
-            return False
         return rule not in OF_PRIORITY or self.defaults.heeds_priority
 
     @property

@@ -20,7 +20,6 @@ from giveway.ego.perception.truth import Truth
 from giveway.ego.rules.following import Following
 from giveway.ego.rules.protocol import Told
 from giveway.ego.rules.rule_set import STOPS_EARLY, RuleSet
-from giveway.ego.rules.traffic_lights import FOLLOWED
 from giveway.ego.safeguards import Safeguards
 from giveway.ego.stop_cause import waits_for
 from giveway.ego.vehicle_ahead import VehicleNews
@@ -101,7 +100,6 @@ class Ego:
         self.systems = rules.systems | (frozenset() if kerbs is None else kerbs.systems)
         self._force, self._eases_off, self.beside = 0.0, False, NOBODY_BESIDE
         self._heed_vehicles = config.heeds("following")
-        self._looks_behind = config.heeds("signal_advice")
         self._own, self._seen = OwnState(Pose(0.0, 0.0, 0.0), 0.0, 0, shape), Perceived()
         self._view = PathView(path)
         self._observation = Observation(path=self._view, safe_distance=regulation.safe_distance)
@@ -195,11 +193,6 @@ class Ego:
                 if seen.followed.decelerates > 0.0:
                     braking = self.news.stations(leader, seen.followed, self._times)
                     vehicles = np.minimum(vehicles, braking)
-        if self._looks_behind:
-            rear = front - self.shape.length
-            rules.situation.follower_gap = self.corridor.gap_behind(
-                seen.poses[0], seen.row, rear, FOLLOWED
-            )
         rules.look(front, speed, seen.percept.people, leader)
         if rules.leader is not NO_LEADER:
             leader = min(leader, rules.leader)

@@ -7,8 +7,6 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
-_GOES = tuple("gGoO")  # States that let vehicles go: green, blinking yellow and off
-
 
 class SignalChange(NamedTuple):
     """The next change of a traffic light."""
@@ -21,19 +19,10 @@ ChangeOf = Callable[[str], SignalChange | None]
 """Function that returns the next change of a traffic light by its id, or None if it is unknown."""
 
 
-Greens = tuple[tuple[float, float], ...]
-"""The green times of a movement that its plan tells: begin and end [s] from now, in order."""
-
-GreensOf = Callable[[str, int], Greens]
-"""Function that returns the green times by a light's id and a movement's number; empty if
-unknown."""
-
-
 class _Phase(NamedTuple):
     """A phase of a signal program."""
 
     state: str
-    duration: float  # [s] duration
     follows: int  # number of the next phase, or -1 if there is none or it is not certain
 
 
@@ -64,29 +53,6 @@ class SignalPlans:
             return None
         return SignalChange(self._left(system), plan[plan[phase].follows].state)
 
-    def greens(self, system: str, link: int) -> Greens:
-        """Return the green times of a movement in one round of the plan; empty if they are unknown.
-
-        Args:
-            system: SUMO's id of the traffic light.
-            link: Number of the movement.
-        """
-        plan, phase = self._now(system)
-        if phase < 0 or plan[phase].follows < 0:
-            return ()
-        begin, end, found = 0.0, self._left(system), list[tuple[float, float]]()
-        for _ in range(len(plan) + 1):
-            if plan[phase].state[link : link + 1] in _GOES:
-                if found and found[-1][1] == begin:
-                    found[-1] = found[-1][0], end
-                else:
-                    found.append((begin, end))
-            phase = plan[phase].follows
-            if phase < 0:
-                break
-            begin, end = end, end + plan[phase].duration
-        return tuple(found)
-
     def _now(self, system: str) -> tuple[tuple[_Phase, ...], int]:
         """Return the running program and the number of its phase, or -1 if the phase is unknown."""
         lights = self._sumo.trafficlight
@@ -108,7 +74,6 @@ class SignalPlans:
                 return tuple(
                     _Phase(
                         str(phase.state),
-                        float(phase.duration),
                         _only(list(phase.next) or [(number + 1) % len(phases)], len(phases)),
                     )
                     for number, phase in enumerate(phases)

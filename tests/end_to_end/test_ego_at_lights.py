@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from contextlib import ExitStack
 from typing import Literal
 
@@ -33,7 +32,7 @@ TOO_LATE = 2.0  # [s] of red in which who cannot stop passes
 
 
 def drive(
-    config: EgoRunConfig, line: float, yellow_at: float, every: int, told: bool = False
+    config: EgoRunConfig, line: float, yellow_at: float, every: int
 ) -> list[tuple[float, float, str]]:
     """Front [m], speed [m/s] and colour at each step until the red is over.
 
@@ -42,7 +41,6 @@ def drive(
         line: station of the stop line [m].
         yellow_at: when the green ends [s].
         every: how many steps apart the light is looked at: SUMO's own step.
-        told: the light's plan.
     """
     shape, nobody = VehicleShape(), Crowd.empty()
     path = EgoPath.through([(0.0, 0.0), (2000.0, 0.0)])
@@ -50,20 +48,7 @@ def drive(
     with ExitStack() as stack:
         waiting = make_waiting_ego(config, make_controller(config, STEP), STEP, stack)
         waiting.start(config.ego.initial_speed or 0.0)
-        greens = [(0.0, yellow_at), (yellow_at + YELLOW + RED, math.inf)]
-        time = 0.0
-
-        def greens_of(*_: object) -> tuple[tuple[float, float], ...]:
-            return tuple((max(a - time, 0.0), b - time) for a, b in greens if b > time)
-
-        lights = TrafficLights(
-            [Light(line, "tls", 0)],
-            comfortable=2.0,
-            hardest=8.0,
-            greens_of=greens_of if told else None,
-            desired_speed=lambda _: float(config.reference_speed),
-            gap=config.regulation.safe_distance,
-        )
+        lights = TrafficLights([Light(line, "tls", 0)], comfortable=2.0, hardest=8.0)
         ego = Ego(waiting, Course(path, DEPARTURE, 1900.0), shape, RuleSet([lights]), STEP)
         poses = np.zeros((waiting.horizon, 1, 7))
         poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
@@ -90,7 +75,6 @@ def drive(
     every=st.sampled_from([1, 20]),
     gap_from=st.sampled_from(["bumper", "centre"]),
     safe_distance=st.sampled_from([2.0, 8.0, 15.0]),
-    told=st.booleans(),
 )
 @settings(max_examples=40)
 def test_an_ego_stops_before_the_line_or_passes_it(
@@ -102,7 +86,6 @@ def test_an_ego_stops_before_the_line_or_passes_it(
     every: int,
     gap_from: Literal["bumper", "centre"],
     safe_distance: float,
-    told: bool,
 ) -> None:
     config = EgoRunConfig.model_validate(
         {
@@ -116,7 +99,7 @@ def test_an_ego_stops_before_the_line_or_passes_it(
         }
     )
     line = DEPARTURE + distance
-    rows = drive(config, line, yellow_at, every, told)
+    rows = drive(config, line, yellow_at, every)
     slow = 0
     for front, now, colour in rows:
         slow = slow + 1 if colour == "r" and now < CREEPING else 0

@@ -9,9 +9,6 @@ from giveway.plug_ins.sockets import RULE, Socket
 OF_PRIORITY = frozenset({"crossings", "right_of_way", "merging"})
 """The rules of priority; by default they hold if the controller's declaration says so."""
 
-OFF_BY_DEFAULT = frozenset({"signal_advice"})
-"""The rules that hold only if they are asked for."""
-
 
 class RulesConfig(PlugInTable):
     """The rules of the road that the ego heeds; its controller decides on one that is left out."""
@@ -20,12 +17,6 @@ class RulesConfig(PlugInTable):
 
     traffic_lights: bool | None = option(
         None, None, "The ego stops at red lights. It does by default"
-    )
-    signal_advice: bool | None = option(
-        None,
-        None,
-        "The ego's own light tells it its plan (SPaT), and mpc arrives when it is green. It does "
-        "not by default",
     )
     signal_plans: bool | None = option(
         None,

@@ -9,7 +9,6 @@ within the sight distance of 100 m along the path, the distance is infinite.
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.ego.perception.follower import gap_behind
 from giveway.ego.perception.leader import (
     NOBODY_BESIDE,
     NOT_FOLLOWING,
@@ -130,18 +129,6 @@ class Corridor:
         )
         self.followed = Followed(*followed)
         return Leader(station, along), ahead
-
-    def gap_behind(self, vehicles: Array, own: int, rear: float, sight: float) -> float:
-        """The distance [m] from the ego's rear to the closest vehicle behind; inf without one.
-
-        Args:
-            vehicles: Poses (m, 7) of all vehicles now.
-            own: Row of the ego.
-            rear: Station of the ego's rear bumper [m].
-            sight: Largest distance [m] that counts.
-        """
-        gap: float = gap_behind(self._way, vehicles, own, rear, sight)
-        return gap
 
     def fill_poses(self, poses: Array, row: int, front: float, speed: float) -> None:
         """Write the ego's poses at steps 0 ... N-1 under constant speed into ``poses[:, row]``.

@@ -41,7 +41,6 @@ class Situation:
     speed: float = 0.0  # speed of the ego [m/s]
     crowd: Crowd = field(default_factory=Crowd.empty)  # pedestrians as the ego sees them
     leader: Leader = NO_LEADER  # vehicle ahead, which may be one that merges
-    follower_gap: float = inf  # distance [m] of the next vehicle behind; inf if it is not asked for
     stop_at_light: float = inf  # station [m] of the stop at a red light; inf without one
     signals: Mapping[str, str] = field(
         default_factory=dict
