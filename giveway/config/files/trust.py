@@ -55,6 +55,23 @@ def require_trusted(
                 f"--trust {code.name})"
             )
         _require_same(code, origin, folder, own=own)
+    _require_no_options(config, layers)
+
+
+def _require_no_options(config: RunConfig, layers: Sequence[Layer]) -> None:
+    """Make sure that somebody else's results pass no options to SUMO, which may write any file.
+
+    Raises:
+        ConfigError: they do.
+    """
+    naming = [layer for layer in layers if layer.holds(("sumo", "options"))]
+    folder = naming[-1].results if naming and config.sumo.options else None
+    if folder is not None and not is_own_folder(folder):
+        raise ConfigError(
+            f"{naming[-1].origin}: [sumo] options = '{config.sumo.options}': somebody else's "
+            "results folder passes options to SUMO, which may write files; copy the file, read "
+            "it, and run the copy"
+        )
 
 
 def code_of(config: RunConfig) -> list[Named]:

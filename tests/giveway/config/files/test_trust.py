@@ -91,6 +91,17 @@ def test_a_scenario_that_foreign_results_name_brings_no_vehicle(
     assert load([read_toml(tmp_path / "my.toml")])
 
 
+def test_foreign_results_pass_no_options_to_sumo(folder: Path, tmp_path: Path) -> None:
+    text = f'[sumo]\noptions = "--log {tmp_path / "precious"}"\n'
+    (foreign(folder) / "config.toml").write_text(text)
+    layer = read_toml(folder / "config.toml")
+    with pytest.raises(ConfigError, match="passes options to SUMO"):
+        load([layer])
+    assert load([layer, Layer("command line", {"sumo": {"options": ""}}, from_flags=True)])
+    (tmp_path / "my.toml").write_text(text)
+    assert load([read_toml(tmp_path / "my.toml")])
+
+
 def test_settings_that_were_changed_are_not_ones_own(folder: Path) -> None:
     config = folder / "config.toml"
     config.write_text(config.read_text() + "\n")
