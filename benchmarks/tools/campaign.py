@@ -1,6 +1,6 @@
 """Does giveway stay civil, whatever it is given? A campaign of mutated inputs tells.
 
-    python benchmarks/tools/campaign.py --seed 1 --count 5000 --out FOLDER [--jobs 2] [--again]
+    python benchmarks/tools/campaign.py --seed 3001-3005 --count 1000 --out FOLDER [--again]
     python benchmarks/tools/campaign.py --seed 1 --kind replay --count 150 --out FOLDER
     python benchmarks/tools/campaign.py --seed 1 --only 1234 --out FOLDER
 
@@ -29,7 +29,7 @@ import shutil
 import sys
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from threading import Lock
 from time import monotonic
@@ -72,14 +72,24 @@ def try_case(
 def main() -> int:
     """Go on with a campaign, or repeat one case."""
     options = _parser().parse_args()
+    first, _, last = options.seed.partition("-")
+    verdicts = []
+    for seed in range(int(first), int(last or first) + 1):
+        options.seed = seed
+        verdicts += _of_seed(options)
+    return 0 if options.only is not None else _table(verdicts)
+
+
+def _of_seed(options: argparse.Namespace) -> list[Verdict]:
+    """Go on with one seed of a campaign, or repeat one case of it; the verdicts."""
     out: Path = options.out.absolute()
     kind = f"_{options.kind}" if options.kind else ""
     results = out / f"seed_{options.seed}{kind}.jsonl"
     out.mkdir(parents=True, exist_ok=True)
     if options.only is not None:
         _go_on(options, out, [options.only], lambda verdict: print(json.dumps(asdict(verdict))))
-        print(f"its input is in {out / 'cases' / str(options.only)}")
-        return 0
+        print(f"its input is in {out / 'cases' / f'{options.seed}-{options.only}'}")
+        return []
     known, lock = read_verdicts(results), Lock()
     again = {number for number in known if options.again and known[number].bad}
     left = [number for number in range(options.count) if number not in known or number in again]
@@ -88,11 +98,11 @@ def main() -> int:
         with lock, results.open("a", encoding="utf-8") as file:
             file.write(json.dumps(asdict(verdict)) + "\n")
         if not verdict.bad:
-            _remove(out / "cases" / str(verdict.number))
+            _remove(out / "cases" / f"{options.seed}-{verdict.number}")
 
     _go_on(options, out, left, keep)
-    verdicts = read_verdicts(results).values()
-    return _table([verdict for verdict in verdicts if verdict.number < options.count])
+    verdicts = [v for v in read_verdicts(results).values() if v.number < options.count]
+    return [replace(v, mutations=f"of seed {options.seed}: {v.mutations}") for v in verdicts]
 
 
 def _go_on(
@@ -104,7 +114,7 @@ def _go_on(
         with Nursery(out / "cache") as nursery:
             bases = Bases(out / "bases" / str(place), nursery)
             for number in numbers[place :: options.jobs]:
-                folder = out / "cases" / str(number)
+                folder = out / "cases" / f"{options.seed}-{number}"
                 keep(try_case(options, number, bases, nursery, folder))
 
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -138,8 +148,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--count", type=int, default=5000, help="cases, from number 0 on")
+    parser.add_argument("--seed", default="1", help="one, or the first and last: 3001-3005")
+    parser.add_argument("--count", type=int, default=5000, help="cases of each seed, from 0 on")
     parser.add_argument("--kind", choices=tuple(KINDS), help="of all cases; default: drawn")
     parser.add_argument("--again", action="store_true", help="try what was not civil once more")
     parser.add_argument("--only", type=int, help="number of one case, which is tried again")

@@ -249,9 +249,9 @@ def _nested(opening: str, depth: int) -> str:
 
 
 FOLDER_KINDS: Final[dict[str, tuple[int, Callable[..., tuple[Words, str, Expected]]]]] = {
-    "journal_links": (5, journal_links),
-    "pipes": (5, pipes),
-    "tables": (5, tables),
+    "journal_links": (9, journal_links),
+    "pipes": (9, pipes),
+    "tables": (9, tables),
     "targets": (5, targets),
     "scenes": (5, scenes),
     "vehicles": (5, vehicles),

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from campaign_folders import CIVIL, FOLDER_KINDS, Expected
+from campaign_inputs import INPUT_KINDS
 from campaign_mutations import mutate
 
 if TYPE_CHECKING:
@@ -250,5 +251,6 @@ KINDS: Final[dict[str, tuple[int, Callable[..., tuple[Any, ...]]]]] = {
     "replay": (6, _replay),
     "recover": (6, _recover),
     **FOLDER_KINDS,
+    **INPUT_KINDS,
 }
 """Each kind's share, and what makes a case of it."""

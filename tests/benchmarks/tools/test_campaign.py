@@ -16,6 +16,7 @@ import campaign_kinds
 import pytest
 from campaign_bases import Bases
 from campaign_folders import FOLDER_KINDS, Expected
+from campaign_inputs import INPUT_KINDS
 from campaign_kinds import KINDS, Case, make_case
 from campaign_nursery import Ended, Nursery
 from campaign_verdicts import TABLES, judge
@@ -25,9 +26,9 @@ LIMIT = campaign.PATIENCE * campaign.LIMIT  # [s] for what takes less than one
 ALARM = getattr(signal, "SIGALRM", 14)
 SAMPLE = {  # a hundred cases; those of studies take longest
     "scenario": 19,
-    "settings": 20,
-    "profile": 13,
-    "fmu": 16,
+    "settings": 14,
+    "profile": 11,
+    "fmu": 14,
     "preset": 8,
     "trajectories": 8,
     "records": 4,
@@ -41,6 +42,8 @@ SAMPLE = {  # a hundred cases; those of studies take longest
     "tables": 4,
     "targets": 2,
     "scenes": 2,
+    "booleans": 8,
+    "networks": 2,
     "vehicles": 0,  # the base is a run of an isolated FMU; config/files/test_trust.py
 }
 LONG = ("validate", "doctor", "check")  # commands that draw, or load what nothing else needs
@@ -90,7 +93,8 @@ def test_what_is_not_mutated_is_not_refused(
 ) -> None:
     monkeypatch.setattr(campaign_kinds, "mutate", lambda _, content, __: (content, ""))
     monkeypatch.setattr(campaign_kinds, "_broken", lambda *_: "")
-    for case in of_each_kind(bases, tmp_path, dict.fromkeys(KINDS.keys() - FOLDER_KINDS.keys(), 1)):
+    refused = FOLDER_KINDS.keys() | INPUT_KINDS.keys()
+    for case in of_each_kind(bases, tmp_path, dict.fromkeys(KINDS.keys() - refused, 1)):
         ended = nursery.type(case.words, case.folder, LIMIT)
         assert ended.code == 0, (case, ended.err)
 
