@@ -62,7 +62,7 @@ def try_case(
     began = monotonic()
     for patience in (1, PATIENCE):
         case = make_case(options.seed, number, bases, folder, options.kind)
-        ended = nursery.type(case.words, folder, patience * options.limit)
+        ended = nursery.type(case.words, folder, patience * options.limit, case.cache)
         if not ended.hung:
             break
     original = bases.study if case.kind == "records" else None

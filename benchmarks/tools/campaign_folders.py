@@ -47,16 +47,20 @@ class Expected:
         refused: text of the line by which the command has to refuse; "": it need not.
         quiet: whether the command has to do its work without any message.
         precious: file outside the folder, which must stay as it is; None: there is none.
+        same: a table and the one whose bytes it must have; None: no table is compared.
     """
 
     refused: str = ""
     quiet: bool = False
     precious: Path | None = None
+    same: tuple[Path, Path] | None = None
 
     def broken(self, code: int, err: str) -> bool:
         """Whether a command that has ended so, with these messages, does not meet it."""
         kept = self.precious is None or _is_kept(self.precious)
         said = not self.refused or (code != 0 and self.refused in err)
+        if self.same and (code or self.same[0].read_bytes() != self.same[1].read_bytes()):
+            return True
         return not kept or not said or (self.quiet and bool(code or err.strip()))
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from campaign_folders import CIVIL, FOLDER_KINDS, Expected
 from campaign_inputs import INPUT_KINDS
+from campaign_kernels import kernels
 from campaign_mutations import mutate
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class Case:
         folder: where the input lies.
         mutations: what has been done to which file.
         expected: what has to hold beside civility.
+        cache: folder of kernels for a process of its own; None: the nursery's child.
     """
 
     number: int
@@ -44,6 +46,7 @@ class Case:
     folder: Path
     mutations: str
     expected: Expected = CIVIL
+    cache: Path | None = None
 
 
 def make_case(seed: int, number: int, bases: Bases, folder: Path, only: str | None = None) -> Case:
@@ -252,5 +255,6 @@ KINDS: Final[dict[str, tuple[int, Callable[..., tuple[Any, ...]]]]] = {
     "recover": (6, _recover),
     **FOLDER_KINDS,
     **INPUT_KINDS,
+    "kernels": (9, kernels),
 }
 """Each kind's share, and what makes a case of it."""

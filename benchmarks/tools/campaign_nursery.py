@@ -68,16 +68,21 @@ class Nursery:
             self._process.communicate()
             self._process = None
 
-    def type(self, words: Sequence[object], cwd: Path, limit: int) -> Ended:
+    def type(
+        self, words: Sequence[object], cwd: Path, limit: int, cache: Path | None = None
+    ) -> Ended:
         """Type a command.
 
         Args:
             words: after ``giveway``.
             cwd: where it is typed; its outputs are kept beside it, as ``NAME.out``, ``NAME.err``.
             limit: [s] after which it is ended.
+            cache: folder of kernels for a process of its own; None: a child of the nursery.
         """
         out, err = (cwd.with_name(f"{cwd.name}.{name}") for name in ("out", "err"))
         typed = [str(word) for word in words]
+        if cache is not None:
+            return self._alone(typed, cwd, limit, cache)
         request = {"words": typed, "cwd": str(cwd), "limit": limit}
         process = self._process or self._started()
         assert process.stdin is not None
@@ -90,6 +95,26 @@ class Nursery:
             raise RuntimeError(f"the nursery died of {' '.join(typed)}")
         texts = [path.read_text(encoding="utf-8", errors="replace") for path in (out, err)]
         return Ended(int(answer), *texts)
+
+    def _alone(self, typed: list[str], cwd: Path, limit: int, cache: Path) -> Ended:
+        """Type a command into a process that starts with the kernels of ``cache``."""
+        done = subprocess.Popen(
+            [sys.executable, "-m", "giveway", *typed],
+            cwd=cwd,
+            env=self.environment | {"NUMBA_CACHE_DIR": str(cache)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            errors="replace",
+            start_new_session=True,
+        )
+        try:
+            out, err = done.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(done.pid, signal.SIGKILL)
+            out, err = done.communicate()
+            return Ended(-signal.SIGALRM, out, err)
+        return Ended(done.returncode, out, err)
 
     @property
     def environment(self) -> dict[str, str]:

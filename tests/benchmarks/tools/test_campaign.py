@@ -43,6 +43,7 @@ SAMPLE = {  # a hundred cases; those of studies take longest
     "targets": 2,
     "scenes": 2,
     "booleans": 8,
+    "kernels": 0,  # each compiles for a while; giveway/_kernels has its own tests
     "networks": 2,
     "vehicles": 0,  # the base is a run of an isolated FMU; config/files/test_trust.py
 }
@@ -93,7 +94,7 @@ def test_what_is_not_mutated_is_not_refused(
 ) -> None:
     monkeypatch.setattr(campaign_kinds, "mutate", lambda _, content, __: (content, ""))
     monkeypatch.setattr(campaign_kinds, "_broken", lambda *_: "")
-    refused = FOLDER_KINDS.keys() | INPUT_KINDS.keys()
+    refused = FOLDER_KINDS.keys() | INPUT_KINDS.keys() | {"kernels"}
     for case in of_each_kind(bases, tmp_path, dict.fromkeys(KINDS.keys() - refused, 1)):
         ended = nursery.type(case.words, case.folder, LIMIT)
         assert ended.code == 0, (case, ended.err)
