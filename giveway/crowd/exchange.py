@@ -59,7 +59,9 @@ class Exchange:
         self.unconnected = 0  # number of gaps in routes, between edges that are not connected
         signals = len(network.signals)
         waits = signals + 2 * len(network.gap_crossings)
-        self._red_walkers = RedWalkers(self._walkers.red_times(), signals, first=waits)
+        with session.hushed:
+            red_times = self._walkers.red_times()
+        self._red_walkers = RedWalkers(red_times, signals, first=waits)
         self.surroundings = Surroundings(
             walls=Walls.create(network.wall_segments) if walls else None,
             closed=np.zeros(waits + self._red_walkers.size, dtype=np.bool_),

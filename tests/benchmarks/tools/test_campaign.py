@@ -54,7 +54,11 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="cases are forke
 
 @pytest.fixture(scope="module")
 def nursery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Nursery]:
-    with Nursery(tmp_path_factory.mktemp("cache")) as started:
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        Nursery(tmp_path_factory.mktemp("cache")) as started,
+    ):
+        patch.setenv("PYTHONOPTIMIZE", "2")  # no assert and no docstring is needed
         yield started
 
 
@@ -98,6 +102,19 @@ def test_what_is_not_mutated_is_not_refused(
     for case in of_each_kind(bases, tmp_path, dict.fromkeys(KINDS.keys() - refused, 1)):
         ended = nursery.type(case.words, case.folder, LIMIT)
         assert ended.code == 0, (case, ended.err)
+
+
+def test_what_sumo_says_of_types_stays_in_its_log(
+    nursery: Nursery, bases: Bases, tmp_path: Path
+) -> None:
+    town = Path(shutil.copytree(bases.scenarios["town"], tmp_path / "town"))
+    config = town / "town.sumocfg"
+    config.write_text(
+        config.read_text().replace('<step-length value="0.5"', '<step-length value="7.5"')
+    )
+    words = ("run", config.name, "--no-ego", "--zone", "everywhere", "--time-limit", 1)
+    ended = nursery.type((*words, "--no-pictures", "--out", "out"), town, LIMIT)
+    assert (ended.code, ended.err) == (0, "")
 
 
 def test_a_case_is_determined_by_seed_and_number(bases: Bases, tmp_path: Path) -> None:

@@ -55,6 +55,13 @@ def test_every_option_has_its_own_flag_and_a_meaning() -> None:
     assert flag_of(("crowd", "sampler")) == "--sampler"
 
 
+@pytest.mark.parametrize("controller", [{"a": 1}, [1], True])
+def test_a_table_for_a_controllers_name_is_refused(controller: object) -> None:
+    layers = [Layer("scenario", {"controller": "mpc"}), Layer("mine", {"controller": controller})]
+    with pytest.raises(ConfigError, match="mine: controller = "):
+        build_config(layers)
+
+
 def test_later_layers_win_key_by_key() -> None:
     below = Layer("a", {"seed": 1, "vehicle": {"mass": 2000, "force_limit": 5000}})
     above = Layer("b", {"vehicle": {"mass": 3000}})
