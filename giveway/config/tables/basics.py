@@ -189,7 +189,7 @@ class VehicleConfig(Section):
 
     @property
     def told(self) -> dict[str, float]:
-        """What is set of the values that an identified model gives, by key."""
+        """The values that the user has set among those an identified model gives, by key."""
         return {key: getattr(self, key) for key in IDENTIFIED if key in self.model_fields_set}
 
     @property
