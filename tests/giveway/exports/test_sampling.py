@@ -61,5 +61,5 @@ def test_a_step_that_makes_no_sense_is_refused(run, step):
 
 
 def test_a_run_without_rows_has_nothing_to_export(run):
-    with pytest.raises(ResultsError, match=r"trajectories\.csv has no rows"):
+    with pytest.raises(ResultsError, match=r"the trajectories have no rows"):
         sampled(dataclasses.replace(run, trajectories=run.trajectories[:0]))
