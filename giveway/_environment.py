@@ -48,13 +48,6 @@ def out_of_memory(error: BaseException | None) -> bool:
     return False
 
 
-def user_cache() -> Path:
-    """Return giveway's folder in the user's cache, which may not exist or not be writable."""
-    from platformdirs import user_cache_path
-
-    return user_cache_path("giveway", appauthor=False)
-
-
 def keep_kernels() -> None:
     """Let numba keep giveway's kernels in the folder of ``_kernels``, even if it is imported first.
 

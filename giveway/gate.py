@@ -18,7 +18,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from giveway._environment import user_cache
+from giveway._cache_folder import user_cache
 from giveway.errors import ResultsError
 
 LARGEST_TEXT: Final = 64 * 2**20

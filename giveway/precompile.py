@@ -11,19 +11,17 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from llvmlite.binding import get_host_cpu_name
 from rich.console import Console
 
 from controller import LongitudinalModel, Mpc, MpcParameters
 from controller.kernels import branch_off
-from giveway._kernels.cache import FOLDERS, kernel_cache
+from giveway._kernels.cache import FOLDERS, MARKERS, kernel_cache, marker
 from giveway.processes.child import die_with
 from giveway.processes.interpreter import command
 from giveway.processes.processors import processors
 from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
 from pedestrian_model.vci.model import THREADS_FROM
 
-_MARKER = "compiled-for-"
 _KEPT = 30 * 86400.0  # [s] time since the last run after which old kernels are removed
 _MESSAGE = "Compiling the numerical kernels (once after installation, about a minute) ..."
 _MESSAGE_THREADS = "Compiling the kernels of several threads (once, some ten seconds) ..."
@@ -43,7 +41,6 @@ _STREET: Final[dict[str, Any]] = {
 }
 # In this order two processes rarely compile the same: one compiles the crowd, and the search that
 # predicts it; the other compiles the vehicle, its plans, metrics and the other controllers.
-# in one; the vehicle, its plans, what is measured and the other controllers in the other.
 _WALKS: Final[tuple[dict[str, Any], ...]] = (
     {"time_limit": 0.2, "crowd": _PEOPLE, "ego": {"none": True}},
     {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "mpc-paper"},
@@ -72,33 +69,28 @@ def compile_kernels_once(console: Console | None = None, *, threads: int = 1) ->
         console: Console for the message, or None to print nothing.
         threads: Number of threads that step the crowd; several threads need further kernels.
     """
-    marker = f"{_MARKER}{get_host_cpu_name()}"
-    _once(marker, _MESSAGE, _compile_all, console)
+    _once(marker(), _MESSAGE, _compile_all, console)
     if threads > 1:
-        _once(f"threads-{marker}", _MESSAGE_THREADS, _step_on_threads, console)
+        _once(f"threads-{marker()}", _MESSAGE_THREADS, _step_on_threads, console)
 
 
 def _once(
     name: str, message: str, compile_them: Callable[[], None], console: Console | None
 ) -> None:
-    """Compile unless the marker ``name`` exists, and leave the marker."""
-    marker = kernel_cache() / name
-    if marker.exists():
+    """Compile unless a file ``name`` says that it has been done; leave this file."""
+    mark = kernel_cache() / name
+    if mark.exists():
         with contextlib.suppress(OSError):
-            marker.touch()  # the kernels are still in use
+            mark.touch()  # the kernels are still in use
         return
     with contextlib.nullcontext() if console is None else console.status(message):
         if console is not None and not console.is_terminal:
             console.print(message)
         with _rarely_collected():
             compile_them()
-    try:
-        marker.parent.mkdir(parents=True, exist_ok=True)
-        marker.touch()
-        forget_old_kernels(marker.parent)
-    except OSError:
-        # without a writable cache, kernels are compiled in every process, which is slow but correct
-        return
+    with contextlib.suppress(OSError):
+        mark.touch()
+        forget_old_kernels(mark.parent)
 
 
 def forget_old_kernels(folder: Path) -> None:
@@ -108,7 +100,7 @@ def forget_old_kernels(folder: Path) -> None:
         folder: Folder of the present kernels, beside those of other versions.
     """
     for other in folder.parent.glob(FOLDERS):
-        used = [file.stat().st_mtime for file in (other, *other.glob(f"{_MARKER}*"))]
+        used = [file.stat().st_mtime for file in (other, *other.glob(f"{MARKERS}*"))]
         if other != folder and time.time() - max(used) > _KEPT:
             shutil.rmtree(other, ignore_errors=True)
 

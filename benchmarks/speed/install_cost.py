@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[2]
 USED_FOR = {
     "cmaes": "the search of giveway calibrate",
     "contourpy": "contours of the vehicle's influence; comes with matplotlib",
-    "filelock": "one process at a time compiles, or writes a study",
+    "filelock": "one process at a time writes a study",
     "fmpy": "calls vehicle FMUs",
     "jinja2": "pages of replays and reports",
     "libsumo": "SUMO, within the process",

@@ -2,40 +2,33 @@
 
 Numba's own cache knows a kernel by the path of its file, and checks only this file. It would
 compile again for every environment, and load stale code where a kernel that is inlined into another
-has changed. Our cache is one folder for each content of all kernels. It is in the user's cache and
-not in the package folder, which may be read-only.
+has changed; and it loads damaged files, and others' files. Our cache is one folder for each content
+of all kernels. It is in the user's cache and not in the package folder, which may be read-only.
 """
 
 import functools
 import hashlib
 import os
+import pickle
 import re
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
 import llvmlite
 import numba
+from llvmlite.binding import get_host_cpu_name
 from numba.core import caching, environment
 from numba.core.caching import UserProvidedCacheLocator
 from numba.core.runtime.nrt import rtsys
+from numba.core.serialize import dumps
 
-from giveway._environment import user_cache
-
-LINKED = numba.version_info.short in {(0, 68)}
-"""Whether numba is of a version with which ``compiler`` and ``linking`` were tried.
-
-They save 40 % of the processor time of the first start: 36 s instead of 60 s, measured with an
-empty cache on two cores with numba 0.68; ``linking`` alone comes to 45 s. Any other version
-compiles as ever, and the compiled code is the same.
-"""
-if LINKED:
-    import giveway._kernels.compiler
-    import giveway._kernels.linking  # noqa: F401 - what is compiled is linked as it says
+from giveway._cache_folder import CHOICE, fresh_folder, objection, remark, user_cache
+from giveway._kernels import kept_code
+from giveway._kernels.kept_code import SUFFIX
 
 FOLDERS = "kernels-*"
-_LOCK = "saving.lock"
+MARKERS = "compiled-for-"
 _HOUSE = Path(__file__).resolve().parents[2]
 _OF_KERNELS = ("controller", "pedestrian_model")  # rooms whose constants go into kernels, too
 _KERNEL = re.compile(rb"^@(?:kernel|unlocked|inner|inlined)\b|^def kernel\b", re.MULTILINE)
@@ -47,7 +40,7 @@ def kernel_digest() -> str:
 
     The CPU is not part of it: numba checks that itself.
     """
-    compiler = (*sys.version_info[:2], numba.__version__, llvmlite.__version__)
+    compiler = (*sys.version_info[:2], numba.__version__, llvmlite.__version__, SUFFIX)
     digest = hashlib.sha256(repr(compiler).encode())
     for room in (*_OF_KERNELS, "giveway"):
         for path in sorted((_HOUSE / room).rglob("*.py")):
@@ -57,23 +50,43 @@ def kernel_digest() -> str:
     return digest.hexdigest()[:12]
 
 
-@functools.cache
 def kernel_cache() -> Path:
-    """The folder of the present kernels.
+    """Return the folder of the present kernels."""
+    return kernel_place()[0]
 
-    It lies in ``NUMBA_CACHE_DIR`` if the user has set it, else in the user's cache, and if that
-    cannot be written, in the folder for temporary files.
+
+@functools.cache
+def kernel_place() -> tuple[Path, str]:
+    """Return the folder of the present kernels, and why it is a fresh one, or "".
+
+    It lies in ``NUMBA_CACHE_DIR`` if the user has set it, else in the user's cache, and if neither
+    is safe and can be written, in a fresh folder. A folder that cannot be written serves, too, if
+    it holds all kernels for this processor.
     """
     name = FOLDERS.replace("*", kernel_digest())
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    chosen = os.environ.get(CHOICE)
     if chosen:
-        return Path(chosen) / name
-    folder = user_cache() / name
-    existing = next(parent for parent in (folder, *folder.parents) if parent.exists())
-    if os.access(existing, os.W_OK | os.X_OK):
-        return folder
-    user = os.getuid() if hasattr(os, "getuid") else "user"
-    return Path(tempfile.gettempdir()) / f"giveway-{user}" / name
+        why = _why_not(Path(chosen) / name, named=True)
+        if not why:
+            return Path(chosen) / name, ""
+        remark(f"{CHOICE}={chosen} is not used: {why}")
+    why = _why_not(user_cache() / name)
+    folder = (fresh_folder(why) if why else user_cache()) / name
+    folder.mkdir(exist_ok=True)
+    return folder, why
+
+
+def _why_not(folder: Path, *, named: bool = False) -> str:
+    """Return why a folder does not serve for kernels, or ""."""
+    why = objection(folder, named=named)
+    if why or os.access(folder, os.W_OK) or (folder / marker()).exists():
+        return why
+    return f"{folder} cannot be written"
+
+
+def marker() -> str:
+    """Return the name of the file that says that all kernels are there, for this processor."""
+    return f"{MARKERS}{get_host_cpu_name()}"
 
 
 class KernelLocator(UserProvidedCacheLocator):
@@ -81,11 +94,11 @@ class KernelLocator(UserProvidedCacheLocator):
 
     def __init__(self, py_func: Any, py_file: str) -> None:
         self._lineno = py_func.__code__.co_firstlineno
-        self._cache_path = str(kernel_cache() / ".".join(_place(py_file).parts[:-1]))
+        self._cache_path = str(kernel_cache())
+        self.package = ".".join(_place(py_file).parts[:-1])
 
     def ensure_cache_path(self) -> None:
-        """Make the folder; whether it can be written is tried once for all kernels in it."""
-        _ensure_writable(self._cache_path)
+        """Do nothing; :func:`kernel_cache` has made the folder."""
 
     def get_source_stamp(self) -> str:
         """Return the version of the compiled code: that of all kernels, since some are inlined."""
@@ -94,20 +107,8 @@ class KernelLocator(UserProvidedCacheLocator):
     @classmethod
     def from_function(cls, py_func: object, py_file: str) -> "KernelLocator | None":
         """Return the locator of a kernel, or None for a function of another package."""
-        if _place(py_file).parts[0] not in (*_OF_KERNELS, "giveway"):
-            return None
-        locator = cls(py_func, py_file)
-        try:
-            locator.ensure_cache_path()
-        except OSError:
-            return None
-        return locator
-
-
-@functools.cache
-def _ensure_writable(folder: str) -> None:
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    tempfile.TemporaryFile(dir=folder).close()
+        ours = _place(py_file).parts[0] in (*_OF_KERNELS, "giveway")
+        return cls(py_func, py_file) if ours else None
 
 
 @functools.cache
@@ -118,7 +119,10 @@ def _place(py_file: str) -> Path:
 
 
 class _Kernels(caching.FunctionCache):
-    """The changes of numba's cache for our kernels; they are put into numba's class below."""
+    """The changes of numba's cache for our kernels; they are put into numba's class below.
+
+    A kernel has one file for each signature, whose name says all that its code depends on.
+    """
 
     load_as_ever: Any = caching.FunctionCache.load_overload
     save_as_ever: Any = caching.FunctionCache.save_overload
@@ -132,22 +136,27 @@ class _Kernels(caching.FunctionCache):
         """
         if not isinstance(self._impl.locator, KernelLocator):
             return _Kernels.load_as_ever(self, signature, target_context)
+        code = kept_code.read(_file(self, signature, target_context.codegen()))
+        if not code:
+            return None
         rtsys.initialize(target_context)
-        with self._guard_against_spurious_io_errors():
-            return self._load_overload(signature, target_context)  # type: ignore[no-untyped-call]
+        return self._impl.rebuild(target_context, pickle.loads(code))
 
     def save_overload(self, signature: Any, data: Any) -> None:
-        """Save one at a time: numba reads the list of a kernel's signatures and writes it.
-
-        Two processes at once might else give both signatures the same file.
-        """
+        """Save machine code; another process may do so at the same time."""
         if not isinstance(self._impl.locator, KernelLocator):
             _Kernels.save_as_ever(self, signature, data)
-            return
-        from filelock import FileLock
+        elif self._impl.check_cachable(data):
+            code = dumps(self._impl.reduce(data))  # type: ignore[no-untyped-call]
+            kept_code.write(_file(self, signature, data.codegen), code)
 
-        with FileLock(Path(self.cache_path) / _LOCK):
-            _Kernels.save_as_ever(self, signature, data)
+
+def _file(cache: Any, signature: Any, codegen: Any) -> Path:
+    """Return the file of a kernel for a signature and a processor."""
+    depends = repr(cache._index_key(signature, codegen)).encode()
+    digest = hashlib.sha256(depends).hexdigest()[:16]
+    name = f"{cache._impl.locator.package}.{cache._impl.filename_base}.{digest}"
+    return kernel_cache() / f"{name}{SUFFIX}"
 
 
 _rebuild_as_ever: Any = environment._rebuild_env
@@ -173,7 +182,7 @@ def _environment(module: str, constants: list[Any], name: str) -> Any:
 
 
 _numbas: Any = caching.FunctionCache
-if hasattr(_numbas, "_load_overload") and hasattr(_numbas, "_guard_against_spurious_io_errors"):
+if hasattr(_numbas, "_index_key"):
     _numbas.load_overload = _Kernels.load_overload
     _numbas.save_overload = _Kernels.save_overload
     environment._rebuild_env = _environment

@@ -41,6 +41,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     add_validation(app)
     app.add("scenarios", _scenarios)
     app.add("doctor", _doctor)
+    app.add("precompile", _precompile)
     app.add("recover", _recover)
     app.add("config", _with_flags(_config, command))
     app.add("schema", _schema)
@@ -189,6 +190,18 @@ def _doctor(
     from giveway.cli.commands.doctor_command import doctor_command
 
     raise typer.Exit(doctor_command(scenario, as_json=as_json))
+
+
+def _precompile(
+    into: Annotated[
+        Path | None,
+        typer.Option(help="Folder for them, which NUMBA_CACHE_DIR names later [user's cache]."),
+    ] = None,
+) -> None:
+    """Compile the numerical kernels before the first run, as in an image or for a cluster."""
+    from giveway.cli.commands.precompile_command import precompile_command
+
+    precompile_command(into)
 
 
 def _recover(

@@ -39,8 +39,8 @@ def examine_environment(results: Path = Path("results")) -> list[Finding]:
         _packages,
         _sumo,
         _vehicle,
+        _kernels,  # before any is loaded, which mends damaged files
         _solver,
-        _kernels,
         lambda: _folder("temporary folder", Path(tempfile.gettempdir()), "set TMPDIR"),
         lambda: _folder("results folder", results.absolute(), "name another with --out"),
         _terminal,
@@ -156,10 +156,11 @@ def _solver() -> list[Finding]:
 
 
 def _kernels() -> list[Finding]:
-    """Check that numba compiles, and can keep the compiled code."""
+    """Check that numba compiles, and that compiled code is kept and is undamaged."""
     import numba
 
-    from giveway._kernels.cache import kernel_cache
+    from giveway._kernels.cache import kernel_place
+    from giveway._kernels.kept_code import damaged
 
     try:
         if cast("Any", numba.njit)(_one_more)(1) != 2:
@@ -167,15 +168,14 @@ def _kernels() -> list[Finding]:
     except Exception as problem:  # an error of numba, llvmlite or the operating system
         reason = f"does not compile ({problem})"
         return [error("numba", reason, "reinstall numba and llvmlite")]
-    folder = kernel_cache()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as problem:
-        text = f"kernels cannot be kept in {folder} ({problem.strerror})"
-        remedy = "every process compiles for half a minute; set NUMBA_CACHE_DIR to another folder"
-        return [warning("numba", text, remedy)]
+    folder, why = kernel_place()
+    if why:
+        remedy = "every process compiles for half a minute; set NUMBA_CACHE_DIR to your own folder"
+        return [warning("numba", f"{why}, so that no kernels are kept", remedy)]
+    names = [file.name for file in damaged(folder)]
+    if names:
+        text = f"{len(names)} damaged files of kernels in {folder}, like {names[0]}"
+        return [warning("numba", text, "they are compiled anew when needed; look at the disk")]
     return [ok("numba", f"{numba.__version__} compiles; kernels in {folder}")]
 
 

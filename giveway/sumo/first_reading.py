@@ -17,7 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from giveway._environment import user_cache
+from giveway._cache_folder import cache_folder, forget_oldest
 from giveway.errors import SumoError
 from giveway.processes import interpreter
 from giveway.processes.causes import cause_of_end
@@ -54,7 +54,7 @@ def read_first(
     if is_supervised() or any(map(_ADDRESS.fullmatch, command)):
         return  # a listener at an output address would take the child for the run
     digest = digest_of(config_file, files)
-    marker = user_cache() / "read_by_sumo" / digest
+    marker = cache_folder() / "read_by_sumo" / digest
     if digest in _known or marker.exists():
         return
     at_once = [] if _ROUTE_STEPS in command else [_ROUTE_STEPS, "0"]
@@ -64,6 +64,7 @@ def read_first(
     with suppress(OSError):
         marker.parent.mkdir(parents=True, exist_ok=True)
         marker.touch()
+        forget_oldest(marker.parent)
 
 
 def _try(config_file: Path, command: Sequence[str], patience: float) -> None:

@@ -3,7 +3,7 @@
 A crash or a hang of that process costs its numbers only. The scenario runs as its author left it,
 and its outputs go to a scratch folder. A drive is kept in the user's cache under a digest of all
 that it depends on: the scenario's files, SUMO's command and version, the vehicle and its trip. The
-child runs :func:`main`.
+newest thousand are kept. The child runs :func:`main`.
 """
 
 import hashlib
@@ -20,7 +20,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway._environment import user_cache
+from giveway._cache_folder import cache_folder, forget_oldest
 from giveway.processes import interpreter
 from giveway.processes.child import die_with
 from giveway.scenario_files import ScenarioFiles, StartOptions, prepare_start
@@ -119,7 +119,7 @@ def plain_drives(
         depends = asked.replace(str(place), "") + types + _VERSION
         key = hashlib.sha256(depends.encode())
         key.update(digest_of(scenario.config_file, start.read).encode())
-        kept = user_cache() / "plain_drives" / key.hexdigest()
+        kept = cache_folder() / "plain_drives" / key.hexdigest()
         found = _read(kept)
         if found is None:
             _let_drive([asked, str(place), os.getpid()], patience)
@@ -140,6 +140,7 @@ def _keep(made: Path, kept: Path) -> None:
         for name in _FILES:
             (beside / name).write_bytes((made / name).read_bytes())
         beside.replace(kept)
+    forget_oldest(kept.parent)
 
 
 def _let_drive(arguments: Sequence[str | float], patience: float) -> None:

@@ -37,7 +37,7 @@ def deadly(junction: Path) -> Path:
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty one."""
-    monkeypatch.setattr(first_reading, "user_cache", lambda: tmp_path / "cache")
+    monkeypatch.setattr(first_reading, "cache_folder", lambda: tmp_path / "cache")
     monkeypatch.setattr(first_reading, "_known", set())
     return tmp_path / "cache"
 

@@ -22,7 +22,7 @@ CAR = Trip("westbound.0")
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache."""
-    monkeypatch.setattr(plain_drive, "user_cache", lambda: tmp_path / "cache")
+    monkeypatch.setattr(plain_drive, "cache_folder", lambda: tmp_path / "cache")
     return tmp_path / "cache" / "plain_drives"
 
 
