@@ -5,6 +5,7 @@ Every message is one line: the file, key or id, the value, what was expected, an
 """
 
 import difflib
+import errno
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
@@ -80,6 +81,23 @@ class ResultsError(GivewayError):
     """The results cannot be written, or would replace existing files."""
 
     exit_code = 2
+
+
+_REMEDIES: Final = (
+    ("free the disk", ("ENOSPC", "EDQUOT", "EFBIG")),
+    ("the folder has gone: make it again, or name another one", ("ENOENT", "ENOTDIR", "ESTALE")),
+    ("name a folder in which you may write", ("EACCES", "EPERM", "EROFS")),
+    ("choose shorter names", ("ENAMETOOLONG",)),
+    ("raise the limit of open files (ulimit -n)", ("EMFILE", "ENFILE")),
+)
+"""What a user can do about a file that cannot be written, by the names of the system's errors."""
+
+
+def remedy(error: OSError) -> str:
+    """Return what the user can do about a file that cannot be written, in words."""
+    name = errno.errorcode.get(error.errno or 0, "")
+    named = (words for words, names in _REMEDIES if name in names)
+    return next(named, "name a folder on another disk")
 
 
 @contextmanager

@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.errors import remedy
 from giveway.gate import signed
 from giveway.journal.stored_rows import Rows, StoredRows
 from giveway.processes.heartbeat import Heartbeat
@@ -260,7 +261,7 @@ class Journal:
     def _give_up(self, error: OSError) -> None:
         self.failure = (
             f"{error.filename or self._folder}: the journal cannot be written ({error.strerror}); "
-            "the run goes on, but a crash would lose its rows; free the disk or set TMPDIR"
+            f"the run goes on, but a crash would lose its rows; {remedy(error)} (TMPDIR)"
         )
         file, self._file = self._file, None
         if file is not None:

@@ -15,7 +15,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from giveway.errors import ResultsError
+from giveway.errors import ResultsError, remedy
 from giveway.gate import (
     LARGEST_TABLE,
     MAKER,
@@ -129,7 +129,7 @@ class KeptRuns:
         except OSError as error:
             raise ResultsError(
                 f"{error.filename or self._folder}: cannot be written ({error.strerror}); "
-                "free the disk"
+                f"{remedy(error)}"
             ) from error
 
     def _drives(self, run: str) -> Path:

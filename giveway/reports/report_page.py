@@ -14,7 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from giveway.config.files.layers import options
-from giveway.errors import ResultsError
+from giveway.errors import ResultsError, remedy
 from giveway.figures.style import house_style, save_figure
 from giveway.gate import require_no_link, write_whole
 from giveway.metrics.ego_fields import EGO_FIELDS
@@ -131,7 +131,7 @@ def write_report(
         write_whole(target, html.encode("utf-8"))
     except OSError as error:
         raise ResultsError(
-            f"{error.filename or target}: cannot be written ({error.strerror}); free the disk"
+            f"{error.filename or target}: cannot be written ({error.strerror}); {remedy(error)}"
         ) from error
     return target
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from giveway.errors import ResultsError
+from giveway.errors import ResultsError, remedy
 from giveway.gate import MANIFEST, read_bytes
 from giveway.processes.locks import FolderInUseError, locked
 from giveway.results.json_text import DECIMALS, json_text
@@ -205,7 +205,7 @@ def write_results(
         manifest = json.loads(json_text(result.manifest))
         _json(sealed(manifest, folder, contents))(path)
     except OSError as error:
-        message = f"{path}: cannot be written ({error.strerror}); free the disk"
+        message = f"{path}: cannot be written ({error.strerror}); {remedy(error)}"
         _leave_incomplete(path, result.manifest | {"incomplete": message})
         raise ResultsError(message) from error
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from giveway.errors import ResultsError
+from giveway.errors import ResultsError, remedy
 from giveway.figures import (
     crowd_view_figure,
     influence_figure,
@@ -40,7 +40,7 @@ def write_pictures(result: RunTables, folder: Path) -> None:
         _write_pictures(result, folder)
     except OSError as error:
         raise ResultsError(
-            f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
+            f"{folder}: a picture cannot be written ({error.strerror}); {remedy(error)}"
         ) from error
 
 

@@ -1,11 +1,16 @@
 """The words of giveway's errors."""
 
+import errno
+import os
+from pathlib import Path
 from typing import Annotated
 
 import pytest
 from pydantic import BaseModel, Field, ValidationError
 
-from giveway.errors import in_words
+import giveway
+from giveway.errors import ResultsError, in_words, remedy
+from giveway.results.folder import write_results
 
 
 class Options(BaseModel):
@@ -33,3 +38,28 @@ def test_a_refused_value_is_explained_in_plain_words(values: dict, words: str) -
     with pytest.raises(ValidationError) as refusal:
         Options(**values)
     assert in_words(refusal.value.errors()[0]) == words
+
+
+@pytest.mark.parametrize(
+    ("number", "expected"),
+    [
+        (errno.ENOSPC, "free the disk"),
+        (errno.ENOENT, "the folder has gone"),
+        (errno.EROFS, "in which you may write"),
+        (errno.ENAMETOOLONG, "shorter names"),
+        (errno.EIO, "another disk"),
+    ],
+)
+def test_only_a_full_disk_is_to_be_freed(number: int, expected: str) -> None:
+    told = remedy(OSError(number, os.strerror(number)))
+    assert expected in told
+    assert ("free" in told) == (number == errno.ENOSPC)
+
+
+def test_a_run_whose_folder_is_removed_says_so(tmp_path: Path) -> None:
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    result = giveway.run({"scenario": "encounter", "time_limit": 1.0})
+    folder.rmdir()
+    with pytest.raises(ResultsError, match="the folder has gone"):
+        write_results(result, folder)

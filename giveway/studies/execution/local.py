@@ -4,6 +4,7 @@ import queue
 from collections.abc import Iterable, Iterator
 from typing import Final, Self
 
+from giveway.errors import remedy
 from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import Limits
 from giveway.studies.execution.pool import Pool
@@ -75,7 +76,7 @@ class LocalExecutor:
                 self._pool = Pool(self._jobs, self._limits)
             except OSError as error:
                 raise WorkerError(
-                    f"{error}: the workers' temporary folder; free the disk or set TMPDIR"
+                    f"{error}: the workers' temporary folder; {remedy(error)} (TMPDIR)"
                 ) from error
             except RuntimeError as error:  # no more threads can be started
                 raise WorkerError(

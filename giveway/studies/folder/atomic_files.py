@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from giveway.errors import ResultsError
+from giveway.errors import ResultsError, remedy
 from giveway.gate import UNFINISHED, write_whole
 
 
@@ -26,7 +26,7 @@ def write_atomically(
     except OSError as error:
         raise ResultsError(
             f"{path}: cannot be written ({error.strerror}); every run finished before is kept: "
-            "free the disk and go on with --resume"
+            f"{remedy(error)}, and go on with --resume"
         ) from error
 
 
