@@ -1,7 +1,8 @@
 """The folder in which giveway keeps what it has made: code and numbers that it trusts later.
 
 A folder is used only if it and its parents belong to the user or root, and nobody else may write
-there. Others may write in a sticky folder, as /tmp is, if the next one keeps them out.
+there. Others may write in a sticky folder on the way, as /tmp is: they cannot replace what belongs
+to somebody else.
 """
 
 import atexit
@@ -30,10 +31,10 @@ def objection(folder: Path, *, named: bool = False) -> str:
         named: True if the user has named it; it may then belong to another user.
     """
     folder = folder.absolute().resolve()
-    private = sticky = False
+    private = False
     for place in (*reversed(folder.parents), folder):
         try:
-            place.mkdir(0o755 if named and not sticky else 0o700, exist_ok=True)
+            place.mkdir(0o755 if named else 0o700, exist_ok=True)
             about = place.stat()
         except OSError as error:
             return f"{place} cannot be made ({error.strerror})"
@@ -42,10 +43,8 @@ def objection(folder: Path, *, named: bool = False) -> str:
         if about.st_uid not in {0, os.getuid()} and not named:
             return f"{place} belongs to another user"
         private = private or not about.st_mode & (stat.S_IRWXG | stat.S_IRWXO)
-        if sticky and not private:
-            return f"others may write in {place.parent}"
-        sticky = bool(about.st_mode & (stat.S_IWGRP | stat.S_IWOTH)) and not private
-        if sticky and (place == folder or not about.st_mode & stat.S_ISVTX):
+        shared = about.st_mode & (stat.S_IWGRP | stat.S_IWOTH) and not private
+        if shared and (place == folder or not about.st_mode & stat.S_ISVTX):
             return f"others may write in {place}"
     return ""
 

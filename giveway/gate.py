@@ -25,6 +25,8 @@ LARGEST_TEXT: Final = 64 * 2**20
 """Largest size [bytes] of a JSON or TOML file; the scene of a large city has a tenth."""
 LARGEST_TABLE: Final = 8 * 2**30
 """Largest size [bytes] of a table; an hour with a thousand people has a third."""
+LARGEST_JOURNAL: Final = 2**38
+"""Largest size [bytes] of a journal's rows, which are read in pieces; such an hour has 3.5 GB."""
 DEEPEST: Final = 20
 """Levels of tables and lists in one another; files of giveway have less than half as many."""
 UNFINISHED: Final = ".{}.new"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from giveway.errors import ResultsError
-from giveway.gate import LARGEST_TABLE, LARGEST_TEXT, opened, read_json, require_no_link
+from giveway.gate import LARGEST_JOURNAL, LARGEST_TEXT, opened, read_json, require_no_link
 from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind, row_type
 from giveway.journal.stored_rows import Rows, StoredRows
 from giveway.processes.heartbeat import HEARTBEAT_FILE, Heartbeat, Pulse
@@ -52,7 +52,7 @@ def read_journal(folder: Path) -> JournalContents:
     pulse = Heartbeat(folder).read()
     if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)
-    with opened(rows_file, largest=LARGEST_TABLE) as stream:
+    with opened(rows_file, largest=LARGEST_JOURNAL) as stream:
         # the process may have died while writing this
         begun = stream.read(len(MAGIC)).rstrip(b"\0")
         if not MAGIC.startswith(begun):

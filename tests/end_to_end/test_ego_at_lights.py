@@ -6,7 +6,6 @@ from contextlib import ExitStack
 from typing import Literal
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -108,20 +107,3 @@ def test_an_ego_stops_before_the_line_or_passes_it(
     at_red = [front <= line for front, _, colour in rows if colour == "r"]
     settled = at_red[every + round(TOO_LATE / STEP) :]
     assert settled == [settled[0]] * len(settled)  # nobody crosses the line any more
-
-
-@pytest.mark.parametrize("distance", [132.5, 135.0, 140.0])
-def test_an_ego_with_the_signal_plan_does_not_stop_and_is_faster(distance: float) -> None:
-    config = EgoRunConfig.model_validate(
-        {"ego": {"initial_speed": 8.0}, "regulation": {"reference_speed": 8.0}}
-    )
-    end = DEPARTURE + distance
-    stood, speeds = {}, {}
-    for told in (False, True):
-        rows = drive(config, end, 1.0, 20, told)
-        stood[told] = STEP * sum(speed < CREEPING for _, speed, _ in rows)
-        speeds[told] = rows[-1][1]
-        assert rows[-1][0] <= end
-    assert stood[True] == 0.0
-    assert stood[False] > 3.0
-    assert speeds[True] >= speeds[False] + 1.0  # it need not set off when the light is green

@@ -151,7 +151,8 @@ def _check_origin(module: ModuleType, function: FunctionType) -> None:
 
 
 def said(script: str, home: Path, **more: str) -> str:
-    kept = {k: v for k, v in os.environ.items() if k not in {"NUMBA_CACHE_DIR", "XDG_CACHE_HOME"}}
+    ours = {"NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "GIVEWAY_CACHE"}
+    kept = {k: v for k, v in os.environ.items() if k not in ours}
     done = subprocess.run(
         [sys.executable, "-c", f"import os, sys; {script}"],
         env={**kept, "HOME": str(home), **more},

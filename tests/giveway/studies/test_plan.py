@@ -22,11 +22,11 @@ def test_cells_with_the_same_settings_share_their_records(study_of, tmp_path):
         crowd.pedestrians = 1
         [factors.vehicle]
         "default" = {}
-        "as by default" = { vehicle = { mass = 1000.0 } }
+        "as by default" = { regulation = { safe_distance = 1000.0 } }
     """
     from giveway.config import RunConfig
 
-    text = text.replace("1000.0", str(RunConfig().vehicle.mass))
+    text = text.replace("1000.0", str(RunConfig().regulation.safe_distance))
     states = []
     study = study_of(text, tmp_path / "twins", states.append)
     assert list(study.runs["run"]) == [f"c{c}-s{s}" for c in (1, 2) for s in (1, 2, 3)]
