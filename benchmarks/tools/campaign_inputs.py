@@ -39,7 +39,9 @@ def booleans(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, s
         "preset": ["run", "shared_space", *_SHORT, "--crowd-preset"],
     }
     text = drawn.choice(texts[what])
-    places = [m for m in _NUMBER.finditer(text) if "#" not in _before(text, m.start())]
+    befores = [(m, _before(text, m.start())) for m in _NUMBER.finditer(text)]
+    # A flag of the command replaces the file's time limit, which is then not looked at
+    places = [m for m, before in befores if not re.search("#|time_limit", before)]
     place = drawn.choice(places)
     value = drawn.choice(("true", "false"))
     (folder / f"{what}.toml").write_text(text[: place.start()] + value + text[place.end() :])
