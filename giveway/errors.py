@@ -90,7 +90,7 @@ _REMEDIES: Final = (
     ("choose shorter names", ("ENAMETOOLONG",)),
     ("raise the limit of open files (ulimit -n)", ("EMFILE", "ENFILE")),
 )
-"""What a user can do about a file that cannot be written, by the names of the system's errors."""
+"""The remedies for a file that cannot be written, by the names of the system's errors."""
 
 
 def remedy(error: OSError) -> str:

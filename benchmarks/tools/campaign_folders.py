@@ -41,7 +41,7 @@ _BOMBS: Final = (
 
 @dataclass(frozen=True)
 class Expected:
-    """What has to hold for a case, beside civility.
+    """The expectation of a case, beside civility.
 
     Attributes:
         refused: text of the line by which the command has to refuse; "": it need not.
