@@ -41,6 +41,7 @@ from controller.planning import (
 from controller.plug_in import Acceleration, Answer, Defaults, Force, PlugIn, Setup, Speed
 from controller.protocol import Controller, Decision
 from controller.qp.least_squares import Outcome
+from controller.safety.late_speed import LateSpeed
 from controller.safety.layer import SafeForce, SafetyLayer, SafetyParameters
 from controller.safety.vehicle_layer import VehicleAhead, VehicleLayer, VehicleLimits
 from controller.safety.worst_motion import PeopleName, WorstMotion, worst_motion
@@ -62,6 +63,7 @@ __all__ = [
     "Evaluation",
     "Force",
     "Foresight",
+    "LateSpeed",
     "Limits",
     "LongitudinalModel",
     "Manoeuvre",

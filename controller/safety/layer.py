@@ -43,6 +43,25 @@ def past_commands(dead_time: float, time_step: float) -> Array:
     return np.zeros(1 + max(ceil(dead_time / time_step - WHOLE_STEPS), 0))
 
 
+def motion_of(model: LongitudinalModel, force_limit: float, rate: float = inf) -> EgoMotion:
+    """The limits of a vehicle that integrates its model by forward Euler or exactly.
+
+    Args:
+        model: Model of the motion.
+        force_limit: Largest force [N].
+        rate: Largest change of force [N per step].
+    """
+    z = model.friction * model.time_step / model.mass
+    return EgoMotion(
+        slowest_decay=exp(-z),
+        fastest_decay=max(0.0, model.decay),
+        gain=model.speed_per_force,
+        braking_gain=model.speed_per_force * ((1.0 - exp(-z)) / z if z > 0.0 else 1.0),
+        force_limit=force_limit,
+        force_rate_limit=rate,
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class SafetyParameters:
     """The limits of people and of the ego's body and brake.
@@ -112,17 +131,9 @@ class SafetyLayer:
         self.model = model
         self.parameters = p = parameters
         dt = model.time_step
-        z = model.friction * dt / model.mass
         self._limits = Limits(
             time_step=dt,
-            ego=EgoMotion(
-                slowest_decay=exp(-z),
-                fastest_decay=max(0.0, model.decay),
-                gain=model.speed_per_force,
-                braking_gain=model.speed_per_force * ((1.0 - exp(-z)) / z if z > 0.0 else 1.0),
-                force_limit=p.brake_force,
-                force_rate_limit=p.force_rate_limit,
-            ),
+            ego=motion_of(model, p.brake_force, p.force_rate_limit),
             people=Walking(
                 acceleration=p.walking_acceleration,
                 speed=p.walking_speed,
@@ -135,7 +146,7 @@ class SafetyLayer:
         )
         self._errors = np.full(0, p.position_error)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
-        self._commands, self._acting = past_commands(p.actuator.dead_time, dt), np.zeros(3)
+        self._commands, self._acting = past_commands(p.actuator.dead_time, dt), np.zeros(4)
         self.memory = (packed(self._limits), self._commands, self._boxes, self._acting)
         # Largest number of steps until full braking acts; a lag lacks no more than this delay
         drive, brake = p.actuator.drive, p.actuator.brake
@@ -168,6 +179,14 @@ class SafetyLayer:
     def reset(self) -> None:
         """Forget the forces of the past."""
         self._commands[:] = self._acting[:] = 0.0
+
+    def may_be_slower(self, by: float) -> None:
+        """Let the next speed be the largest one that the ego may have.
+
+        Args:
+            by: Speed [m/s] by which it may be slower, until another one is told.
+        """
+        self._acting[3] = by
 
     def filter(
         self,
@@ -221,7 +240,8 @@ def largest_safe_force(
         people: Positions (n, 2) [m], velocities (n, 2) [m/s], largest errors of the positions
             (n,) [m] or more, and kerbs (n, 3) or none; see :meth:`SafetyLayer.filter`.
         memory: Packed :class:`Limits`; past forces (delay + 1,) [N], the latest last, changed;
-            scratch (longest stop + 1, 9); bounds (3,) [N] of the forces that act, changed.
+            scratch (longest stop + 1, 9); bounds (3,) [N] of the forces that act, changed, and the
+            speed [m/s] by which the ego may be slower.
 
     Returns:
         Force [N]; 0 if it is the controller's, 1 if the layer acts, 2 if the layer acts although no

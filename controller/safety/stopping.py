@@ -170,7 +170,7 @@ def _stop(
     dt, delay = c.time_step, commands.shape[0] - 1
     state = acting[0], acting[1], acting[2]
     low = high = 0.0
-    slowest = fastest = speed
+    slowest, fastest = max(speed - acting[3], 0.0), speed
     _sweep(way, spacing, 0.0, 0.0, c.half_width, boxes[0])
     boxes[0, 8] = -1.0
     for j in range(boxes.shape[0] - 1):
@@ -313,7 +313,7 @@ def is_safe(
         people: Positions (n, 2), velocities (n, 2), errors (n,) or more, and kerbs (n, 3) or none.
         c: Limits of the ego's and people's motion.
         memory: Forces of the past, the rectangles, which are overwritten, and bounds of the
-            forces that act.
+            forces that act, with the speed [m/s] by which the ego may be slower.
         slack: Distance [m] added to the clearance.
     """
     position, velocity, errors, kerbs = people

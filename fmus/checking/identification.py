@@ -23,7 +23,12 @@ from fmus.checking.model_fit.measurements import (
     Measurements,
     sensor_lag,
 )
-from fmus.checking.model_fit.prediction import acting_force, position_errors, speed_errors
+from fmus.checking.model_fit.prediction import (
+    acting_force,
+    position_errors,
+    speed_errors,
+    true_speed,
+)
 from fmus.checking.model_fit.remarks import estimate_remarks, resistance_remarks, side_remarks
 from fmus.checking.model_fit.selection import identify_sides
 from fmus.checking.model_fit.side_models import HEAVIEST, poverty, side_model
@@ -184,8 +189,9 @@ def modelled(
             "force; 'giveway fmu check' shows what it does instead"
         )
     known = [side for side in sides if side is not None]
-    ahead = position_errors(validation, common.mass, common.friction, horizon)
-    one_step = speed_errors(validation, common.mass, common.friction)
+    judged = replace(validation, speed=true_speed(validation.speed, late, h))
+    ahead = position_errors(judged, common.mass, common.friction, horizon)
+    one_step = speed_errors(judged, common.mass, common.friction)
     # Without validation: also what is no vehicle at all is described, and called poor.
     model = FittedModel.model_construct(
         mass=common.mass,
@@ -201,7 +207,7 @@ def modelled(
         drive=sides[0],
         brake=sides[1],
     )
-    acting = replace(validation, force=acting_force(validation, model))
+    acting = replace(judged, force=acting_force(validation, model))
     errors = [
         position_errors(acting, model.mass, model.friction, horizon, exact=exact)
         for exact in (False, True)  # the layer's promise holds for both

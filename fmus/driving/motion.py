@@ -42,6 +42,8 @@ class Motion:
         self._limit, self._jump = limits.speed, limits.position_jump
         self._sudden = UNUSUAL * limits.acceleration
         self._guard = Guard(limits, self.names)
+        model = prepared.profile.model
+        self._sensor_lag = 0.0 if model is None else model.sensor_lag  # [s] of the speed output
         self._trusted = prepared.ours
         self._last_effective = 0.0  # [N] force under which the speed last changed
         self._origin = 0.0  # [m] run's position at which the FMU's own is 0
@@ -96,7 +98,7 @@ class Motion:
             wire = wires[place]
             self.position = wire.scale * outputs[place] + wire.shift - self._origin
         else:
-            self.position = here + 0.5 * duration * (before + speed)
+            self.position = here + self._way(before, duration)
         if rate is not None:
             wire = wires[rate]
             self.acceleration = wire.scale * outputs[rate] + wire.shift
@@ -107,6 +109,11 @@ class Motion:
         elif not isfinite(self.position + speed + self.acceleration):
             self._judge(0.0, 0.0, time)
 
+    def _way(self, before: float, duration: float) -> float:
+        """Return the distance [m] of a step by the speed, whose output may lag behind."""
+        speed = self.speed
+        return 0.5 * duration * (before + speed) + self._sensor_lag * (speed - before)
+
     def _watch(
         self, before: float, here: float, force: float, duration: float, time: float
     ) -> None:
@@ -116,7 +123,7 @@ class Motion:
             FmuOutputError: no car can move like this.
         """
         speed, position = self.speed, self.position
-        way, slack = 0.5 * duration * (before + speed), 0.5 * duration * abs(speed - before)
+        way, slack = self._way(before, duration), 0.5 * duration * abs(speed - before)
         self._judge(position - (here + way), slack, time)
         if abs(speed - before) > self._sudden * duration:
             fault, warning = self._guard.sudden(before, speed, force, duration, time)

@@ -23,6 +23,7 @@ from giveway.ego.rules.rule_set import STOPS_EARLY, RuleSet
 from giveway.ego.safeguards import Safeguards
 from giveway.ego.stop_cause import waits_for
 from giveway.ego.vehicle_ahead import VehicleNews
+from giveway.ego.vehicle_model import late_speed_of
 from giveway.ego.waiting_ego import WaitingEgo
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
@@ -59,6 +60,8 @@ class Ego:
     Attributes:
         front: Station of the front bumper [m].
         pose: Centre of the front bumper [m] and heading of the body [rad].
+        speed: Speed [m/s], estimated if the FMU's speed output lags behind its motion.
+        speeds: Least and largest speed [m/s] that it may have.
         systems: SUMO's ids of the signal systems whose states it needs.
         beside: Marks of the last vehicles, see
             :func:`~giveway.ego.perception.leader.vehicles_in_front`.
@@ -82,6 +85,7 @@ class Ego:
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal, self.vehicle = goal, waiting.vehicle
+        self._late = None if waiting.recorded else late_speed_of(config, time_step)
         gap = config.own(PaperPidOptions)
         self.corridor = Corridor(
             path,
@@ -139,7 +143,7 @@ class Ego:
         """
         if self._kerbs is not None:
             self._kerbs.update(told.signals)
-        self.rules.update(time, self.front, self.vehicle.speed, told)
+        self.rules.update(time, self.front, self.speed, told)
 
     def check_pose(self, step: int) -> Pose:
         """Return the pose if it is finite; SUMO hangs if it is given one that is not.
@@ -174,7 +178,7 @@ class Ego:
             person_ids: Id of each pedestrian of the truth, (n,).
         """
         own, seen, front = self._own, self._seen, self.front
-        own.pose, own.speed, own.row = self.pose, self.vehicle.speed, row
+        own.pose, own.speed, own.row = self.pose, self.speed, row
         seen.poses, seen.row, seen.to_clear = poses, row, self.rules.keep_clear_distance(front)
         self._people.look(seen, truth, person_ids, surroundings, own, front)
         self._heed(seen, front, own.speed)
@@ -228,7 +232,8 @@ class Ego:
                 "run's config.toml"
             )
         asked = decision.force
-        decision = self._safeguards.decide(decision, self.front, self.vehicle.speed, seen)
+        least, most = self.speeds
+        decision = self._safeguards.decide(decision, self.front, most, seen, most - least)
         if decision.force != asked:
             controller.applied(decision.force)
         self._eases_off = decision.force > self._force
@@ -241,7 +246,7 @@ class Ego:
         origin, stop = front + self._origin, seen.stop + self._origin
         stop += self.config.regulation.safe_distance
         following = self._following
-        limit = following.speed_limit(leader, front, seen.to_clear, vehicle.speed, seen.followed)
+        limit = following.speed_limit(leader, front, seen.to_clear, self.speed, seen.followed)
         early = STOPS_EARLY if self._controller.foresees else 0.0
         limit = min(rules.speed, limit, following.stop_limit(seen.stop - early, front))
         vehicle_ahead = following.leader_station(leader, front, seen.to_clear)
@@ -251,7 +256,7 @@ class Ego:
         shown, percept, numbers = self._observation, seen.percept, seen.percept.person_ids
         shown.time = time
         ego, ahead, limits, people = shown.ego, shown.ahead, shown.limits, shown.pedestrians
-        ego.position, ego.speed = origin, vehicle.speed
+        ego.position, ego.speed = origin, self.speed
         ego.acceleration, ego.force = vehicle.acceleration, self._force
         ahead.gap = min(seen.pedestrian, vehicle_ahead, stop) - origin
         ahead.obstacle_positions, ahead.to_clear = seen.ahead, seen.to_clear
@@ -271,16 +276,23 @@ class Ego:
 
     def advance(self) -> None:
         """Step the FMU with the force decided on."""
+        if self._late is not None:
+            self._late.applied(self._force)
         if self._slope is None:
             self.vehicle.step(self._force)
         else:
             self.vehicle.step(self._force, self._slope.grade(self.front, self.shape.length))
         self._locate()
-        self.rules.advance(self.front, self.vehicle.speed, self._time_step)
+        self.rules.advance(self.front, self.speed, self._time_step)
         self.news.advance()
 
     def _locate(self) -> None:
-        """Update the station and the pose from the FMU's position."""
+        """Update station and pose from the FMU's position, and the speed from its speed output."""
+        self.speed = speed = self.vehicle.speed
+        self.speeds = speed, speed
+        if self._late is not None:
+            self.speed = self._late.look(speed)
+            self.speeds = self._late.least, self._late.most
         self.front = self.departure + self.vehicle.position
         self.pose = self.path.pose(self.front, self.shape.length)
 
@@ -296,7 +308,7 @@ class Ego:
         """Return the row of this instant for the tables."""
         front, cause = self.front, ""
         origin = front + self._origin
-        if self.vehicle.speed < STANDING:
+        if self.speed < STANDING:
             cause = waits_for(front, self._kept, seen, decision, self._eases_off)
         return EgoRow(
             time=time,

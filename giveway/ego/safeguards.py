@@ -101,14 +101,17 @@ class Safeguards:
         """True if the safety layer for people is on."""
         return self._people is not None
 
-    def decide(self, asked: Decision, front: float, speed: float, seen: Perceived) -> Decision:
+    def decide(
+        self, asked: Decision, front: float, speed: float, seen: Perceived, slower: float = 0.0
+    ) -> Decision:
         """Return the decision that acts, which is the controller's or one of a layer.
 
         Args:
             asked: Decision of the controller.
             front: Station of the front bumper [m].
-            speed: Speed of the ego [m/s].
+            speed: Largest speed [m/s] that the ego may have.
             seen: World as the ego perceives it, and what the rules of the road demand.
+            slower: Speed [m/s] by which the ego may be slower.
         """
         vehicles, decision, people = self._vehicles, asked, seen.percept.people
         if vehicles is not None:
@@ -118,6 +121,7 @@ class Safeguards:
         followed = decision
         if self._people is not None:
             bound = seen.percept.position_bound
+            self._people.may_be_slower(slower)
             safe = self._people.overrule(decision, front, speed, people, bound, seen.kerbs)
             decision = decision if safe is None else safe
         if self._entry is not None:

@@ -52,6 +52,7 @@ class EgoSafetyLayer:
         self._way = path.vertices, path.stations, path.headings
         self._length = shape.length
         self._poses = np.zeros((MOST_POSES, 4))
+        self.may_be_slower = self._layer.may_be_slower
 
     def overrule(
         self,

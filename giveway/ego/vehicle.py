@@ -108,6 +108,8 @@ def open_for(
     if not ours:
         profile = choose_profile(path, profile)
         _require_sound(path, profile, config, time_step)
+        if config.found is not None and config.found.sensor_lag > 0.0:
+            profile = profile.model_copy(update={"model": config.found})
     vehicle = open_vehicle(
         path,
         step_size=time_step,

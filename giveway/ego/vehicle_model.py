@@ -3,7 +3,7 @@
 from math import inf
 from pathlib import Path
 
-from controller import Actuator, ActuatorSide
+from controller import Actuator, ActuatorSide, LateSpeed, LongitudinalModel
 from fmus import (
     FmuError,
     VehicleProfile,
@@ -77,6 +77,7 @@ def _is_usual(model: FittedModel) -> bool:
     sides = [side for side in (model.drive, model.brake) if side is not None]
     strong = all(side.limit is None or side.limit > usual.acceleration_limit for side in sides)
     quick = all(side.lag + side.delay <= _LATE and side.rate is None for side in sides)
+    quick = quick and model.sensor_lag == 0.0
     return strong and quick and abs(model.mass / usual.mass - 1.0) <= _NEAR
 
 
@@ -131,6 +132,24 @@ def actuator_of(config: EgoRunConfig, time_step: float) -> Actuator | None:
         )
 
     return Actuator(side(model.drive), side(model.brake))
+
+
+def late_speed_of(config: EgoRunConfig, time_step: float) -> LateSpeed | None:
+    """The estimator of the ego's speed if its FMU's speed output lags behind; None if it does not.
+
+    Args:
+        config: Configuration of the ego.
+        time_step: Control step of the co-simulation [s].
+
+    Raises:
+        VehicleError: the profile or the FMU cannot be read.
+    """
+    model, vehicle = model_of(config), config.vehicle
+    if model is None or model.sensor_lag <= 0.0:
+        return None
+    own = LongitudinalModel(vehicle.mass, vehicle.friction, time_step)
+    actuator = actuator_of(config, time_step) or Actuator()
+    return LateSpeed(own, model.sensor_lag, actuator, vehicle.force_limit)
 
 
 def driven_model(config: EgoRunConfig, time_step: float) -> FittedModel | None:

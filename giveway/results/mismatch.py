@@ -8,7 +8,7 @@ from fmus.checking.manoeuvres import Trace
 from fmus.checking.model_fit.common_model import fit_common
 from fmus.checking.model_fit.estimation import Estimate
 from fmus.checking.model_fit.measurements import Measurements
-from fmus.checking.model_fit.prediction import acting_force, position_errors
+from fmus.checking.model_fit.prediction import acting_force, position_errors, true_speed
 from giveway.ego.vehicle_model import driven_model
 from giveway.results.ego_result import EgoResult
 from giveway.run_data.tracks import EgoTrack
@@ -30,8 +30,8 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
     if not config.optimises or not len(ego.track.time):
         return ""  # only an optimising controller has a model
     mass, friction = config.vehicle.mass, config.vehicle.friction
-    trace = _trace(ego.track, time_step)
     model = driven_model(config, time_step)
+    trace = _trace(ego.track, time_step, 0.0 if model is None else model.sensor_lag)
     acting = trace
     if model is not None:
         mass, friction = model.mass, model.friction
@@ -58,20 +58,21 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
     )
 
 
-def _trace(track: EgoTrack, time_step: float) -> Trace:
+def _trace(track: EgoTrack, time_step: float, lag: float) -> Trace:
     """Return the trace of a run's drive, with the distance from its speeds by forward Euler.
 
     The model adds the speeds up by forward Euler. An FMU may do it otherwise (the exact distance of
-    a step has half a change of speed more). M and alpha do not depend on it.
+    a step has half a change of speed more). M and alpha do not depend on it. The ``lag`` [s] of the
+    speed output is allowed for.
     """
-    steps = len(track.speed) - 1
-    distance = np.concatenate(([0.0], np.cumsum(time_step * track.speed[:-1])))
+    steps, speed = len(track.speed) - 1, true_speed(track.speed, lag, time_step)
+    distance = np.concatenate(([0.0], np.cumsum(time_step * speed[:-1])))
     nothing = np.zeros(steps)
     return Trace(
         time_step,
         track.force[:-1],
         distance,
-        track.speed,
+        speed,
         track.acceleration,
         cost=nothing,
         warnings=(),

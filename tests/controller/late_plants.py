@@ -33,9 +33,12 @@ def weak(actuator, limit):
 
 
 class LatePlant:
-    """A vehicle with one actuator for both signs, or two; lags, dead times and rates are drawn."""
+    """A vehicle with one actuator for both signs, or two; lags, dead times and rates are drawn.
 
-    def __init__(self, speed, actuator, seed, dt=0.05):
+    Its ``output`` is the speed, filtered by at most ``sensor`` [s].
+    """
+
+    def __init__(self, speed, actuator, seed, dt=0.05, sensor=0.0):
         rng = np.random.default_rng(seed)
         self.travel, self.speed, self._h = 0.0, speed, dt / PARTS
         self._sides = actuator.drive, actuator.brake
@@ -49,6 +52,7 @@ class LatePlant:
         self._most = [(1.0 + share[2]) * rate * self._h for rate in rates]
         self._told = [0.0] * (1 + max(self._late))
         self._behind, self._acts = [0.0, 0.0], [0.0, 0.0]
+        self.output, self._filter = speed, sensor * rng.choice([1.0, rng.uniform(0.1, 1.0)])
 
     def step(self, told):
         """Hold the commanded force [N] for a control step."""
@@ -57,6 +61,13 @@ class LatePlant:
             force, v = self._force(), self.speed
             self.speed = max(0.0, v + self._h * (force - FRICTION * v) / MASS)
             self.travel += 0.5 * self._h * (v + self.speed)
+            self._see(v)
+
+    def _see(self, before):
+        """Filter the speed, which has changed by a straight line from ``before`` [m/s]."""
+        behind = self._filter * (self.speed - before) / self._h
+        left = np.exp(-self._h / self._filter) if self._filter > 0.0 else 0.0
+        self.output = self.speed - behind + (self.output - before + behind) * left
 
     def _force(self):
         late = [self._told[-1 - n] for n in self._late]

@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from late_plants import LatePlant, actuators, late, weak
 
-from controller import LongitudinalModel, SafetyLayer, SafetyParameters
+from controller import Actuator, LateSpeed, LongitudinalModel, SafetyLayer, SafetyParameters
 from controller.safety.worst_motion import RECORDED
 
 A_MAX, V_MAX, R, HALF = 5.0, 2.5, 0.27, 1.0
@@ -137,12 +137,13 @@ def drive(
     hardest=A_MAX,
     kept=slice(None),
     command=float,
+    seen_late=None,
     **parameters,
 ):
     """The reasons given while the ego drove; fails where its front got into one of ``kept``.
 
     ``hardest`` is how hard everybody, or each, accelerates at most, and ``command`` what is sent
-    to the plant for the layer's force.
+    to the plant for the layer's force; ``seen_late`` knows how the plant's speed output lags.
     """
     rng = np.random.default_rng(seed)
     limits = SafetyParameters(position_error=noise, **(SIMULATED | parameters))
@@ -155,18 +156,32 @@ def drive(
         eager = rng.choice([8000.0, 8000.0, 3000.0, rng.uniform(-8000.0, 8000.0)])
         angle = rng.uniform(-np.pi, np.pi, people)
         seen = x + noise * np.column_stack([np.cos(angle), np.sin(angle)])
-        way = road.ahead(plant.travel, layer.reach(plant.speed))
-        safe = layer.filter(eager, plant.speed, (way, SPACING), seen, v)
+        speed = plant.speed if seen_late is None else most_speed(seen_late, plant, layer)
+        way = road.ahead(plant.travel, layer.reach(speed))
+        safe = layer.filter(eager, speed, (way, SPACING), seen, v)
         reasons.append(safe.reason)
         a = accelerations(rng, mood, x, v, road, plant)
         before, moving = plant.travel, plant.speed
         plant.step(command(safe.force))
+        if seen_late is not None:
+            seen_late.applied(command(safe.force))
         x_next, v_next = walk(x, v, a, dt, hardest)
         if moving > 1e-9 or plant.travel > before:
             among = x[kept], x_next[kept], v[kept]
             assert not moved_into(road, before, plant.travel, *among, dt), safe
         x, v = x_next, v_next
     return reasons
+
+
+def most_speed(seen_late, plant, layer):
+    """The largest speed that the plant may have by its output, which the layer is told."""
+    estimate = seen_late.look(plant.output)
+    if not isinstance(seen_late, LateSpeed):
+        return estimate
+    assert seen_late.least - 1e-9 <= plant.speed <= seen_late.most + 1e-9
+    assert seen_late.least <= estimate <= seen_late.most
+    layer.may_be_slower(seen_late.most - seen_late.least)
+    return seen_late.most
 
 
 @relaxed
@@ -215,6 +230,41 @@ def test_with_any_actuator_within_what_its_profile_says(seed, actuator, limit):
     plant = LatePlant(0.0, actuator, seed)
     reasons = drive(seed, plant=plant, actuator=actuator, command=actuator.command)
     assert "unavoidable" not in reasons
+
+
+@settings(max_examples=25)
+@given(seed=seeds, actuator=actuators, lag=st.sampled_from([0.02, 0.2, 0.4]))
+def test_when_its_speed_output_is_late_too(seed, actuator, lag):
+    """The output may lag behind the motion by as much as is said, or less."""
+    plant = LatePlant(0.0, actuator, seed, sensor=lag)
+    seen_late = LateSpeed(LongitudinalModel(), lag, actuator, 8000.0)
+    reasons = drive(
+        seed, plant=plant, actuator=actuator, command=actuator.command, seen_late=seen_late
+    )
+    assert "unavoidable" not in reasons
+
+
+def test_an_output_that_is_late_must_not_be_taken_for_the_speed():
+    """With a filter of 0.4 s, an ego that brakes seems faster, and one that drives off slower."""
+
+    class Believed:
+        least = most = 0.0
+
+        def look(self, output):
+            return output
+
+        def applied(self, force):
+            pass
+
+    def is_hit(seed):
+        plant = LatePlant(0.0, Actuator(), seed, sensor=0.4)
+        try:
+            reasons = drive(seed, plant=plant, seen_late=Believed())
+        except AssertionError:
+            return True
+        return "unavoidable" in reasons
+
+    assert any(map(is_hit, range(20)))
 
 
 @pytest.mark.parametrize("name", ["recorded-99.9", "responsible"])

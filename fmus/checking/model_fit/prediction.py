@@ -8,6 +8,19 @@ from fmus.checking.model_fit.measurements import STANDSTILL
 from fmus.profile.vehicle_profile import FittedModel
 
 
+def true_speed(speed: NDArray[np.float64], lag: float, step: float) -> NDArray[np.float64]:
+    """Return the speeds (n,) [m/s] that a run estimates from outputs that lag behind.
+
+    Args:
+        speed: Speed outputs (n,) [m/s], one per step.
+        lag: First-order lag [s] of the output.
+        step: Length of a step [s].
+    """
+    if lag <= 0.0:
+        return speed
+    return np.maximum(speed + lag / step * np.diff(speed, prepend=speed[0]), 0.0)
+
+
 def speed_errors(trace: Trace, mass: float, friction: float) -> NDArray[np.float64]:
     """Return the errors (m,) [m/s] of the speed one step ahead, while the vehicle moves."""
     h, v, v_next = trace.step_size, trace.speed[:-1], trace.speed[1:]

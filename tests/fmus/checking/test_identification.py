@@ -8,6 +8,7 @@ import pytest
 
 from fmus import FmuOutputError, bundled_fmu
 from fmus.checking import Mpc, identify, opener_of
+from fmus.checking.manoeuvres import without_guards
 from fmus.profile.bundled import BUNDLED_PROFILE
 from fmus.profile.vehicle_profile import make_profile
 
@@ -63,6 +64,16 @@ def test_what_the_mpc_does_not_know_is_in_its_position_error(car):
     assert prompt.model.position_error < 0.1
     assert late.model.position_error > 5 * prompt.model.position_error
     assert any("0.3 s late" in remark for remark in late.remarks)
+
+
+def test_a_filtered_speed_output_is_allowed_for_in_the_errors(zoo):
+    path = zoo.car(outputs=("speed", "position"), values={"sensor_lag": 0.3}, file="filtered")
+    profile = without_guards(make_profile(zoo.profile(path), "test"))
+    found = identified(opener_of(path, step_size=0.05, profile=profile, isolated=False)).model
+    assert found.sensor_lag == pytest.approx(0.3, rel=0.02)
+    assert found.lag == found.drive.lag == found.brake.lag == 0.0
+    assert found.sides_error < 0.15  # 0.8 m from the output itself
+    assert found.speed_error < 0.05
 
 
 def test_the_intervals_hold_the_truth_for_a_noisy_car(car):

@@ -48,6 +48,21 @@ def test_zero_speed_while_the_position_moves_is_a_fault(zoo, open_car):
         cruise(car, 3.0, 3000.0)
 
 
+def test_a_speed_that_is_filtered_as_the_profile_says_is_none(zoo, open_car):
+    path = zoo.car(outputs=("speed", "position"), values={"sensor_lag": 0.5}, file="filtered")
+    model = {"mass": 1000.0, "friction": 100.0, "r_squared": 1.0, "speed_error": 0.0,
+             "position_error": 0.0, "horizon": 0.75, "time_step": H}  # fmt: skip
+    for lag in (0.0, 0.5):
+        car = open_car(path, model={**model, "sensor_lag": lag})
+        car.start(speed=12.0)
+        if lag:
+            cruise(car, 2.0, -6000.0)
+            assert car.position == pytest.approx(10.5, abs=0.1)
+        else:
+            with pytest.raises(FmuOutputError, match="where speed accounts for"):
+                cruise(car, 2.0, -6000.0)
+
+
 @pytest.mark.parametrize("quantum", [0.01, 0.1, 0.5, 1.0])
 @pytest.mark.parametrize("speed", [0.3, 1.5, 4.0, 12.0])
 def test_an_odometer_that_counts_in_steps_is_none(zoo, open_car, quantum, speed):

@@ -16,6 +16,7 @@ UnitSpec = tuple[str, float, float]  # name, factor, offset: SI = factor * raw +
 QUANTITIES: Final = {
     "force": "N", "drive_force": "N", "brake_force": "N", "wanted_acceleration": "m/s2",
     "throttle": "1", "brake": "1", "speed_setpoint": "m/s", "spare_input": "",
+    "grade": "rad",
     "speed": "m/s", "position": "m", "acceleration": "m/s2", "wheel_force": "N", "gear": "",
     "clock": "s", "state_position": "m", "state_speed": "m/s", "state_force": "N",
     "rate_position": "m/s", "rate_speed": "m/s2", "rate_force": "N/s", "indicator": "",
@@ -23,6 +24,7 @@ QUANTITIES: Final = {
     "full_drive": "N", "full_brake": "N", "holds": "", "gear_time": "s", "gear_speed": "m/s",
     "gear_ratio": "", "gears": "", "engaged": "", "initial_speed": "m/s",
     "initial_position": "m", "array_size": "", "position_step": "m",
+    "creep": "N", "sensor_lag": "s",
 }  # fmt: skip
 REFERENCES: Final = {name: index + 1 for index, name in enumerate(QUANTITIES)}
 INPUT_ARRAY: Final = 60  # value references beyond those of single quantities
@@ -54,6 +56,8 @@ DEFAULTS: Final = {  # [SI] what the car is unless told otherwise
     "initial_position": 0.0,
     "array_size": 3.0,
     "position_step": 0.0,
+    "creep": 0.0,
+    "sensor_lag": 0.0,
 }
 PARAMETERS: Final = ("mass", "friction", "lag", "engaged", "gears")  # offered by every car
 PHASES: Final = (
@@ -266,6 +270,8 @@ def profile(car: Car) -> dict[str, Any]:
     }
     if car.value("response"):
         role["speed_setpoint"]["speed_setpoint"]["lead"] = car.value("response")
+    if "grade" in car.extra:
+        role[car.role]["grade"] = axis("grade")
     fmu: dict[str, Any] = {} if car.kind == "both" else {"kind": car.kind}
     if car.only_step:
         fmu["step"] = car.only_step

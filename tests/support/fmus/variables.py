@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 BASE: Final = {  # unit: base units; one not listed has those of its quantity's own unit
     "N": "kg1 m1 s-2", "N/s": "kg1 m1 s-3", "m/s2": "m1 s-2", "m/s": "m1 s-1", "m": "m1", "s": "s1",
     "kg": "kg1", "N.s/m": "kg1 s-1", "N.s2/m2": "kg1 m-1", "1": "", "%": "",
+    "rad": "rad1",
 }  # fmt: skip
 
 

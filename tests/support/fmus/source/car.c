@@ -25,6 +25,12 @@ static double wanted_force(const Car *car, double speed) {
     return 0.0;
 }
 
+/* What moves a car without drive and brake: an automatic gearbox up to 1.5 m/s, and the road's grade. */
+static double pull(const Car *car, double speed) {
+    const double *v = car->value;
+    return v[Q_creep] * fmax(0.0, 1.0 - speed / 1.5) - 9.81 * v[Q_mass] * sin(v[Q_grade]);
+}
+
 static double force_at(const Car *car, const double x[]) {
     return parameter(car, Q_lag) > 0.0 ? x[2] : wanted_force(car, x[1]);
 }
@@ -42,10 +48,12 @@ static void rates_at(const Car *car, const double x[], double rates[]) {
     if (parameter(car, Q_lag) > 0.0) rates[2] = (wanted_force(car, x[1]) - x[2]) / parameter(car, Q_lag);
     if (parameter(car, Q_engaged) == 0.0 && force > 0.0) force = 0.0;
     if (force > 0.0) force *= parameter(car, Q_gears) * (car->shifted ? parameter(car, Q_gear_ratio) : 1.0);
+    if (force < 0.0 && car->x[1] < 0.0 && parameter(car, Q_holds) != 0.0) force = -force; /* it rolls back */
     if (!car->held) {
         rates[0] = x[1];
-        rates[1] = (force - resistance(car, x[1])) / parameter(car, Q_mass);
+        rates[1] = (force + pull(car, x[1]) - resistance(car, x[1])) / parameter(car, Q_mass);
     }
+    if (parameter(car, Q_sensor_lag) > 0.0) rates[3] = (x[1] - x[3]) / parameter(car, Q_sensor_lag);
     rates[1] += car->rate_fault;
 }
 
@@ -59,6 +67,7 @@ void car_start(Car *car) {
     car->x[0] = parameter(car, Q_initial_position);
     car->x[1] = parameter(car, Q_initial_speed);
     car->x[2] = 0.0;
+    car->x[3] = car->x[1];
     car_event(car);
 }
 
@@ -66,6 +75,7 @@ double car_get(const Car *car, Quantity quantity) {
     double rates[MAX_STATES];
     switch (quantity) {
         case Q_speed: if (car->speed_stands) return car->stood;
+            if (parameter(car, Q_sensor_lag) > 0.0) return car->x[3] + car->added[Q_speed];
             return (car_is_static(car) ? car->value[Q_speed_setpoint] : car->x[1]) + car->added[Q_speed];
         case Q_position: {
             double quantum = parameter(car, Q_position_step), at = car->x[0] + car->added[Q_position];
@@ -93,6 +103,12 @@ double car_indicator(const Car *car) {
     return (car->held ? -force_at(car, car->x) : car->x[1]) + SLACK;
 }
 
+/* Whether the standing car leaves its place: its brake is released, or weaker than what pulls. */
+static bool leaves(const Car *car, const double x[]) {
+    double force = force_at(car, x);
+    return force > 0.0 ? force + pull(car, 0.0) != 0.0 : fabs(pull(car, 0.0)) > -force;
+}
+
 static bool shifts(const Car *car) {
     return !car->shifted && ((parameter(car, Q_gear_time) > 0.0 && car->time >= parameter(car, Q_gear_time)) ||
                              (parameter(car, Q_gear_speed) > 0.0 && car->x[1] >= parameter(car, Q_gear_speed)));
@@ -103,7 +119,7 @@ bool car_wants_event(const Car *car) { return shifts(car); }
 bool car_event(Car *car) {
     if (shifts(car)) car->shifted = true;
     if (parameter(car, Q_holds) == 0.0) return false;
-    bool pushes = force_at(car, car->x) > 0.0;
+    bool pushes = leaves(car, car->x);
     if (car->held && pushes) car->held = false;
     if (car->held || pushes || car->x[1] > 0.0) return false;
     bool moved = car->x[1] != 0.0;
@@ -127,8 +143,7 @@ static void runge_kutta(const Car *car, const double x[], double h, double next[
 
 static bool crossed(const Car *car, const double x[]) {
     if (parameter(car, Q_holds) == 0.0) return false;
-    double force = force_at(car, x);
-    return car->held ? force > 0.0 : x[1] < 0.0 && force <= 0.0;
+    return car->held ? leaves(car, x) : x[1] < 0.0 && !leaves(car, x);
 }
 
 /* One sub-step of at most h; returns how long it was: an event ends it. */

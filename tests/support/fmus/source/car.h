@@ -7,13 +7,13 @@
 /* Everything that has a number. The builder names them in resources/car.txt. */
 #define QUANTITIES(X)                                                                               \
     X(force) X(drive_force) X(brake_force) X(wanted_acceleration) X(throttle) X(brake)              \
-    X(speed_setpoint) X(spare_input)                                                                \
+    X(speed_setpoint) X(spare_input) X(grade)                                                    \
     X(speed) X(position) X(acceleration) X(wheel_force) X(gear) X(clock)                            \
     X(state_position) X(state_speed) X(state_force)                                                 \
     X(rate_position) X(rate_speed) X(rate_force) X(indicator)                                       \
     X(mass) X(friction) X(drag) X(lag) X(response) X(full_drive) X(full_brake) X(holds)             \
     X(gear_time) X(gear_speed) X(gear_ratio) X(gears) X(engaged) X(initial_speed)                   \
-    X(initial_position) X(array_size) X(position_step)
+    X(initial_position) X(array_size) X(position_step) X(creep) X(sensor_lag)
 
 typedef enum {
 #define X(name) Q_##name,
@@ -24,7 +24,7 @@ typedef enum {
 
 typedef enum { ROLE_FORCE, ROLE_DRIVE_BRAKE, ROLE_ACCELERATION, ROLE_THROTTLE_BRAKE, ROLE_SPEED } Role;
 
-enum { MAX_STATES = 3 };
+enum { MAX_STATES = 4 };
 
 /* A plain value: a saved state is a copy of it. */
 typedef struct {
@@ -32,7 +32,7 @@ typedef struct {
     bool euler;           /* one explicit Euler step per communication step, stable or not */
     double value[QUANTITY_COUNT]; /* inputs and parameters */
     double time;
-    double x[MAX_STATES]; /* position, speed, force of the actuator (with a lag only) */
+    double x[MAX_STATES]; /* position, speed, force of the actuator (with a lag only), filtered speed */
     bool held;            /* the brake holds the standing car */
     bool shifted;         /* into the second gear */
     bool frozen;          /* nothing moves any more */
