@@ -59,7 +59,7 @@ class LateSpeed:
         most = high if low > self.most else min(high, self.most)
         least = low if high < self.least else max(low, self.least)
         self.most, self.least = max(most, 0.0), max(least, 0.0)
-        return min(max(output + self._ahead * change, self.least), self.most)
+        return max(output + self._ahead * change, 0.0)
 
     def applied(self, force: float) -> None:
         """Move the bounds on by the step from now on, in which a ``force`` [N] is commanded."""

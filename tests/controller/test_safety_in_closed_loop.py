@@ -179,7 +179,6 @@ def most_speed(seen_late, plant, layer):
     if not isinstance(seen_late, LateSpeed):
         return estimate
     assert seen_late.least - 1e-9 <= plant.speed <= seen_late.most + 1e-9
-    assert seen_late.least <= estimate <= seen_late.most
     layer.may_be_slower(seen_late.most - seen_late.least)
     return seen_late.most
 

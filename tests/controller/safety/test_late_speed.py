@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,7 @@ MODEL = LongitudinalModel(friction=0.0)
 def filtered(speeds):
     """The outputs of a first-order filter; the speed changes by straight lines."""
     outputs, left = [speeds[0]], np.exp(-H / LAG)
-    for before, after in zip(speeds, speeds[1:], strict=False):
+    for before, after in pairwise(speeds):
         behind = LAG * (after - before) / H
         outputs.append(after - behind + (outputs[-1] - before + behind) * left)
     return outputs
@@ -54,5 +56,5 @@ def test_where_the_forces_tell_another_story_the_output_counts():
     """It rolls downhill faster and faster, although nothing drives it."""
     speeds = list(2.0 + 2.0 * H * np.arange(60))
     *_, (estimate, _, most) = looks(speeds, 0.0)
-    assert most >= filtered(speeds)[-1]
-    assert estimate > filtered(speeds)[-1]
+    assert most > filtered(speeds)[-1] - 0.2
+    assert estimate == pytest.approx(speeds[-1], abs=0.01)
