@@ -7,6 +7,9 @@
 The command line is ``giveway``; ``giveway --help`` lists what it does.
 """
 
+from giveway import _early_signals  # noqa: F401 - the first import: signals are caught from here on
+
+# isort: split
 from typing import TYPE_CHECKING, Any
 
 from giveway._environment import check_rooms, keep_kernels

@@ -18,6 +18,7 @@ from controller.kernels import branch_off
 from giveway._kernels.cache import FOLDERS, MARKERS, kernel_cache, marker
 from giveway.processes.child import die_with
 from giveway.processes.interpreter import command
+from giveway.processes.interrupts import DeferredInterrupt, ended_by
 from giveway.processes.processors import processors
 from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
 from pedestrian_model.vci.model import THREADS_FROM
@@ -190,7 +191,7 @@ def _run(settings: dict[str, Any], *, measured: bool = True) -> None:
 
     result = run(settings)
     if result.ending is Ending.INTERRUPTED:
-        raise KeyboardInterrupt
+        raise ended_by(DeferredInterrupt.latest)
     if measured:
         result.summary  # the metrics have kernels, too  # noqa: B018
 

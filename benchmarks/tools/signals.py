@@ -108,7 +108,8 @@ class Campaign:
         out.mkdir(parents=True, exist_ok=True)
         self._out = out
         self._bases = Bases(out / "bases", nursery)
-        self._environment = nursery.environment | {"PYTHONPATH": str(out / "first")}
+        paths = [str(out / "first"), *filter(None, [os.environ.get("PYTHONPATH")])]
+        self._environment = nursery.environment | {"PYTHONPATH": os.pathsep.join(paths)}
         (out / "first").mkdir(exist_ok=True)
         (out / "first" / "sitecustomize.py").write_text(_MARK)
         self._times: dict[str, tuple[float, float]] = {}

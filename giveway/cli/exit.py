@@ -3,9 +3,6 @@
 import contextlib
 import sys
 
-INTERRUPTED = 130  # 128 + SIGINT, as in shells
-
-
 _LONGEST = 300  # Largest number of characters of a word that are shown
 
 

@@ -10,43 +10,73 @@ from giveway.cli.exit import fail
 from giveway.errors import GivewayError
 from giveway.processes.interrupts import RaisedSignals, exit_code_of, who_ended
 
+_SIGNALLED = 128  # Exit codes from here on tell of a signal
 _NO_THREAD = "can't start new thread"  # Python's message, which has no exception class of its own
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and exit with its code."""
+    """Run the command line and exit with its code.
+
+    Args:
+        arguments: Words after ``giveway``, or None for those of this process, which then ends: from
+            the end of the command on, signals do nothing.
+    """
     words = (sys.argv[1:] if arguments is None else list(arguments)) or ["--help"]
+    signals = RaisedSignals()
+    signals.__enter__()
     try:
-        with RaisedSignals():
+        code = _code_of(words, signals)
+    finally:
+        if arguments is not None:
+            signals.__exit__()
+    sys.exit(code)
+
+
+def _code_of(words: Sequence[str], signals: RaisedSignals) -> int:
+    """Return the exit code of a command, after its message."""
+    try:
+        try:
             code = _run(words)
-    except GivewayError as error:
-        code = fail(str(error), error.exit_code)
+            signals.raise_put_off()
+            return code
+        finally:
+            signals.raise_no_more()
+    except Exception as error:
+        if signals.raised is not None and getattr(error, "exit_code", 0) < _SIGNALLED:
+            return _ended(signals.raised)  # a library has made another error of the signal
+        return _failed(words, error)
     except KeyboardInterrupt as error:
-        code = fail(who_ended(error), exit_code_of(error))
-    except BrokenPipeError:  # the reader of the output has ended
+        return _ended(error)
+
+
+def _ended(error: KeyboardInterrupt) -> int:
+    return fail(who_ended(error), exit_code_of(error))
+
+
+def _failed(words: Sequence[str], error: Exception) -> int:
+    """Return the exit code of a command that failed, after its message.
+
+    Raises:
+        Exception: a defect of giveway, whose traceback is shown.
+    """
+    if isinstance(error, GivewayError):
+        return fail(str(error), error.exit_code)
+    if isinstance(error, BrokenPipeError):  # the reader of the output has ended
         # the remaining output is dropped
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 1
-    except (MemoryError, OSError, ImportError) as error:
-        if out_of_memory(error):
-            code = fail("out of memory; free memory, or raise the limit (ulimit -v)", 1)
-        elif isinstance(error, OSError):
-            code = fail(_named(error), 1)
-        else:
-            raise
-    except Exception as error:
-        if hasattr(error, "format_message"):
-            said = _renamed(words) or f"{error.format_message()} See giveway --help."
-            code = fail(said, 2)  # a usage error
-        elif str(error) == _NO_THREAD:
-            code = fail(
-                "the system gives no more threads; end other processes, or raise the limit "
-                "(ulimit -u)",
-                1,
-            )
-        else:
-            raise  # a defect of giveway: its traceback is shown
-    sys.exit(code)
+        return 1
+    if isinstance(error, MemoryError | OSError | ImportError) and out_of_memory(error):
+        return fail("out of memory; free memory, or raise the limit (ulimit -v)", 1)
+    if isinstance(error, OSError):
+        return fail(_named(error), 1)
+    if hasattr(error, "format_message"):
+        return fail(_renamed(words) or f"{error.format_message()} See giveway --help.", 2)
+    if str(error) == _NO_THREAD:
+        return fail(
+            "the system gives no more threads; end other processes, or raise the limit (ulimit -u)",
+            1,
+        )
+    raise error
 
 
 def _renamed(words: Sequence[str]) -> str | None:
@@ -66,11 +96,11 @@ def _named(error: OSError) -> str:
     return f"{where}: {error.strerror or error}"
 
 
-def _run(words: list[str]) -> int:
+def _run(words: Sequence[str]) -> int:
     """Run the command and return its exit code."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal may lack some characters
     from giveway.cli.app import invoke
 
-    return invoke(words)
+    return invoke(list(words))

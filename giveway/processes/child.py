@@ -66,6 +66,7 @@ class Supervised:
 
     def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
         if self._folder is not None:
+            self._signals.raise_no_more()
             self._heartbeat.finish(_exit_code(error))
 
     def listen(self) -> None:

@@ -6,14 +6,17 @@ leave half a row. Everywhere else they are raised as exceptions, so that all ope
 closed: temporary folders are removed, and the user reads a message.
 """
 
+import _thread
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterable
 from types import FrameType
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 PATIENCE = 10.0  # Time [s] after which a second interrupt acts at once
+_MOMENT = 0.01  # Time [s] after which a signal that could not be raised is tried again
 ENDING = frozenset(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
@@ -37,6 +40,11 @@ def who_ended(error: KeyboardInterrupt) -> str:
     if isinstance(error, TerminatedError):
         return f"ended by {signal.Signals(error.number).name}"
     return "interrupted"
+
+
+def ended_by(number: int) -> KeyboardInterrupt:
+    """Return the exception for a signal: KeyboardInterrupt for Ctrl-C, else TerminatedError."""
+    return KeyboardInterrupt() if number == signal.SIGINT else TerminatedError(number)
 
 
 def exit_code_of(error: KeyboardInterrupt) -> int:
@@ -78,16 +86,51 @@ class SignalHandler:
 class RaisedSignals(SignalHandler):
     """The context in which a signal to end is raised as an exception in the main thread.
 
+    It is not raised where it would get lost or become another error: inside an import, where a
+    native module answers with an ImportError, and in a destructor or a callback of native code,
+    which can raise nothing. There it is raised a moment later, for an import at the latest after
+    ``PATIENCE``.
+
     Args:
         once: True to raise only the first signal. A signal that comes ``PATIENCE`` after it acts at
             once, and those in between do nothing. A supervised process gets the signal from the
             terminal and from its supervisor, and the second must not disturb the clean-up.
+
+    Attributes:
+        raised: Exception that was raised last, or None.
     """
 
     def __init__(self, *, once: bool = False) -> None:
         super().__init__(ENDING)
+        self.raised: KeyboardInterrupt | None = None
         self._once = once
         self._first: float | None = None
+        self._put_off = 0  # signal that an import puts off
+        self._since = 0.0
+        self._hook: Any = None
+
+    def __enter__(self) -> Self:
+        self._hook, sys.unraisablehook = sys.unraisablehook, self._raise_later
+        return super().__enter__()
+
+    def __exit__(self, *error: object) -> None:
+        super().__exit__(*error)
+        sys.unraisablehook = self._hook
+
+    def raise_no_more(self) -> None:
+        """Treat the work as done: signals do nothing, or act ``PATIENCE`` after the first."""
+        self._once = True
+        self._first = self._first or time.monotonic()
+
+    def raise_put_off(self) -> None:
+        """Raise the exception for a signal that has been put off; do nothing without one.
+
+        Raises:
+            KeyboardInterrupt: there is one.
+        """
+        if self._put_off:
+            self.raised, self._put_off = ended_by(self._put_off), 0
+            raise self.raised
 
     def handle(self, number: int, frame: FrameType | None) -> None:
         """Raise the exception for a signal.
@@ -102,10 +145,41 @@ class RaisedSignals(SignalHandler):
                 signal.signal(number, signal.SIG_DFL)
                 signal.raise_signal(number)
             return
+        if not self._put_off:
+            self._put_off, self._since = number, now
+        if _imports(frame) and now - self._since < PATIENCE:
+            _send_later(number)
+            return
         self._first = now
-        if number == signal.SIGINT:
-            signal.default_int_handler(number, frame)
-        raise TerminatedError(number)
+        self.raise_put_off()
+
+    def _raise_later(self, lost: Any) -> None:
+        """Receive an exception that nobody can catch; one of ours is raised again elsewhere."""
+        if self.raised is None or lost.exc_value is not self.raised:
+            self._hook(lost)
+            return
+        self._first = None
+        _send_later(exit_code_of(self.raised) - 128)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Return whether a frame belongs to an import."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _send_later(number: int) -> None:
+    """Let the main thread receive a signal once more in a moment."""
+
+    def send() -> None:
+        time.sleep(_MOMENT)
+        _thread.interrupt_main(signal.Signals(number))
+
+    # not by `threading`, whose locks the interrupted code may hold
+    _thread.start_new_thread(send, ())
 
 
 class DeferredInterrupt(SignalHandler):
@@ -113,7 +187,13 @@ class DeferredInterrupt(SignalHandler):
 
     Therefore an impatient second Ctrl-C does not lose the rows that are being written. One that
     comes ``PATIENCE`` after the first acts at once, since a native call may hang.
+
+    Attributes:
+        requested: True after a signal.
+        latest: Number of the latest signal that this process has deferred.
     """
+
+    latest: ClassVar[int] = signal.SIGINT
 
     def __init__(self) -> None:
         super().__init__(ENDING)
@@ -127,4 +207,5 @@ class DeferredInterrupt(SignalHandler):
             signal.raise_signal(number)
         if not self.requested:
             self._first = time.monotonic()
+            DeferredInterrupt.latest = number
         self.requested = True

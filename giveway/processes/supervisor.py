@@ -21,20 +21,19 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
 from typing import Self
 
 from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, SETTING_UP, Heartbeat, Phase, Pulse, Stillness
-from giveway.processes.interrupts import ENDING, SignalHandler
+from giveway.processes.interrupts import ENDING, DeferredInterrupt
 from giveway.processes.locks import in_use, locked
+from giveway.processes.relay import Relay
 
 HANG_LIMIT = 120.0  # Wall-clock limit [s] without a sign of life from the loop
 _PREFIX = "giveway-journal-"
 # Time [s] for which the journal of a killed supervisor is kept for "giveway recover"
 _KEPT = 7 * 86400.0
-_PATIENCE = 10.0  # Time [s] for a child to write its rows before a second signal kills it
 # Time limit [s] from "done" to the process's end, since native destructors may hang
 _TEARDOWN_LIMIT = 10.0
 _POLL = 1.0  # Time [s] between two readings of the heartbeat
@@ -55,6 +54,7 @@ class Verdict:
         pulse: Last state of its heartbeat.
         traceback: Traceback of Python by faulthandler; empty without one.
         last_words: Output of native code on the standard error of the child, if kept.
+        signal: Number of the first signal that the user has sent, or 0 without one.
     """
 
     code: int
@@ -64,6 +64,7 @@ class Verdict:
     pulse: Pulse
     traceback: str
     last_words: str
+    signal: int = 0
 
     @property
     def message(self) -> str:
@@ -89,10 +90,11 @@ def journal_folder() -> Iterator[Path]:
         with locked(folder):
             yield folder
     finally:
-        kept = False
-        with contextlib.suppress(OSError):
-            kept = Heartbeat(folder).kept
-        shutil.rmtree(temporary_in(folder) if kept else folder, ignore_errors=True)
+        with DeferredInterrupt():
+            kept = False
+            with contextlib.suppress(OSError):
+                kept = Heartbeat(folder).kept
+            shutil.rmtree(temporary_in(folder) if kept else folder, ignore_errors=True)
 
 
 def journal_place() -> Path:
@@ -153,30 +155,46 @@ def own_command() -> list[str]:
     return [sys.executable, *sys.orig_argv[1:]]
 
 
-def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG_LIMIT) -> Verdict:
+def supervise(
+    command: Sequence[str],
+    journal: Path,
+    *,
+    hang_limit: float = HANG_LIMIT,
+    output: int | None = None,
+) -> Verdict:
     """Run ``command`` as a child on the same terminal and wait for its end.
 
     The child enters :class:`giveway.processes.child.Supervised`. Signals that ask this process to
-    end are passed on; a second one 10 s later kills the child. If this process is killed, so is the
-    child.
+    end are passed on. A child in native code, such as SUMO that loads a network, does not hear
+    them: after 2 s the user is told so, and a second one kills it. If this process is killed, so is
+    the child.
 
     Args:
         command: Program and arguments; the child finds the journal in ``GIVEWAY_JOURNAL``.
         journal: Existing folder for the journal.
         hang_limit: Wall-clock time [s] without a sign of life from the loop after which the child
             is killed; infinity waits for ever.
+        output: File descriptor for standard output and standard error of the child, which then
+            reads nothing; None for those of this process.
 
     Raises:
         OSError: the child cannot be started, or the heartbeat cannot be made.
     """
     heartbeat = Heartbeat.supervised_by(os.getpid(), journal)
     environment = os.environ | {JOURNAL_VARIABLE: str(journal), **_temporary(journal)}
-    with _Relay() as relay:
+    with Relay() as relay:
         # Like any program on this terminal: same process group, same files (also <(...)).
         with _held_back():
-            child = subprocess.Popen(command, env=environment, close_fds=False)
+            child = subprocess.Popen(
+                command,
+                env=environment,
+                close_fds=False,
+                stdin=None if output is None else subprocess.DEVNULL,
+                stdout=output,
+                stderr=output,
+            )
         try:
-            with _Watchdog(child, heartbeat, hang_limit) as watchdog:
+            with _Watchdog(child, heartbeat, hang_limit, relay) as watchdog:
                 relay.connect(child)
                 child.wait()
         except BaseException:  # a child without a supervisor must not stay
@@ -221,42 +239,6 @@ def _held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
-class _Relay(SignalHandler):
-    """Passes the signals by which a user ends a run to the child, which decides when to end.
-
-    Attributes:
-        first: First such signal.
-        killed: True if a second one had to kill the child.
-    """
-
-    def __init__(self) -> None:
-        super().__init__(ENDING)
-        self.first: int | None = None
-        self.killed = False
-        self._at = 0.0
-        self._child: subprocess.Popen[bytes] | None = None
-
-    def connect(self, child: subprocess.Popen[bytes]) -> None:
-        """Name the child, and pass on a signal that came before."""
-        self._child = child
-        if self.first is not None:
-            self._send(self.first)
-
-    def handle(self, number: int, _frame: FrameType | None) -> None:
-        """Pass on the first signal; a later second one kills the child."""
-        if self.first is None:
-            self.first, self._at = number, time.monotonic()
-            self._send(number)
-        elif self._child is not None and time.monotonic() - self._at > _PATIENCE:
-            self.killed = True
-            self._child.kill()
-
-    def _send(self, number: int) -> None:
-        # a Windows console tells all processes itself
-        if self._child is not None and os.name != "nt":
-            self._child.send_signal(number)
-
-
 class _Watchdog:
     """Reads the heartbeat once a second, and kills a child whose loop stands still.
 
@@ -265,9 +247,14 @@ class _Watchdog:
     """
 
     def __init__(
-        self, child: subprocess.Popen[bytes], heartbeat: Heartbeat, hang_limit: float
+        self,
+        child: subprocess.Popen[bytes],
+        heartbeat: Heartbeat,
+        hang_limit: float,
+        relay: Relay,
     ) -> None:
         self.waited = 0.0
+        self._relay = relay
         self._child = child
         self._heartbeat = heartbeat
         self._hang_limit = hang_limit
@@ -296,6 +283,7 @@ class _Watchdog:
         stillness = Stillness(self._heartbeat)
         while not self._over.wait(self._poll):
             pulse, quiet = stillness.look(self._poll)
+            self._relay.tell(pulse.place)
             if quiet >= self._limit(pulse.phase):
                 self.waited = quiet
                 let_speak(self._child)
@@ -304,14 +292,15 @@ class _Watchdog:
 
 
 def _judge(
-    returncode: int, pulse: Pulse, watchdog: _Watchdog, relay: _Relay, journal: Path
+    returncode: int, pulse: Pulse, watchdog: _Watchdog, relay: Relay, journal: Path
 ) -> Verdict:
     interrupted = relay.first is not None
     if pulse.phase is Phase.DONE:
-        return Verdict(pulse.code or max(returncode, 0), False, interrupted, "", pulse, "", "")
+        code = pulse.code or max(returncode, 0)
+        return Verdict(code, False, interrupted, "", pulse, "", "", relay.first or 0)
     if pulse.phase is Phase.STARTING and 0 < returncode < min(WINDOWS_CAUSES):
         # Python ended before it came to giveway's code, and has printed the reason.
-        return Verdict(returncode, False, interrupted, "", pulse, "", "")
+        return Verdict(returncode, False, interrupted, "", pulse, "", "", relay.first or 0)
     return Verdict(
         code=_passed_on(returncode, relay),
         crashed=True,
@@ -320,10 +309,11 @@ def _judge(
         pulse=pulse,
         traceback=text_in(journal / TRACEBACK_FILE),
         last_words=text_in(journal / STDERR_FILE),
+        signal=relay.first or 0,
     )
 
 
-def _passed_on(returncode: int, relay: _Relay) -> int:
+def _passed_on(returncode: int, relay: Relay) -> int:
     if relay.first is not None:
         return _SIGNALLED + relay.first
     if returncode < 0:
@@ -331,7 +321,7 @@ def _passed_on(returncode: int, relay: _Relay) -> int:
     return returncode if 0 < returncode < _SIGNALLED else 1
 
 
-def _cause(returncode: int, watchdog: _Watchdog, relay: _Relay) -> str:
+def _cause(returncode: int, watchdog: _Watchdog, relay: Relay) -> str:
     if relay.killed:
         return "killed by a second interrupt"
     if watchdog.waited:

@@ -1,14 +1,15 @@
 """The repetition of a run to record its predictions."""
 
 import contextlib
-import subprocess
 import sys
-import tempfile
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from giveway.gate import LARGEST_TABLE, read_bytes
+from giveway.processes.causes import text_in
+from giveway.processes.interrupts import ended_by
+from giveway.processes.supervisor import journal_folder, supervise
 from giveway.replays.run_folder import PREDICTIONS
 
 PERIOD = 0.25  # Time [s] between two predicted positions
@@ -38,16 +39,17 @@ def predicted_again(folder: Path, trusted: Collection[str] = ()) -> Iterator[Pre
         folder: Results of ``giveway run``.
         trusted: Code that the folder names and that may run.
     """
-    with tempfile.TemporaryDirectory(prefix="giveway-replay-", ignore_cleanup_errors=True) as place:
-        again = Path(place) / "run"
+    with journal_folder() as journal:
+        again, said = journal / "again", journal / "said.txt"
         command = [sys.executable, "-m", "giveway", "run", "--config", str(folder / "config.toml")]
         command += ["--record-predictions", str(PERIOD), "--out", str(again)]
         command += [word for name in trusted for word in ("--trust", name)]
         command += ["--no-twin", "--no-pictures", "--quiet"]
-        done = subprocess.run(
-            command, stdin=subprocess.DEVNULL, capture_output=True, check=False, text=True
-        )
-        yield _compared(folder, again, done.stderr)
+        with said.open("wb") as output:
+            verdict = supervise(command, journal, output=output.fileno())
+        if verdict.interrupted:
+            raise ended_by(verdict.signal)
+        yield _compared(folder, again, verdict.message or text_in(said))
 
 
 def _compared(folder: Path, again: Path, complaint: str) -> Predicted:

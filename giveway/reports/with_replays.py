@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from giveway.errors import GivewayError
+from giveway.processes.interrupts import DeferredInterrupt, ended_by
 from giveway.replays import write_replay
 from giveway.reports.examples import Drive, drives_of
 from giveway.reports.kept_runs import KeptRuns
@@ -101,5 +102,5 @@ def _whole(result: RunResult) -> RunResult:
         KeyboardInterrupt: the user has interrupted the run, and so the report.
     """
     if result.ending is Ending.INTERRUPTED:
-        raise KeyboardInterrupt
+        raise ended_by(DeferredInterrupt.latest)
     return result

@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.console import Console
 
-from giveway.cli.exit import INTERRUPTED, fail
+from giveway.cli.exit import fail
 from giveway.cli.option_groups import RunOutputs
 from giveway.cli.screen.printing import escape, print_json
 from giveway.cli.screen.progress_bars import run_progress
@@ -16,6 +16,7 @@ from giveway.config import RunConfig
 from giveway.config.files.layers import Layer, dump_toml, read_toml
 from giveway.config.files.loading import load
 from giveway.errors import GivewayError
+from giveway.processes.interrupts import DeferredInterrupt, ended_by, exit_code_of, who_ended
 from giveway.results.folder import Destination, check_folder
 from giveway.results.run_result import RunResult
 from giveway.results.table_files import require_parquet
@@ -38,7 +39,7 @@ def run_command(
     outputs: RunOutputs,
     journal: Path | None = None,
 ) -> int:
-    """Run once and return the exit code: 0, or 130 if the user interrupted.
+    """Run once and return the exit code: 0, or 128 + the signal by which the user ended it.
 
     Args:
         scenario: Name or path, or None for the file's or the default.
@@ -104,7 +105,8 @@ def run_command(
 def interrupted(result: RunResult, folder: Path) -> int:
     """Print what has been kept of a run that the user has ended, and return the exit code."""
     kept = f"rows up to then are in {folder}" if len(result.time) else "there are no rows yet"
-    return fail(f"interrupted; {kept}", INTERRUPTED)
+    error = ended_by(DeferredInterrupt.latest)
+    return fail(f"{who_ended(error)}; {kept}", exit_code_of(error))
 
 
 def default_folder(config: RunConfig, scenario: str) -> Path:

@@ -4,10 +4,10 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from giveway.cli.exit import INTERRUPTED, fail
+from giveway.cli.exit import fail
 from giveway.errors import CrashError, GivewayError
 from giveway.processes.child import Supervised
-from giveway.processes.interrupts import who_ended
+from giveway.processes.interrupts import DeferredInterrupt, exit_code_of, who_ended
 from giveway.processes.supervisor import journal_folder, own_command, supervise
 
 
@@ -34,7 +34,9 @@ def run_isolated() -> int:
             return verdict.code
         from giveway.recovery import recover
 
-        return fail(str(recover(journal, verdict)), INTERRUPTED if verdict.interrupted else 1)
+        with DeferredInterrupt():  # the journal is removed after this
+            report = str(recover(journal, verdict))
+        return fail(report, verdict.code if verdict.interrupted else 1)
 
 
 def supervised(journal: Path | None, command: Callable[[], int]) -> None:
@@ -53,7 +55,7 @@ def supervised(journal: Path | None, command: Callable[[], int]) -> None:
             child.listen()
             code = command()
         except KeyboardInterrupt as error:
-            code = fail(f"{who_ended(error)} before the run began", INTERRUPTED)
+            code = fail(f"{who_ended(error)} before the run began", exit_code_of(error))
         except GivewayError as error:
             code = fail(str(error), error.exit_code)
         # raised inside: a failed run that crashes while it ends counts as failed
