@@ -8,13 +8,13 @@ import os
 import pickle
 import subprocess
 import sys
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from fmus.archive.own_folder import OwnFolder
 from fmus.archive.place import unpacking_place
 from fmus.driving.starting import start_values
 from fmus.driving.vehicle import VehicleFmu
@@ -59,9 +59,7 @@ def beside_fmpy(prepared: Prepared, forces: Sequence[float]) -> Beside:
         return Beside(problem="FMPy takes no single elements of arrays, and no shares or means")
     if prepared.clocks:
         return Beside(problem="FMPy does not tick input clocks")
-    with tempfile.TemporaryDirectory(
-        prefix="beside-fmpy-", dir=unpacking_place(), ignore_cleanup_errors=True
-    ) as scratch:
+    with OwnFolder("beside-fmpy-", unpacking_place()) as scratch:
         folder = Path(scratch)
         (folder / "order").write_bytes(pickle.dumps((prepared, prepared.path.resolve(), forces)))
         try:

@@ -12,7 +12,7 @@ from fmus.archive.archive_check import open_archive
 from fmus.archive.place import unpacking_place
 from fmus.profile.preparation import Prepared, unpack
 
-PREFIX: Final = "vehicle-fmu-"
+_PREFIX: Final = "vehicle-fmu-"
 _folders: Final[dict[str, Path]] = {}  # folders by the SHA-256 of the FMU
 _keeping: Final[set[bool]] = set()
 
@@ -36,7 +36,7 @@ def kept(prepared: Prepared) -> Path | None:
         return None
     digest = open_archive(prepared.path).sha256
     if digest not in _folders:
-        folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=unpacking_place()))
+        folder = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=unpacking_place()))
         unpack(prepared, folder)
         _folders[digest] = folder
     return _folders[digest]

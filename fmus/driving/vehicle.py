@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from math import isclose, isfinite
 from pathlib import Path
-from typing import NoReturn, Protocol, Self
+from typing import Final, NoReturn, Protocol, Self
 
+from fmus.archive.own_folder import OwnFolder
 from fmus.archive.place import unpacking_place
 from fmus.description.model import Channel, Value
-from fmus.driving.kept_folder import PREFIX, kept
+from fmus.driving.kept_folder import kept
 from fmus.driving.motion import Motion
 from fmus.driving.starting import reach, require_position, start_values
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
@@ -23,6 +23,8 @@ from fmus.interfaces.vehicle import Drivable
 from fmus.profile.preparation import Prepared, prepare, unpack
 from fmus.profile.step_plan import between
 from fmus.profile.vehicle_profile import VehicleProfile
+
+_PREFIX: Final = "giveway-fmu-"
 
 
 class Runner(Protocol):
@@ -117,10 +119,7 @@ class VehicleFmu(Drivable):
         """Return the folder in which the FMU is unpacked."""
         folder = kept(prepared)
         if folder is None:
-            own = tempfile.TemporaryDirectory(
-                prefix=PREFIX, dir=unpacking_place(), ignore_cleanup_errors=True
-            )
-            folder = Path(stack.enter_context(own))
+            folder = Path(stack.enter_context(OwnFolder(_PREFIX, unpacking_place())))
             unpack(prepared, folder)
         return folder
 

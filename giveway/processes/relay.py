@@ -56,8 +56,8 @@ class Relay(SignalHandler):
         name = signal.Signals(self.first).name
         with contextlib.suppress(OSError):
             sys.stderr.write(
-                f"note: {name} is not heard yet {place}: native code has to return first; a "
-                "second one kills the run, whose recorded rows are kept\n"
+                f"note: {name} has not been heard yet {place}; a second one kills the run, whose "
+                "recorded rows are kept\n"
             )
         self._told = True
 

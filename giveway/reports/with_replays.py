@@ -1,10 +1,10 @@
 """The report of a study with replays: the runs that it shows are made again."""
 
-import tempfile
 import time
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
+from fmus.archive.own_folder import OwnFolder
 from giveway.errors import GivewayError
 from giveway.processes.interrupts import DeferredInterrupt, ended_by
 from giveway.replays import write_replay
@@ -81,7 +81,7 @@ def _make(
         left = (time.monotonic() - begun) / done * (len(runs) - done) if done else 0.0
         about = f", about {left:.0f} s left" if left >= 1.0 else ""
         tell(f"Making run {run} again for its replay, {done + 1} of {len(runs)}{about} ...")
-        with tempfile.TemporaryDirectory(prefix="giveway-replay-") as temporary:
+        with OwnFolder("giveway-replay-") as temporary:
             folder = Path(temporary) / run
             try:
                 checked = checked_run(study, run, predictions=True, trusted=trusted)

@@ -5,16 +5,17 @@ It runs in a process of its own, because SUMO may crash or hang, and a process h
 
 import json
 import sys
-import tempfile
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from fmus.archive.own_folder import OwnFolder
 from giveway.errors import GivewayError
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
 from giveway.sumo.encounters import Encounters
 from giveway.sumo.library import import_libsumo
 from giveway.sumo.network.lanes import Lanes
+from giveway.sumo.scratch import PREFIX
 from giveway.sumo.types import ROAD_CLASSES
 
 _LOOK = 3.0  # Wall-clock time [s] of the trial: vehicles have departed by then in most scenarios
@@ -34,8 +35,8 @@ def look(config_file: Path, people: bool = False) -> dict[str, Any]:
     began = perf_counter()
     vehicles: dict[str, list[str]] = {}
     persons = 0
-    with tempfile.TemporaryDirectory(prefix="giveway-") as scratch:
-        start = prepare_start(read_scenario(config_file), StartOptions(), Path(scratch))
+    with OwnFolder(PREFIX) as folder:
+        start = prepare_start(read_scenario(config_file), StartOptions(), Path(folder))
         sumo.start(list(start.command))
         loaded = perf_counter() - began
         end = sumo.simulation.getEndTime()

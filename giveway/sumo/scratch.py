@@ -5,11 +5,12 @@ file systems take longer to remove a folder than SUMO takes to load a small scen
 """
 
 import shutil
-import tempfile
 from pathlib import Path
 from typing import Final
 
-PREFIX: Final = "giveway-"
+from fmus.archive.own_folder import OwnFolder
+
+PREFIX: Final = "giveway-scratch-"
 _kept: list["KeptFolder"] = []
 
 
@@ -17,13 +18,14 @@ class KeptFolder:
     """A folder that one session after the other uses and empties.
 
     Attributes:
-        name: Path of the folder, as in a ``tempfile.TemporaryDirectory``.
+        name: Path of the folder, as in an ``OwnFolder``.
     """
 
     name: str
 
     def __init__(self) -> None:
-        self.name = tempfile.mkdtemp(prefix=PREFIX)
+        self._folder = OwnFolder(PREFIX)
+        self.name = self._folder.name
 
     def cleanup(self) -> None:
         """Remove the contents of the folder.
@@ -50,10 +52,10 @@ def keep_scratch() -> None:
         _kept.append(KeptFolder())
 
 
-def scratch() -> "tempfile.TemporaryDirectory[str] | KeptFolder":
+def scratch() -> OwnFolder | KeptFolder:
     """Return an empty folder for a new session; the session calls its ``cleanup`` in the end.
 
     Raises:
         OSError: the folder cannot be made.
     """
-    return _kept[0] if _kept else tempfile.TemporaryDirectory(prefix=PREFIX)
+    return _kept[0] if _kept else OwnFolder(PREFIX)

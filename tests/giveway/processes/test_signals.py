@@ -85,13 +85,17 @@ def test_a_second_signal_kills_a_child_that_does_not_heed(
 ) -> None:
     deaf = "print('READY', flush=True); ctypes.PyDLL(None).sleep(60)"
     body = f"with DeferredInterrupt(): {deaf}".replace("sleep(60)", "sleep(60), time.sleep(60)")
-    with start(child(body), journal) as parent:
+    with start(child(body), journal, stderr=subprocess.PIPE) as parent:
         assert parent.stdout is not None
+        assert parent.stderr is not None
         parent.stdout.readline()
-        for _ in range(2):
-            parent.send_signal(signal.SIGTERM)
-            time.sleep(0.5)
+        parent.send_signal(signal.SIGTERM)
+        parent.send_signal(signal.SIGTERM)  # one that comes before the note does nothing
+        note = parent.stderr.readline()
+        parent.send_signal(signal.SIGTERM)
         verdict = verdict_in(parent.communicate(timeout=120)[0])
+    assert note.startswith("note: SIGTERM has not been heard yet ")
+    assert "a second one kills the run" in note
     assert verdict["cause"] == "killed by a second interrupt"
     assert (verdict["code"], verdict["crashed"], verdict["interrupted"]) == (143, True, True)
     assert len(read_journal(journal).tables["ego"]) == 3

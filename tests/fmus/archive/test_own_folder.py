@@ -1,0 +1,73 @@
+"""A temporary folder of a process: locked while it is in use, swept by the next process if not."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fmus.archive import own_folder
+from fmus.archive.own_folder import OwnFolder
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no such locks")
+
+HOLDS = """
+import sys, time
+from pathlib import Path
+from fmus.archive.own_folder import OwnFolder
+folder = OwnFolder("kind-", Path(sys.argv[1]))
+(Path(folder.name) / "file").touch()
+print(folder.name, flush=True)
+time.sleep(60)
+"""
+
+
+@pytest.fixture
+def holder(tmp_path, monkeypatch):
+    monkeypatch.setattr(own_folder, "_swept", set())
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDS, str(tmp_path)], stdout=subprocess.PIPE, text=True
+    ) as process:
+        process.folder = Path(process.stdout.readline().strip())
+        yield process
+        process.kill()
+
+
+def test_that_of_a_killed_process_goes_and_that_of_a_living_one_stays(holder, tmp_path):
+    with OwnFolder("kind-", tmp_path) as name:
+        assert Path(name).is_dir()
+        assert (holder.folder / "file").is_file()
+    own_folder._swept.clear()
+    holder.kill()
+    holder.wait()
+    with OwnFolder("kind-", tmp_path) as name:
+        assert [str(path) for path in tmp_path.iterdir()] == [name]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_and_folders_of_another_kind_are_left_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(own_folder, "_swept", set())
+    precious = tmp_path / "precious"
+    precious.mkdir()
+    (tmp_path / "kind-link").symlink_to(precious)
+    with OwnFolder("kind-", tmp_path):
+        pass
+    assert precious.is_dir()
+    assert (tmp_path / "kind-link").is_symlink()
+
+
+def test_a_signal_in_the_removal_leaves_nothing_and_goes_on(tmp_path, monkeypatch):
+    folder = OwnFolder("kind-", tmp_path)
+    removals = []
+    remove = own_folder.shutil.rmtree
+
+    def interrupted(name, **options):
+        removals.append(name)
+        if len(removals) == 1:
+            raise KeyboardInterrupt
+        remove(name, **options)
+
+    monkeypatch.setattr(own_folder.shutil, "rmtree", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        folder.cleanup()
+    assert list(tmp_path.iterdir()) == []
