@@ -37,7 +37,8 @@ def _code_of(words: Sequence[str], signals: RaisedSignals) -> int:
     try:
         try:
             code = _run(words)
-            signals.raise_put_off()
+            if code == 0:  # else another handler has heard it
+                signals.raise_put_off()
             return code
         finally:
             signals.raise_no_more()

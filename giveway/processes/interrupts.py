@@ -176,7 +176,12 @@ def _send_later(number: int) -> None:
 
     def send() -> None:
         time.sleep(_MOMENT)
-        _thread.interrupt_main(signal.Signals(number))
+        if not callable(signal.getsignal(number)):  # the context has been left
+            return
+        if sys.platform == "win32":
+            _thread.interrupt_main(signal.Signals(number))
+        else:  # which also wakes a main thread that waits
+            signal.pthread_kill(threading.main_thread().ident or 0, number)
 
     # not by `threading`, whose locks the interrupted code may hold
     _thread.start_new_thread(send, ())

@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -88,3 +89,19 @@ def test_an_impatient_ctrl_c_is_noted_and_python_goes_on() -> None:
         signal.raise_signal(signal.SIGINT)
         assert interrupt.requested
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_one_that_a_destructor_cannot_raise_is_raised_afterwards(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    class Dying:
+        def __del__(self) -> None:
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    def drop() -> None:
+        Dying()
+        time.sleep(60.0)
+
+    with RaisedSignals(), pytest.raises(TerminatedError):
+        drop()
+    assert capsys.readouterr().err == ""
