@@ -154,7 +154,7 @@ def _rows(results: Path) -> int:
 def _torn(folder: Path, command: Command) -> Iterator[str]:
     """Yield the files that are not whole."""
     for path in folder.rglob("*"):
-        if path.suffix in _PARTIAL and path.is_file() and "tmp" not in path.parts:
+        if path.suffix in _PARTIAL and path.is_file() and (folder / "tmp") not in path.parents:
             yield f"{path.name} is left"
     for name in command.pages:
         page = folder / name
