@@ -45,6 +45,8 @@ _PIECE: Final = 2**20  # Bytes that are hashed at a time
 _KEY_FILE: Final = "own_results.key"
 _KEY_LENGTH: Final = 32  # Bytes of the user's key, as many as SHA-256 has
 MANIFEST: Final = "manifest.json"
+DEFINITIONS: Final = {"study": "study.toml", "risk": "risk.toml"}
+"""Names of the file with a definition, by the kind of the folder."""
 MAKER: Final = "maker"
 """Key of a JSON file with the signature of the user who made it."""
 
@@ -305,3 +307,8 @@ def _make_key(file: Path) -> None:
             os.link(name, file)
     finally:
         Path(name).unlink()
+
+
+def definition_name(manifest: Mapping[str, Any]) -> str:
+    """Return the name of the file with the definition of a study or a risk."""
+    return DEFINITIONS.get(str(manifest.get("kind")), DEFINITIONS["study"])

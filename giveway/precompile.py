@@ -48,7 +48,7 @@ _WALKS: Final[tuple[dict[str, Any], ...]] = (
     _PLANNING,
 )
 _OTHERS: Final[tuple[dict[str, Any], ...]] = (
-    _FREE,
+    _FREE | {"metrics": {"impacts": True}},
     _STREET,
     {
         "time_limit": 0.3,

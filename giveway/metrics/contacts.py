@@ -4,7 +4,7 @@ The ego is responsible for pedestrians that it drives into, not for those who wa
 into the standing ego. The rule and its rare cases are in docs/results.md.
 """
 
-from math import inf
+from math import hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,7 +43,18 @@ def contacts(
     body_radius: float,
     clearance: NDArray[np.float64],
 ) -> NDArray[np.str_]:
-    """Return the kind of contact of each pedestrian with the ego, if there was one.
+    """Return the kind of contact of each pedestrian with the ego, as in :func:`impacts`."""
+    return impacts(ego, crowd, shape, body_radius, clearance)[0]
+
+
+def impacts(
+    ego: EgoTrack,
+    crowd: CrowdTrack,
+    shape: VehicleShape,
+    body_radius: float,
+    clearance: NDArray[np.float64],
+) -> tuple[NDArray[np.str_], NDArray[np.float64]]:
+    """Return the kind of contact of each pedestrian with the ego, if there was one, and its speed.
 
     A contact is frontal if at its first instant the pedestrian's centre is ahead of the front
     bumper's line and the ego moves. It is also frontal if both hold later on while the ego is the
@@ -64,6 +75,8 @@ def contacts(
     Returns:
         Kind (n,): ``recorded``, or ``frontal`` after any frontal contact, otherwise ``side``, or
             empty without a contact.
+        Speed (n,) [m/s] of the impact: of the ego at its first frontal contact, or of ego and
+            pedestrian relative to each other at the first contact at a side; nan without a contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -71,6 +84,7 @@ def contacts(
     check_records(ego, crowd)
     groups = PedestrianGroups(crowd)
     kinds = np.zeros(len(crowd.ids), dtype=np.int64)
+    speeds = np.full(len(crowd.ids), np.nan)
     _classify(
         centre_poses(ego, shape),
         as_floats(ego.speed),
@@ -79,11 +93,12 @@ def contacts(
         as_floats(clearance[groups.order]),
         contact_body(shape, body_radius),
         kinds,
+        speeds,
     )
     if crowd.reacts_from is not None:
         unaware = crowd.step < crowd.reacts_from[crowd.pedestrian]
         kinds[crowd.pedestrian[unaware & (clearance < 0.0)]] = _RECORDED
-    return np.asarray(_NAMES[kinds], dtype=np.str_)
+    return np.asarray(_NAMES[kinds], dtype=np.str_), speeds
 
 
 @inner
@@ -117,8 +132,12 @@ def _classify(
     clearance: NDArray[np.float64],
     body: tuple[float, float, float],
     kinds: NDArray[np.int64],
+    speeds: NDArray[np.float64],
 ) -> None:
-    """Fill ``kinds`` (n,). The records must be sorted by pedestrian, and then by time."""
+    """Fill ``kinds`` and ``speeds`` (n,).
+
+    The records must be sorted by pedestrian, and then by time.
+    """
     step, x, y, vx, vy = records
     half_length, _, _ = body
     for i in range(kinds.size):
@@ -128,12 +147,16 @@ def _classify(
             k = step[r]
             c, s = poses[k, 2], poses[k, 3]
             p_x, _ = to_frame(x[r] - poses[k, 0], y[r] - poses[k, 1], c, s)
-            w_x, _ = to_frame(vx[r], vy[r], c, s)
+            w_x, w_y = to_frame(vx[r], vy[r], c, s)
             frontal = p_x > half_length and speed[k] > MOVING and speed[k] > w_x
+            impact = speed[k]
             followed = r > bounds[i] and step[r - 1] == k - 1
             if followed and clearance[r - 1] >= 0.0:
-                at, v = _first_touch(k, r, poses, speed, x, y, body)
-                frontal = frontal or (at > half_length and v > MOVING)
+                at, impact = _first_touch(k, r, poses, speed, x, y, body)
+                frontal = frontal or (at > half_length and impact > MOVING)
             elif not followed:
                 frontal = frontal or (p_x > half_length and speed[k] > MOVING)
-            kinds[i] = max(kinds[i], _FRONTAL if frontal else _SIDE)
+            if frontal and kinds[i] != _FRONTAL:
+                kinds[i], speeds[i] = _FRONTAL, impact
+            elif kinds[i] == 0:
+                kinds[i], speeds[i] = _SIDE, hypot(impact - w_x, w_y)

@@ -12,6 +12,7 @@ from giveway.config import RunConfig
 from giveway.config.tables.recorded import RECORDED
 from giveway.errors import MetricError
 from giveway.metrics.ego_fields import EGO_FIELDS
+from giveway.metrics.impacts import IMPACTS, ImpactMetric
 from giveway.metrics.pedestrians import WALK_SUMMARY_FIELDS
 from giveway.metrics.recorded_people import RecordedPeopleMetric
 from giveway.plug_ins.faults import blamed, described, shown
@@ -144,7 +145,7 @@ def measured(config: RunConfig, drive: Any) -> Measured:
 def declared(config: RunConfig) -> list[DeclaredMetric]:
     """Return the metrics of a run, each with its columns, in the order of the configuration.
 
-    The first of them is giveway's own if people walk as recorded.
+    The first of them are giveway's own, of people who walk as recorded and of impacts.
 
     Args:
         config: Configuration of the run.
@@ -156,10 +157,14 @@ def declared(config: RunConfig) -> list[DeclaredMetric]:
     """
     found: list[DeclaredMetric] = []
     owners = dict(_TAKEN)
-    if config.crowd.model == RECORDED:
-        ours = columns_of(RecordedPeopleMetric.Columns)
-        owners |= {column.name: "giveway" for column in ours}
-        found.append(DeclaredMetric(RECORDED, RecordedPeopleMetric, None, ours))
+    for name, kind, wanted in (
+        (RECORDED, RecordedPeopleMetric, config.crowd.model == RECORDED),
+        (IMPACTS, ImpactMetric, config.metrics.impacts),
+    ):
+        if wanted:
+            ours = columns_of(kind.Columns)
+            owners |= {column.name: "giveway" for column in ours}
+            found.append(DeclaredMetric(name, kind, None, ours))
     for name, settings in config.metrics.plugged_in.items():
         kind, options = load_class(name, METRIC, settings)
         if not callable(getattr(kind, METRIC.method, None)):

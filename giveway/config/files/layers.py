@@ -18,7 +18,7 @@ from giveway.config.run_config import RunConfig
 from giveway.config.tables.basics import BUNDLED_VEHICLES, IDENTIFIED
 from giveway.config.tables.controllers import OWN_OPTIONS
 from giveway.errors import ConfigError, suggestion
-from giveway.gate import read_text
+from giveway.gate import DEFINITIONS, read_text
 from giveway.plug_ins.finding import same_name
 from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, TABLES
 
@@ -28,8 +28,8 @@ Location = tuple[str, ...]
 PLUGGED = {socket.options: socket for socket in SOCKETS}
 """The tables whose keys are the options of plug-ins (--set)."""
 
-NO_FLAGS = frozenset({"egos", "measure", "flow", "recorded", *PLUGGED})
-"""Keys without flags: lists of tables, and the tables of plug-ins' options."""
+NO_FLAGS = frozenset({"draws", "egos", "measure", "flow", "recorded", *PLUGGED})
+"""Keys without flags: lists of numbers or tables, and the tables of plug-ins' options."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def _written_settings(path: Path) -> dict[str, Any]:
 
 def results_of(path: Path) -> Path | None:
     """Return the results folder that holds a file of settings, or None if it is a user's."""
-    written = path.name in {"config.toml", "study.toml"}
+    written = path.name in {"config.toml", *DEFINITIONS.values()}
     return path.parent if written and path.with_name("manifest.json").is_file() else None
 
 
@@ -303,6 +303,8 @@ def dump_toml(config: RunConfig) -> str:
             named: Any = document.setdefault(table, tomlkit.table())
             named.add(name, tomlkit.item(dict(own) or True))
     crowd: Any = document["crowd"]
+    if config.crowd.draws:
+        crowd.add("draws", list(config.crowd.draws))
     for where, key, entries in (
         (crowd, "flow", [flow.settings() for flow in config.crowd.flow]),
         (crowd, "recorded", [entry.settings() for entry in config.crowd.recorded]),

@@ -17,7 +17,14 @@ from giveway.config.files.layers import Layer
 from giveway.config.run_config import RunConfig
 from giveway.config.tables.basics import BUNDLED_VEHICLES
 from giveway.errors import ConfigError
-from giveway.gate import MANIFEST, RefusedFileError, fingerprint_of, is_own, read_json
+from giveway.gate import (
+    MANIFEST,
+    RefusedFileError,
+    definition_name,
+    fingerprint_of,
+    is_own,
+    read_json,
+)
 from giveway.plug_ins.finding import find, is_fmu, is_reference, same_name, shown
 from giveway.plug_ins.sockets import VEHICLE, Socket
 
@@ -90,7 +97,7 @@ def is_own_folder(folder: Path) -> bool:
     try:
         manifest = read_json(folder / MANIFEST)
         if "definition" in manifest:  # of a study
-            file, known = "study.toml", manifest["definition"]
+            file, known = definition_name(manifest), manifest["definition"]
         else:
             file, known = "config.toml", manifest["seal"]["files"]["config.toml"]
         return is_own(manifest) and fingerprint_of(folder / file) == known

@@ -30,9 +30,12 @@ DESIRED_SPEEDS: Final = (0.5, 2.2)
 """Bounds [m/s] of desired speeds by default (reading of Yang & Özgüner 2019; reproduction.md)."""
 
 ENCOUNTERS: Final = "encounters"
+DRAWS_PER_PERSON: Final = 3
+"""Number of standard normal numbers that make one added person: place x, place y, speed."""
 VCI: Final = "vci"
 _SLOWEST, _FASTEST = 0.1, 2.5  # Widest bounds [m/s] of desired speeds; 2.5 m/s: v_max of VCI
 _NEAREST = 0.01  # Smallest side of an area, and smallest walk [m]
+_UNLIKELY = 38.0  # Largest standard normal number whose probability is not rounded to 0
 _FARTHEST = 1e7  # Largest coordinate [m]; beyond it a millimetre is lost in rounding
 
 
@@ -185,6 +188,12 @@ class CrowdConfig(Section):
         default=(), description="Recordings whose people enter as they were recorded"
     )
 
+    draws: tuple[Annotated[float, Field(ge=-_UNLIKELY, le=_UNLIKELY)], ...] = Field(
+        default=(),
+        description="Standard normal numbers, three for each added person, that place people and "
+        "set their desired speeds. By default the seed does",
+    )
+
     @property
     def adds_people(self) -> bool:
         """True if giveway adds people."""
@@ -231,6 +240,8 @@ class CrowdConfig(Section):
             )
         if self.model == RECORDED:
             self._require_recorded()
+        if self.draws:
+            self._require_draws()
         return self
 
     def _require_speeds(self) -> None:
@@ -244,6 +255,18 @@ class CrowdConfig(Section):
             raise ValueError(
                 f"desired_speed_mean = {self.desired_speed_mean:g}: expected {low:g} to {high:g} "
                 "[m/s]; or other desired_speed_bounds"
+            )
+
+    def _require_draws(self) -> None:
+        if self.sampler == ENCOUNTERS:
+            raise ValueError(
+                f"draws: sampler = '{ENCOUNTERS}' needs a varying number of draws; expected "
+                "sampler = 'area', or no draws, so that the seed places people"
+            )
+        if len(self.draws) != DRAWS_PER_PERSON * self.pedestrians:
+            raise ValueError(
+                f"draws: {len(self.draws)} numbers for pedestrians = {self.pedestrians}: expected "
+                f"{DRAWS_PER_PERSON} for each"
             )
 
     def _require_recorded(self) -> None:

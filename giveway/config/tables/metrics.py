@@ -2,11 +2,19 @@
 
 from typing import ClassVar
 
+from giveway.config.option import option
 from giveway.config.tables.plug_in_table import PlugInTable
 from giveway.plug_ins.sockets import METRIC, Socket
 
 
 class MetricsConfig(PlugInTable):
-    """The metrics of other packages that a run has; giveway's own are always there."""
+    """The metrics of other packages that a run has, and giveway's own that are not always there."""
 
     socket: ClassVar[Socket] = METRIC
+
+    impacts: bool | None = option(
+        None,
+        None,
+        "The summary has the speeds of contacts, and the smallest distance ahead. It does not by "
+        "default, but in giveway risk",
+    )

@@ -50,15 +50,43 @@ def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.
         random: Generator of the draws.
     """
     low, high = config.desired_speed_bounds
-    about = [_distribution(config, kind) for kind in kinds]
-    mean, deviation = np.array(about, dtype=np.float64).reshape(-1, 2).T
-    speeds = random.normal(mean, deviation)
+    mean, deviation = _distributions(config, kinds)
+    speeds: Array = random.normal(mean, deviation)
     for _ in range(_REDRAWS):
         outside = (speeds < low) | (speeds > high)
         if not outside.any():
             return speeds
         speeds[outside] = random.normal(mean[outside], deviation[outside])
-    return np.clip(speeds, low, high)  # for bounds so narrow that hardly any draw is within
+    return np.asarray(
+        np.clip(speeds, low, high)
+    )  # for bounds so narrow that hardly any draw is within
+
+
+def speeds_at(config: CrowdConfig, kinds: Sequence[str], draws: Array) -> Array:
+    """Return the desired speeds (n,) [m/s] of standard normal numbers (n,).
+
+    They have the distribution of :func:`desired_speeds`.
+
+    Args:
+        config: Distribution for adults.
+        kinds: Kind (n,) of each person; empty counts as adult.
+        draws: Standard normal number of each person.
+    """
+    from scipy.special import ndtr, ndtri
+
+    low, high = config.desired_speed_bounds
+    mean, deviation = _distributions(config, kinds)
+    spread = np.maximum(deviation, 1e-9)  # a deviation of 0 gives the mean
+    least, most = ndtr((low - mean) / spread), ndtr((high - mean) / spread)
+    speeds = mean + spread * ndtri(least + ndtr(draws) * (most - least))
+    return np.asarray(np.clip(speeds, low, high))
+
+
+def _distributions(config: CrowdConfig, kinds: Sequence[str]) -> Array:
+    """Return means and standard deviations (2, n) of desired speeds [m/s]."""
+    about = [_distribution(config, kind) for kind in kinds]
+    columns: Array = np.array(about, dtype=np.float64).reshape(-1, 2).T
+    return columns
 
 
 def _distribution(config: CrowdConfig, kind: str) -> tuple[float, float]:

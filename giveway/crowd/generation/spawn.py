@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from giveway.config.tables.crowd import ENCOUNTERS, CrowdConfig
+from giveway.config.tables.crowd import DRAWS_PER_PERSON, ENCOUNTERS, CrowdConfig
 from giveway.crowd.generation.encounters import FreeDrive, meet
 from giveway.crowd.generation.groups import facing, of_parties, party_sizes, slowest
-from giveway.crowd.generation.kinds import desired_speeds, draw_kinds
+from giveway.crowd.generation.kinds import desired_speeds, draw_kinds, speeds_at
 from giveway.crowd.roster import Trait
 from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
@@ -54,6 +54,9 @@ def spawn(
     spawn area. The first k people of a larger crowd of the same seed differ from a crowd of k,
     because the spacing rule couples all of them.
 
+    With ``config.draws`` the seed only draws places again that are too close to another person, and
+    kinds and groups. The distribution is the same.
+
     Args:
         config: Number, places, destinations and speeds of the people.
         path: Path of the ego, for ``two_sided``; None if no ego is inserted.
@@ -84,8 +87,13 @@ def spawn(
             )
         axis = _axis(config, path)
     sizes = party_sizes(len(ids), config.groups, random)
-    position = _scatter(config, sizes, random, axis)
-    desired_speed = slowest(desired_speeds(config, kinds, random), sizes)
+    draws = np.reshape(config.draws, (-1, DRAWS_PER_PERSON))
+    position = _scatter(config, sizes, random, axis, draws[:, :2])
+    if len(draws):
+        speeds = speeds_at(config, kinds, draws[:, 2])
+    else:
+        speeds = desired_speeds(config, kinds, random)
+    desired_speed = slowest(speeds, sizes)
     destination = position + np.asarray(config.walk)
     if axis is not None:
         across = np.repeat(np.arange(len(sizes)) % 2 == 1, sizes)
@@ -102,20 +110,29 @@ def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
 
 
 def _scatter(
-    config: CrowdConfig, sizes: Sequence[int], random: np.random.Generator, axis: Pose | None
+    config: CrowdConfig,
+    sizes: Sequence[int],
+    random: np.random.Generator,
+    axis: Pose | None,
+    draws: Array,
 ) -> Array:
     """Draw places (n, 2) [m] of groups that keep the minimum spacing from one another.
 
-    All are in the spawn area. With an ``axis`` every second group is in its mirror image.
+    All are in the spawn area. With an ``axis`` every second group is in its mirror image. ``draws``
+    (n, 2) are standard normal numbers for each group's first attempt, or none.
     """
+    shares = _probabilities(draws)
     x_min, y_min, x_max, y_max = config.spawn_area
     low, high = np.array([x_min, y_min]), np.array([x_max, y_max])
     places = np.empty((config.pedestrians, 2))
     count = 0
     for number, size in enumerate(sizes):
         shape = facing(size, np.asarray(config.walk))
-        for _ in range(_ATTEMPTS_PER_PERSON):
-            candidate = random.uniform(low, high) + shape
+        for attempt in range(_ATTEMPTS_PER_PERSON):
+            if len(shares) and not attempt:
+                candidate = low + shares[count] * (high - low) + shape
+            else:
+                candidate = random.uniform(low, high) + shape
             if size > 1 and not ((candidate >= low) & (candidate <= high)).all():
                 continue
             if axis is not None and number % 2:
@@ -132,6 +149,15 @@ def _scatter(
                 "or lower the number or [crowd] minimum_spacing"
             )
     return places
+
+
+def _probabilities(draws: Array) -> Array:
+    """Return the probability of each standard normal number not to be exceeded."""
+    if not len(draws):
+        return draws
+    from scipy.special import ndtr  # only here, since its import takes long
+
+    return np.asarray(ndtr(draws))
 
 
 def has_room(places: Array, others: Array, spacing: float) -> bool:

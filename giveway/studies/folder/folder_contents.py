@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from giveway.gate import RefusedFileError, fingerprint, fingerprint_of, read_bytes
+from giveway.gate import RefusedFileError, definition_name, fingerprint, fingerprint_of, read_bytes
 from giveway.studies.folder.sealing import (
     SEAL,
     BrokenFileError,
@@ -62,7 +62,7 @@ def require_definition(study: Path, manifest: dict[str, Any]) -> None:
         BrokenFileError: it is another one.
         OSError: it cannot be read.
     """
-    file = study / DEFINITION
+    file = study / definition_name(manifest)
     known = manifest.get("definition")
     try:
         changed = known is not None and known != fingerprint(read_bytes(file))

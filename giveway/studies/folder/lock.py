@@ -8,9 +8,9 @@ from pathlib import Path
 import filelock
 
 from giveway.errors import ResultsError
-from giveway.gate import require_no_link
+from giveway.gate import DEFINITIONS, require_no_link
 from giveway.studies.folder.atomic_files import finished_name
-from giveway.studies.folder.folder_contents import DEFINITION, MANIFEST, PACKAGE, read_manifest
+from giveway.studies.folder.folder_contents import MANIFEST, PACKAGE, read_manifest
 from giveway.studies.folder.sealing import ASIDE, BrokenFileError
 from giveway.studies.folder.store import RECORDS
 from giveway.studies.folder.table_files import TABLES
@@ -19,9 +19,12 @@ from giveway.studies.study_options import StudyOptions
 LOCK = ".lock"
 REPORT = "report.html"
 BENCHMARK = "benchmark.csv"
-_DERIVED_FILES = frozenset({*(f"{name}.csv" for name in TABLES), PACKAGE, REPORT, BENCHMARK})
+RISK_TABLES = ("runs", "risk", "events", "stages", "failures")
+_DERIVED_FILES = frozenset(
+    {*(f"{name}.csv" for name in (*TABLES, *RISK_TABLES)), PACKAGE, REPORT, BENCHMARK}
+)
 _STUDY_FILES = (
-    frozenset({DEFINITION, MANIFEST, RECORDS, ASIDE, "figures", "replays", "reruns"})
+    frozenset({*DEFINITIONS.values(), MANIFEST, RECORDS, ASIDE, "figures", "replays", "reruns"})
     | _DERIVED_FILES
 )
 

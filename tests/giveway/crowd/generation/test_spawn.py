@@ -75,3 +75,35 @@ def test_two_sided_mirrors_about_the_path_beside_the_area() -> None:
     assert (crowd.position[1::2, 0] < 50).all()
     assert (crowd.position[:, 1] >= 60).all()
     assert crowd.destination[1::2, 0] == pytest.approx(crowd.position[1::2, 0] + 20)
+
+
+def test_draws_place_people_and_set_their_speeds_by_their_quantiles() -> None:
+    draws = (0.0, 0.0, 0.0, 1.0, -1.0, 2.0)
+    config = CrowdConfig(pedestrians=2, spawn_area=(0, 0, 10, 20), draws=draws)
+    crowd = spawn(config, AXIS, 1)
+    assert crowd.position == pytest.approx(np.array([[5.0, 10.0], [8.413, 3.173]]), abs=1e-3)
+    assert crowd.desired_speed[0] == pytest.approx(1.394, abs=1e-3)
+    assert crowd.desired_speed[1] == pytest.approx(1.394 + 2 * 0.26, abs=0.02)
+    assert np.array_equal(crowd.position, spawn(config, AXIS, 2).position)
+
+
+def test_draws_have_the_distributions_of_the_seeds() -> None:
+    people = 2000
+    draws = tuple(np.random.default_rng(1).standard_normal(3 * people))
+    drawn = CrowdConfig(pedestrians=people, spawn_area=(0, 0, 60, 60), draws=draws)
+    crowd = spawn(drawn, AXIS, 4)
+    usual = spawn(drawn.model_copy(update={"draws": ()}), AXIS, 4)
+    shares = [0.1, 0.5, 0.9]
+    assert np.quantile(crowd.desired_speed, shares) == pytest.approx(
+        np.quantile(usual.desired_speed, shares), abs=0.05
+    )
+    assert np.quantile(crowd.position, shares) == pytest.approx(
+        np.quantile(usual.position, shares), abs=2.5
+    )
+
+
+def test_draws_that_do_not_fit_the_crowd_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"2 numbers for pedestrians = 1: expected 3 for each"):
+        CrowdConfig(pedestrians=1, draws=(0.0, 1.0))
+    with pytest.raises(ValueError, match="needs a varying number of draws"):
+        CrowdConfig(pedestrians=1, sampler="encounters", draws=(0.0, 0.0, 0.0))

@@ -1,0 +1,95 @@
+"""The speeds of contacts, and how close the moving ego came to people ahead of it."""
+
+from dataclasses import dataclass
+from math import inf, nan
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.contact import to_frame
+from giveway.geometry.kernel import kernel
+from giveway.metrics.conflicts import (
+    Records,
+    as_floats,
+    centre_poses,
+    contact_body,
+    proximity,
+    records_of,
+)
+from giveway.metrics.contacts import FRONTAL, MOVING, SIDE, impacts
+from giveway.run_data.columns import Quantity
+
+IMPACTS = "impacts"  # Key of [metrics] that adds these columns
+
+
+class ImpactMetric:
+    """A metric of giveway's own that only some runs have."""
+
+    @dataclass(frozen=True)
+    class Columns:
+        """The columns that these runs have besides."""
+
+        frontal_impact_speed: Annotated[
+            float,
+            Quantity(
+                "m/s", "largest speed of the ego at a frontal contact; empty: none", better="lower"
+            ),
+        ]
+        side_impact_speed: Annotated[
+            float,
+            Quantity("m/s", "largest relative speed at a contact at a side; empty: none"),
+        ]
+        clearance_ahead: Annotated[
+            float,
+            Quantity(
+                "m", "smallest distance to a person straight ahead of the moving ego; empty: none"
+            ),
+        ]
+
+    def measure(self, drive: Any) -> Columns:
+        """Return the numbers of one ego's drive.
+
+        Args:
+            drive: :class:`~giveway.results.ego_result.EgoResult` of the ego.
+        """
+        frontal, side, ahead = nan, nan, inf
+        body = drive.shape, drive.body_radius
+        for people in drive.crowd.by_people():
+            near = proximity(drive.track, people, *body)
+            kinds, speeds = impacts(drive.track, people, *body, near.clearance)
+            frontal = float(np.fmax(frontal, _largest(speeds[kinds == FRONTAL])))
+            side = float(np.fmax(side, _largest(speeds[kinds == SIDE])))
+            ahead = _clearance_ahead(
+                centre_poses(drive.track, drive.shape),
+                as_floats(drive.track.speed),
+                records_of(people, slice(None)),
+                contact_body(*body),
+                ahead,
+            )
+        return self.Columns(frontal, side, ahead if ahead < inf else nan)
+
+
+def _largest(speeds: NDArray[np.float64]) -> float:
+    return float(speeds.max()) if speeds.size else nan
+
+
+@kernel
+def _clearance_ahead(
+    poses: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    records: Records,
+    body: tuple[float, float, float],
+    smallest: float,
+) -> float:
+    """Return the smallest distance [m] from the bumper to a circle in the rectangle's track."""
+    step, x, y, _, _ = records
+    half_length, half_width, radius = body
+    for r in range(step.size):
+        k = step[r]
+        if speed[k] <= MOVING:
+            continue
+        p_x, p_y = to_frame(x[r] - poses[k, 0], y[r] - poses[k, 1], poses[k, 2], poses[k, 3])
+        if abs(p_y) < half_width + radius and p_x > half_length:
+            smallest = min(smallest, max(p_x - half_length - radius, 0.0))
+    return smallest
