@@ -54,6 +54,14 @@ def declares(name: str, files: Iterable[Path]) -> bool:
         return False  # SUMO reports the fault in the file
 
 
+def declares_traffic(files: Iterable[Path]) -> bool:
+    """Return whether ``files`` declare a vehicle, or cannot be read."""
+    try:
+        return any(True for _ in _declarations(files))
+    except (OSError, EOFError):
+        return True  # SUMO reports the fault in the file
+
+
 def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
     """Yield kind and id of every vehicle, trip and flow; for a calibrator only the kind."""
     for file in files:

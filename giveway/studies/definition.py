@@ -147,7 +147,7 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
 
 
 def _placed(values: dict[str, Any], origin: str, folder: Path) -> StudyDefinition:
-    return _validated(values | _folder_of(values, folder), origin)
+    return _validated(values | folder_of(values, folder), origin)
 
 
 def make_definition(values: dict[str, Any], origin: str) -> StudyDefinition:
@@ -180,10 +180,10 @@ def _validated(values: dict[str, Any], origin: str) -> StudyDefinition:
         raise ConfigError(f"{origin}: {_explain(error.errors(include_url=False)[0])}") from None
 
 
-def _folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
-    """Return the folder to which relative file names refer, if the study names any file."""
+def folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
+    """Return the folder to which relative file names refer, if a study or risk names any file."""
     named = values.get("folder", "")
-    varied = (values.get("run"), values.get("factors"))
+    varied = (values.get("run"), values.get("factors"), values.get("inputs"))
     if isinstance(named, str) and (named or any(_holds_file_of(folder, v) for v in varied)):
         return {"folder": str(folder / named)}
     return {}

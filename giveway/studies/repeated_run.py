@@ -3,9 +3,10 @@
 import math
 from collections.abc import Collection
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from giveway.api import run_checked
+from giveway.config.files.layers import Layer
 from giveway.config.files.loading import load
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.errors import GivewayError
@@ -14,7 +15,6 @@ from giveway.results.inputs import require_recorded
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending, Watcher
 from giveway.studies.execution.perform import rows_of
-from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.record import RunRecord, Scalar
 
 _PERHAPS = "other software or scenario files since then? Compare its manifest.json"
@@ -25,8 +25,22 @@ class OtherNumbersError(GivewayError):
     """A repeated run does not give the study's row; its results are written anyway."""
 
 
+class Runs(Protocol):
+    """A folder whose runs can be made again."""
+
+    @property
+    def path(self) -> Path:
+        """The path of the folder."""
+
+    def layer_of(self, run: str) -> Layer:
+        """Return the settings of a run."""
+
+    def record(self, run: str) -> RunRecord | None:
+        """Return the record of a run, or None if the run has not been made."""
+
+
 def checked_run(
-    study: StudyFolder, run_id: str, *, predictions: bool = False, trusted: Collection[str] = ()
+    study: Runs, run_id: str, *, predictions: bool = False, trusted: Collection[str] = ()
 ) -> CheckedRun:
     """Return a run of a study, ready to be made again.
 
@@ -39,18 +53,16 @@ def checked_run(
     Raises:
         GivewayError: there is no such run, or its scenario no longer exists.
     """
-    cell, seed = study.cell_of(run_id)
-    origin = str(study.path / "study.toml")
-    config, scenario = load([cell.layer(origin, study.definition)], trusted)
+    config, scenario = load([study.layer_of(run_id)], trusted)
     require_recorded(study.path, config, scenario)
-    changes: dict[str, Any] = {"seed": seed}
     if predictions:
-        changes["record"] = config.record.model_copy(update={"predictions": PREDICTIONS})
-    return preflight(config.model_copy(update=changes), scenario)
+        record = config.record.model_copy(update={"predictions": PREDICTIONS})
+        config = config.model_copy(update={"record": record})
+    return preflight(config, scenario)
 
 
 def rerun(
-    study: StudyFolder,
+    study: Runs,
     run_id: str,
     destination: Destination = NOWHERE,
     *,
@@ -84,7 +96,7 @@ def rerun(
     return result
 
 
-def require_same_rows(result: RunResult, record: RunRecord, study: StudyFolder) -> None:
+def require_same_rows(result: RunResult, record: RunRecord, study: Runs) -> None:
     """Make sure that a run gives the numbers of its record.
 
     Raises:

@@ -1,8 +1,6 @@
 """The run of a study: plan, compute the missing runs, keep them, compare."""
 
-import json
 import math
-import sys
 from collections import defaultdict
 from collections.abc import Callable
 from contextlib import suppress
@@ -12,20 +10,15 @@ from pathlib import Path
 import numpy as np
 
 from giveway.errors import GivewayError
-from giveway.gate import fingerprint, signed
 from giveway.processes.interrupts import exit_code_of, who_ended
-from giveway.results.provenance import processor, software_versions
 from giveway.studies.definition import StudyDefinition, dump_definition
 from giveway.studies.execution import Executor
-from giveway.studies.folder.atomic_files import write_atomically
-from giveway.studies.folder.folder_contents import DEFINITION, MANIFEST, broken_files, read_manifest
+from giveway.studies.folder.folder_contents import DEFINITION
 from giveway.studies.folder.frames import runs_frame
-from giveway.studies.folder.lock import remove_derived_files, remove_study, reserved
-from giveway.studies.folder.sealing import BrokenFileError, put_aside, sealed
-from giveway.studies.folder.store import RecordStore
+from giveway.studies.folder.lock import reserved
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.folder.table_files import write_tables
-from giveway.studies.identity import differences, relevant_versions, software_identity
+from giveway.studies.keeping import Keeper
 from giveway.studies.plan import Plan, PlannedRun, plan
 from giveway.studies.record import RunRecord
 from giveway.studies.statistics import looks, precise_enough
@@ -87,7 +80,7 @@ def run_study(
     options = options or StudyOptions()
     planned = plan(definition, origin)
     with reserved(out, definition.name, options):
-        session = _Session(planned, out, options, watcher or (lambda _: None), tell or _to_stderr)
+        session = _Session(planned, out, options, watcher or (lambda _: None), tell)
         try:
             with options.executor() as executor:
                 session.begin()
@@ -111,41 +104,21 @@ class _Session:
         out: Path,
         options: StudyOptions,
         watcher: Callable[[StudyProgress], None],
-        tell: Callable[[str], None],
+        tell: Callable[[str], None] | None,
     ) -> None:
         self._plan = planned
         self._out = out
         self._options = options
         self._watcher = watcher
-        self._tell = tell
-        self._software = software_identity()
-        self._store = RecordStore(out, self._software)
+        self._keeper = Keeper(out, DEFINITION, dump_definition(planned.definition), tell)
         self._records: dict[str, RunRecord] = {}
         self._kept = self._made = self._failed = 0
         self._seeds = planned.seeds
-        self._definition = dump_definition(planned.definition)
         self._begun = False
-        self._processors: set[str] = set()  # of which the user has been told
 
     def begin(self) -> None:
         """Write definition and manifest, and remove tables and report of a former session."""
-        if self._options.force:
-            remove_study(self._out)
-        for file in broken_files(self._out):
-            there = put_aside(file, self._out)
-            self._tell(f"{file}: is not what giveway wrote; put aside in {there}, it is made again")
-        with suppress(OSError, KeyError):
-            manifest = read_manifest(self._out)
-            before = manifest["identity"]
-            if before != self._software:
-                differ = differences(relevant_versions(manifest["software"]))
-                self._tell(
-                    f"{self._out}: its runs were made by another giveway, other libraries or a "
-                    f"machine of another kind (identity {before}, now {self._software}: {differ}); "
-                    "they are made again"
-                )
-        remove_derived_files(self._out)
-        write_atomically(self._out / DEFINITION, self._definition, durable=True)
+        self._keeper.begin(force=self._options.force)
         self._write_manifest(complete=False)
         self._begun = True
 
@@ -189,50 +162,20 @@ class _Session:
         """
         missing: defaultdict[str, list[PlannedRun]] = defaultdict(list)
         for run in self._plan.runs(seeds):
-            record = self._kept_record(run.key)
+            record = self._keeper.kept(run.key)
             if record is None or (record.failed and self._options.retry_failed):
                 missing[run.key].append(run)
             else:
                 self._records[run.key] = record
-                self._tell_processor(record)
                 self._kept += 1
                 self._failed += record.failed
                 self._report(None)
-        for record in executor.run(runs[0].task() for runs in missing.values()):
-            self._store.put(record)
+        for record in self._keeper.make(executor, (runs[0].task() for runs in missing.values())):
             self._records[record.key] = record
-            self._tell_processor(record)
-            if record.computing.retried and not record.failed:
-                self._tell(f"{record.run}: {record.computing.retried}; another process has made it")
             count = len(missing[record.key])
             self._made += count
             self._failed += count * record.failed
             self._report(record)
-
-    def _tell_processor(self, record: RunRecord) -> None:
-        """Tell the user once of each processor, other than this one, that has made a run."""
-        name, here = record.computing.processor, processor()["name"]
-        if name not in {"", here, *self._processors}:
-            self._processors.add(name)
-            self._tell(
-                f"{record.run}: made on another processor ({name}; here {here}); the bytes are the "
-                "same (docs/results.md)"
-            )
-
-    def _kept_record(self, key: str) -> RunRecord | None:
-        """Return the record of a run that has been made.
-
-        A broken record is reported and put aside.
-        """
-        try:
-            return self._store.get(key)
-        except BrokenFileError as error:
-            there = put_aside(error.file, self._out)
-            self._tell(
-                f"{error.file}: is not what giveway wrote ({error.reason}); put aside in {there}, "
-                "the run is made again"
-            )
-            return None
 
     def _report(self, record: RunRecord | None) -> None:
         total = len(self._plan)
@@ -260,22 +203,17 @@ class _Session:
             "study": self._plan.definition.name,
             "seeds": len(self._seeds),
             "complete": complete,
-            "identity": self._software,
-            "definition": fingerprint(self._definition.encode("utf-8")),
-            "cells": [
-                {
-                    "cell": planned.cell.number,
-                    "label": planned.cell.label,
-                    "digest": planned.digest,
-                    "inputs": planned.inputs,
-                }
-                for planned in self._plan.cells
-            ],
-            "software": dict(software_versions()),
         }
-        whole = signed(sealed(content, self._software))
-        text = json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
-        write_atomically(self._out / MANIFEST, text, durable=True)
+        cells = [
+            {
+                "cell": planned.cell.number,
+                "label": planned.cell.label,
+                "digest": planned.digest,
+                "inputs": planned.inputs,
+            }
+            for planned in self._plan.cells
+        ]
+        self._keeper.write_manifest(content, cells)
 
 
 def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, float]]:
@@ -298,7 +236,3 @@ def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, flo
             # the first run is slower: it warms up
             seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))
     return float(np.nansum([*seconds.values()])) * len(seeds) / workers, seconds
-
-
-def _to_stderr(line: str) -> None:
-    sys.stderr.write(f"note: {line}\n")

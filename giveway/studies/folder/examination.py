@@ -25,9 +25,9 @@ def examine_results(folder: Path) -> list[Finding]:
         folder: Results folder.
     """
     try:
-        if (folder / DEFINITION).exists():
-            return _of_study(folder)
         manifest = read_json(folder / MANIFEST)
+        if "definition" in manifest or (folder / DEFINITION).exists():
+            return _of_study(folder)
     except (ResultsError, OSError) as problem:
         return [error(_SUBJECT, str(problem), "copy the folder again, or make the results again")]
     if not is_sealed(manifest):
@@ -42,7 +42,7 @@ def examine_results(folder: Path) -> list[Finding]:
 
 
 def _of_study(folder: Path) -> list[Finding]:
-    """Return the files of a study that are broken.
+    """Return the files of a study or risk that are broken.
 
     Raises:
         ResultsError: the study cannot be read.
@@ -52,6 +52,8 @@ def _of_study(folder: Path) -> list[Finding]:
         error(_SUBJECT, f"{file}: is not what giveway wrote", remedy)
         for file in broken_files(folder)
     ]
+    if not broken and not (folder / DEFINITION).exists():
+        return [ok(_SUBJECT, f"{folder}: as the risk wrote them, but for records, not examined")]
     if not broken:
         runs = len(StudyFolder(folder).records)  # a broken record is an error
         return [ok(_SUBJECT, f"{folder}: as the study wrote them, {runs:,} runs")]

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 import shlex
 from collections import defaultdict
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from giveway.config.files.layers import Layer
 from giveway.errors import ResultsError
 from giveway.gate import LARGEST_TABLE, opened, read_text
 from giveway.run_data.columns import Column
@@ -220,6 +222,16 @@ class StudyFolder:
             f"run '{run}': not in {self.path}; expected c<cell>-s<seed>, "
             f"{first} to {last}: see runs.csv"
         )
+
+    def layer_of(self, run: str) -> Layer:
+        """Return the settings of a run.
+
+        Raises:
+            ResultsError: this study has no such run.
+        """
+        cell, seed = self.cell_of(run)
+        layer = cell.layer(str(self.path / DEFINITION), self.definition)
+        return replace(layer, values={**layer.values, "seed": seed})
 
     def record(self, run: str) -> RunRecord | None:
         """Return the record of a run, or None if the run has not been made.

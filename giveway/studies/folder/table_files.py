@@ -1,7 +1,8 @@
 """The tables of a study as CSV files, and the data package that describes them."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from giveway.studies.folder.frames import (
 from giveway.studies.folder.sealing import sealed
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.identity import software_identity
-from giveway.studies.statistics.rounding import tabulated
+from giveway.studies.statistics.rounding import PROBABILITIES, tabulated
 from giveway.studies.table_columns import (
     COMPARISON_COLUMNS,
     FRONT_COLUMNS,
@@ -54,8 +55,8 @@ _TYPES: dict[str, Any] = {"b": "boolean", "i": "integer", "f": "number"}
 def write_tables(study: StudyFolder, *, whole: bool) -> None:
     """Write the tables into the study's folder.
 
-    study: Folder of the study.
-        study: Its folder.
+    Args:
+        study: Folder of the study.
         whole: True to write also the tables that take some seconds to compute.
 
     Raises:
@@ -64,22 +65,44 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     names = [name for name in TABLES if whole or name not in _LONG]
     if whole and study.fronts.empty:  # there are no counterfactual runs
         names.remove("fronts")
-    columns = {name: _columns(study, name) for name in names}
-    seals = {}
-    for name in names:
-        frame = as_written(getattr(study, name), columns[name])
-        floats = [column for column in frame.columns if frame[column].dtype == np.float64]
-        text = tabulated(frame, floats).to_csv(index=False, lineterminator="\n")
-        write_atomically(study.path / f"{name}.csv", text)
-        seal = fingerprint(text.encode("utf-8"))
-        seals[name] = {"bytes": seal["bytes"], "hash": f"{SHA256}{seal['sha256']}"}
     name = f"giveway-study-{study.definition.name}"
     title = study.definition.description or f"giveway study {study.definition.name}"
-    package = package_of(name, title, columns)
+    tables = {name: (getattr(study, name), _columns(study, name)) for name in names}
+    write_described(study.path, name, title, tables)
+
+
+def write_described(
+    folder: Path,
+    name: str,
+    title: str,
+    tables: Mapping[str, tuple[pd.DataFrame, Sequence[Column]]],
+    probabilities: Collection[str] = PROBABILITIES,
+) -> None:
+    """Write tables, and the data package that describes and seals them.
+
+    Args:
+        folder: Folder of the study or risk.
+        name: Name of the data package.
+        title: Title of the data package.
+        tables: Each table with its columns, by name.
+        probabilities: Names of the columns that are rounded as probabilities.
+
+    Raises:
+        ResultsError: the disk is full or not writable.
+    """
+    seals = {}
+    for table, (content, columns) in tables.items():
+        frame = as_written(content, columns)
+        floats = [column for column in frame.columns if frame[column].dtype == np.float64]
+        text = tabulated(frame, floats, probabilities).to_csv(index=False, lineterminator="\n")
+        write_atomically(folder / f"{table}.csv", text)
+        seal = fingerprint(text.encode("utf-8"))
+        seals[table] = {"bytes": seal["bytes"], "hash": f"{SHA256}{seal['sha256']}"}
+    package = package_of(name, title, {table: columns for table, (_, columns) in tables.items()})
     for resource in package["resources"]:
         resource |= seals[resource["name"]]
     text = json.dumps(sealed(package, software_identity()), indent=2, ensure_ascii=False) + "\n"
-    write_atomically(study.path / PACKAGE, text)
+    write_atomically(folder / PACKAGE, text)
 
 
 def _columns(study: StudyFolder, name: str) -> Sequence[Column]:

@@ -1,7 +1,7 @@
 """Rounding as in tables, and means and medians that do not overflow."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import numpy as np
 import pandas as pd
@@ -11,7 +11,7 @@ from giveway.geometry.kernel import Array
 DECIMALS = 6
 _PER_ONE = 10.0**DECIMALS
 _DIGITS = 6
-_PROBABILITIES = frozenset({"p_value", "q_value"})
+PROBABILITIES = frozenset({"p_value", "q_value"})
 _COARSE = 1e9  # Magnitude from which a double does not resolve the sixth decimal
 
 
@@ -21,7 +21,9 @@ def to_decimals(values: Array) -> Array:
     return np.asarray(np.where(fine, np.round(np.where(fine, values, 0.0), DECIMALS), values) + 0.0)
 
 
-def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
+def tabulated(
+    frame: pd.DataFrame, names: Iterable[str], probabilities: Collection[str] = PROBABILITIES
+) -> pd.DataFrame:
     """Round ``frame`` as in files: to six decimals, probabilities to six significant digits.
 
     Therefore a table in memory equals the table that is read from its file.
@@ -29,10 +31,11 @@ def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
     Args:
         frame: Table of numbers and words; it is changed.
         names: Names of the columns with numbers, which become floats.
+        probabilities: Names of the columns with probabilities.
     """
     for name in names:
         values = frame[name].to_numpy(np.float64)
-        if name in _PROBABILITIES:
+        if name in probabilities:
             frame[name] = [float(f"{value:.{_DIGITS}g}") for value in values]
         else:
             frame[name] = to_decimals(values)

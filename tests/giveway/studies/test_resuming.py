@@ -32,7 +32,7 @@ def test_an_interrupted_study_goes_on_and_names_another_processor(
     assert len(pd.read_csv(half.path / "runs.csv")) == 7
 
     states = []
-    monkeypatch.setattr("giveway.studies.study.processor", lambda: {"name": "Another"})
+    monkeypatch.setattr("giveway.studies.keeping.processor", lambda: {"name": "Another"})
     whole = study_of(small_study_text, tmp_path / "half", states.append, resume=True)
     told = [line for line in capsys.readouterr().err.splitlines() if "made on another" in line]
     assert [line.partition("; here ")[2] for line in told] == [
