@@ -116,6 +116,57 @@ class BenchmarkChoice(NamedTuple):
     ] = None
 
 
+class RiskChoice(NamedTuple):
+    """The runs whose risk the user wants to know."""
+
+    subject: Annotated[
+        str,
+        typer.Argument(metavar="SCENARIO|FILE", help="Scenario, or a risk file (docs/risk.md)."),
+    ]
+    config: Annotated[
+        Path | None, typer.Option(help="A run's TOML file with other settings of every run.")
+    ] = None
+    fixed: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--fix",
+            metavar="KEY=VALUE",
+            help="Setting of every run, like crowd.pedestrians=30; repeatable.",
+        ),
+    ] = None
+    random: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=DISTRIBUTION:NUMBERS",
+            help="Random input, like vehicle.mass=normal:1000,100; repeatable.",
+        ),
+    ] = None
+
+
+class RiskEstimate(NamedTuple):
+    """The event and the estimator; see ``RiskDefinition``."""
+
+    event: Annotated[
+        str | None,
+        typer.Option(help="frontal (default), side, contact, impact>SPEED in km/h, or red-light."),
+    ] = None
+    method: Annotated[
+        str | None, typer.Option(help="monte-carlo (default), subset or importance.")
+    ] = None
+    criticality: Annotated[
+        str | None,
+        typer.Option(help="Nearness to the event: deceleration (default), clearance or ttc."),
+    ] = None
+    runs: Annotated[
+        int | None,
+        typer.Option("--runs", "--budget", help="Runs, or the budget (default 1000).", min=1),
+    ] = None
+    seed: Annotated[int | None, typer.Option(help="Of all vectors (default 1).", min=0)] = None
+    confidence: Annotated[
+        float | None, typer.Option(help="Of the interval (default 0.95).", min=0.5, max=1.0)
+    ] = None
+
+
 class StudySeeds(NamedTuple):
     """The seeds of a study's runs."""
 
@@ -139,7 +190,10 @@ class StudyComputation(NamedTuple):
         bool, typer.Option("--retry-failed", help="With --resume: make failed runs again.")
     ] = False
     jobs: Annotated[
-        int | None, typer.Option(help="Worker processes (default: one per processor).", min=1)
+        int | None,
+        typer.Option(
+            "--jobs", "--workers", help="Worker processes (default: one per processor).", min=1
+        ),
     ] = None
     cluster: Annotated[
         str | None,

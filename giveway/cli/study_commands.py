@@ -1,4 +1,4 @@
-"""The commands ``giveway study``, ``rerun``, ``report`` and ``replay``, and their help."""
+"""The commands about studies and risks, and their help."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,7 +9,10 @@ from giveway.cli.help import Commands, JsonFlag
 from giveway.cli.option_groups import (
     BenchmarkChoice,
     NoTables,
+    Pictures,
     RerunOutputs,
+    RiskChoice,
+    RiskEstimate,
     StudyChoice,
     StudyComputation,
     StudyOutputs,
@@ -27,6 +30,7 @@ def add_studies(app: Commands) -> None:
     app.add("study", ungrouped(_study))
     app.add("studies", _studies)
     app.add("benchmark", ungrouped(_benchmark))
+    app.add("risk", ungrouped(_risk))
     app.add("rerun", ungrouped(_rerun))
     app.add("report", _report)
     app.add("replay", _replay)
@@ -105,6 +109,34 @@ def _benchmark(
     )
     options = StudyOptions(**computation._asdict())
     raise typer.Exit(benchmark_command(request, options))
+
+
+def _risk(
+    *,
+    choice: RiskChoice,
+    estimate: RiskEstimate,
+    out: Annotated[Path | None, typer.Option(help="Folder (default results/risk_NAME).")] = None,
+    computation: StudyComputation,
+    pictures: Pictures = True,
+    quiet: NoTables = False,
+    as_json: JsonFlag = False,
+) -> None:
+    """Estimate how likely an event is in a run, and between which bounds; resumable."""
+    from giveway.cli.commands.risk_command import RiskRequest, risk_command
+    from giveway.studies.study_options import StudyOptions
+
+    request = RiskRequest(
+        choice.subject,
+        estimate._asdict(),
+        tuple(choice.fixed or ()),
+        tuple(choice.random or ()),
+        choice.config,
+        out,
+        pictures,
+        quiet,
+        as_json,
+    )
+    raise typer.Exit(risk_command(request, StudyOptions(**computation._asdict())))
 
 
 def _studies() -> None:

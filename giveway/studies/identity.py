@@ -29,6 +29,7 @@ _NOT_NUMBERS = (
     "figures",
     "replays",
     "reports",
+    "risk",
     "studies",
     "validation",
 )

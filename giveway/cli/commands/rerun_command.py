@@ -12,6 +12,7 @@ from giveway.cli.screen.progress_bars import run_progress
 from giveway.gate import require_no_link
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import Destination, check_folder
+from giveway.risk.risk_folder import RiskFolder, is_risk
 from giveway.run_data.progress import Ending
 from giveway.studies.folder.study_folder import StudyFolder
 from giveway.studies.repeated_run import checked_run, rerun
@@ -38,7 +39,7 @@ def rerun_command(
         GivewayError: one line that says what to do.
     """
     console = Console(quiet=outputs.quiet)
-    folder = StudyFolder.open(study)
+    folder = RiskFolder(study, trusted=trusted) if is_risk(study) else StudyFolder.open(study)
     checked = checked_run(folder, run, predictions=outputs.predictions, trusted=trusted)
     out = outputs.out or study / "reruns" / run
     require_no_link(out / "manifest.json", study)

@@ -1,0 +1,55 @@
+"""The summary of a risk in a terminal."""
+
+from rich.console import Console
+from rich.table import Table
+
+from giveway.cli.screen.printing import escape, numbers_of
+from giveway.risk.risk_folder import RiskFolder
+from giveway.risk.tables import per_kilometre
+
+_LISTED = 5  # Largest number of runs that are listed
+
+
+def print_risk(console: Console, folder: RiskFolder) -> None:
+    """Print the probability with its interval, the doubts, and the runs with the event."""
+    definition, estimate = folder.plan.definition, folder.estimate
+    kilometre = per_kilometre(folder, estimate)
+    share = f"{100.0 * definition.confidence:g} %"
+    table = Table(*numbers_of("estimate", f"{share} from", "to"), box=None)
+    met = estimate.probability > 0.0
+    for name, value, low, high in (
+        ("per run", estimate.probability, estimate.low, estimate.high),
+        ("per km", kilometre.rate, kilometre.low, kilometre.high),
+    ):
+        shown = [f"{value:.3g}" if met else "-", f"{low:.3g}" if met else "0", f"{high:.3g}"]
+        table.add_row(name, *shown)
+    console.print(
+        f"Probability of the event '{escape(definition.event)}' by {definition.method}: "
+        f"{estimate.events:,} of {estimate.runs:,} runs have it",
+        highlight=False,
+    )
+    console.print(table)
+    if not met:
+        console.print(
+            f"The event was not met: the upper bound is one-sided, at {share} (about 3/n for 95 % "
+            "of n plain runs).",
+            highlight=False,
+        )
+    for doubt in estimate.doubts:
+        console.print(f"[yellow]The interval may not hold:[/] {escape(doubt)}", highlight=False)
+    _print_runs(console, folder)
+
+
+def _print_runs(console: Console, folder: RiskFolder) -> None:
+    """Print the worst runs with the event, and how to make one again."""
+    found = [(folder.plan.criticality(record), run.id) for run, record in folder.runs]
+    worst = sorted(((c, run) for c, run in found if c >= 0.0), reverse=True)
+    if worst:
+        names = ", ".join(run for _, run in worst[:_LISTED])
+        more = f", and {len(worst) - _LISTED:,} more in events.csv" if len(worst) > _LISTED else ""
+        console.print(f"Runs with the event, the worst first: {names}{more}", highlight=False)
+        console.print(
+            f"Make one again: giveway rerun {escape(str(folder.path))} {worst[0][1]}",
+            highlight=False,
+            soft_wrap=True,
+        )

@@ -1,0 +1,1 @@
+"""The probability of an event in a scenario: random inputs, estimators, severity."""

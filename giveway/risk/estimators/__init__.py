@@ -1,0 +1,24 @@
+"""Estimators of a small probability, which know nothing of simulations.
+
+The event holds where the criticality c(u) of a vector u of independent standard normal numbers is
+at least 0. An estimator is a generator: it yields batches of vectors (n, d), is sent their
+criticality (n,), and returns an :class:`Estimate`. A criticality of nan is that of a run without a
+result.
+"""
+
+from giveway.risk.estimators.estimate import Estimate, Sampler, Stage, run_sampler
+from giveway.risk.estimators.importance import importance_sampling
+from giveway.risk.estimators.monte_carlo import clopper_pearson, monte_carlo
+from giveway.risk.estimators.subset import LEAST_BUDGET, subset_simulation
+
+__all__ = [
+    "LEAST_BUDGET",
+    "Estimate",
+    "Sampler",
+    "Stage",
+    "clopper_pearson",
+    "importance_sampling",
+    "monte_carlo",
+    "run_sampler",
+    "subset_simulation",
+]

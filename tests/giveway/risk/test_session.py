@@ -1,0 +1,86 @@
+"""A risk as a whole: its tables, how it goes on, and that a run of it can be made again."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+
+from giveway.errors import GivewayError, ResultsError
+from giveway.risk.risk_folder import RiskFolder
+from giveway.studies.repeated_run import rerun
+from giveway.studies.study import StudyInterruptedError
+from giveway.studies.study_options import StudyOptions
+
+TABLES = ("risk", "runs", "events", "stages", "failures")
+
+
+def tables_of(folder):
+    return {name: (folder / f"{name}.csv").read_bytes() for name in TABLES}
+
+
+def test_the_tables_hold_the_estimate_and_every_run(small_risk):
+    estimate = small_risk.estimate
+    risk = pd.read_csv(small_risk.path / "risk.csv").iloc[0]
+    assert risk["probability"] == pytest.approx(estimate.events / 8)
+    assert risk["low"] <= risk["probability"] <= risk["high"]
+    assert risk["per_km"] == pytest.approx(risk["probability"] / risk["distance"], rel=1e-4)
+    runs = pd.read_csv(small_risk.path / "runs.csv")
+    assert list(runs["run"]) == [f"r{number}" for number in range(1, 9)]
+    assert runs["vehicle.mass"].nunique() == 8
+    assert 0 < estimate.events < 8
+
+
+def test_the_runs_with_the_event_are_listed_the_worst_first(small_risk):
+    events = pd.read_csv(small_risk.path / "events.csv")
+    assert len(events) == small_risk.estimate.events
+    assert events["criticality"].is_monotonic_decreasing
+    assert events["criticality"].tolist() == events["frontal_impact_speed"].tolist()
+    assert events["reproduce"].str.startswith("giveway rerun ").all()
+
+
+def test_a_run_can_be_made_again_with_the_same_numbers(small_risk):
+    event = pd.read_csv(small_risk.path / "events.csv").iloc[0]
+    result = rerun(RiskFolder(small_risk.path), event["run"])
+    assert result.summary["frontal_impact_speed"] == pytest.approx(event["frontal_impact_speed"])
+    with pytest.raises(ResultsError, match=r"run 'r9': not in .* expected r<number>, r1 to r8"):
+        RiskFolder(small_risk.path).record("r9")
+
+
+def test_a_risk_that_was_ended_goes_on_with_the_same_bytes(small_risk, risk_of, resumed, tmp_path):
+    def end(progress):
+        if progress.made == 3:
+            raise KeyboardInterrupt
+
+    out = tmp_path / "ended"
+    with pytest.raises(StudyInterruptedError, match=r"3 runs are kept in .* go on with --resume"):
+        risk_of(out, watcher=end)
+    made = []
+    risk_of(out, resumed, lambda progress: made.append(progress.made))
+    assert max(made) == 5
+    assert tables_of(out) == tables_of(small_risk.path) | {
+        "events": tables_of(small_risk.path)["events"].replace(
+            str(small_risk.path).encode(), str(out).encode()
+        )
+    }
+
+
+def test_two_workers_give_the_same_bytes(small_risk, risk_of, tmp_path):
+    two = risk_of(tmp_path / "two", StudyOptions(jobs=2))
+    assert tables_of(two.path)["runs"] == tables_of(small_risk.path)["runs"]
+    assert tables_of(two.path)["risk"] == tables_of(small_risk.path)["risk"]
+
+
+def test_more_runs_need_only_the_new_ones(small_risk, risk_of, resumed, tmp_path):
+    out = tmp_path / "more"
+    risk_of(out, runs=2)
+    made = []
+    more = risk_of(out, resumed, lambda progress: made.append(progress.made), runs=4)
+    assert max(made) == 2
+    assert [run.id for run, _ in more.runs] == ["r1", "r2", "r3", "r4"]
+
+
+def test_another_folder_is_not_taken_for_a_risk(small_risk, risk_of, tmp_path):
+    with pytest.raises(ResultsError, match="no risk there"):
+        RiskFolder(tmp_path)
+    with pytest.raises(GivewayError, match="go on with it by --resume"):
+        risk_of(small_risk.path)
