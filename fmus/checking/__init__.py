@@ -20,6 +20,7 @@ from fmus.checking.self_check import (
     remedy,
     require_converged,
 )
+from fmus.checking.standing import Standing, holding, openers_held, standing, stays
 
 __all__ = [
     "Answers",
@@ -30,6 +31,7 @@ __all__ = [
     "Mpc",
     "Opener",
     "Phase",
+    "Standing",
     "Told",
     "Trace",
     "Verdict",
@@ -38,14 +40,18 @@ __all__ = [
     "convergence",
     "drive",
     "expected_of",
+    "holding",
     "identify",
     "is_vehicle",
     "judge",
     "measure",
     "opener_of",
+    "openers_held",
     "quick_model",
     "remedy",
     "require_converged",
+    "standing",
+    "stays",
     "told_of",
     "too_weak",
     "without_guards",

@@ -12,6 +12,7 @@ from fmus.checking.findings import Finding
 from fmus.checking.judgement import judge, roles_of, told_of
 from fmus.checking.manoeuvres import Attempt, Opener, Phase, Trace, try_to_drive
 from fmus.checking.self_check import Convergence, convergence, milliseconds, plain, remedy
+from fmus.checking.standing import NAME, standing, stays
 from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
 from fmus.isolation import processes_reused
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -89,6 +90,7 @@ def check(
     step_size: float,
     fmu_step: float | None = None,
     unguarded: Opener | None = None,
+    held: Callable[[float], Opener] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> CheckReport:
     """Dry-run a vehicle. Errors of the FMU become findings.
@@ -100,6 +102,8 @@ def check(
         fmu_step: Step of the FMU itself [s], or None for ``step_size``.
         unguarded: Function that opens the vehicle without guards, for a drive that guards have
             stopped.
+        held: Function of :func:`openers_held`, or None to leave out whether it stays where it
+            stopped.
         progress: Function that receives the name of each drive before it begins.
     """
     report, free = CheckReport(expected), unguarded or opener
@@ -107,7 +111,7 @@ def check(
     go_on = _drive_all(report, opener, free, tell)
     if go_on:
         tell("answers")
-    _observe(report, *(_judged(report, free) if go_on else ()))
+    _observe(report, *(_judged(report, free, held) if go_on else ()))
     if go_on:
         tell("step halving")
         # Guards would end the drives of light or stiff vehicles at the first step of any length.
@@ -187,14 +191,23 @@ def _phases(name: str, expected: Expected) -> list[Phase]:
     }[name]
 
 
-def _judged(report: CheckReport, opener: Opener) -> list[Finding]:
-    """Judge driving, braking and mass as a run does."""
+def _judged(
+    report: CheckReport, opener: Opener, held: Callable[[float], Opener] | None
+) -> list[Finding]:
+    """Judge driving, braking, mass and standing as a run does."""
     expected = report.expected
     try:
         answers = measure(opener, brake_force=expected.brake_force)
     except FmuError:
         return []  # a drive before has found it, or halved steps will
-    return judge(answers, expected.told, expected.profile)
+    findings = judge(answers, expected.told, expected.profile)
+    if held is None or any(finding.verdict == "fail" for finding in findings):
+        return findings
+    try:
+        found = standing(opener, held, expected.profile, answers, expected.told)
+    except FmuError as error:
+        return [*findings, Finding(NAME, "fail", plain(error))]
+    return [*findings, stays(found, expected.profile)]
 
 
 def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:

@@ -70,6 +70,7 @@ class Phase:
     duration: float  # [s] longest duration
     above: float = -np.inf  # [m/s] ends when the speed falls below
     below: float = np.inf  # [m/s] ends when the speed rises above
+    grade: float = 0.0  # [rad] grade of the road, uphill positive
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +185,7 @@ def _hold(vehicle: Vehicle, phase: Phase, log: _DriveLog) -> None:
     for _ in range(round(phase.duration / vehicle.step_size)):
         if not phase.above <= vehicle.speed <= phase.below:
             return
-        log.step(phase.force)
+        log.step(phase.force, phase.grade)
 
 
 class _DriveLog:
@@ -196,10 +197,10 @@ class _DriveLog:
         self._costs: list[float] = []
         self._motion = [(vehicle.position, vehicle.speed, vehicle.acceleration)]
 
-    def step(self, force: float) -> None:
+    def step(self, force: float, grade: float) -> None:
         vehicle = self._vehicle
         begin = perf_counter()
-        vehicle.step(force)
+        vehicle.step(force, grade)
         self._costs.append(perf_counter() - begin)
         self._forces.append(force)
         self._motion.append((vehicle.position, vehicle.speed, vehicle.acceleration))

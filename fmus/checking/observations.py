@@ -54,13 +54,16 @@ def idles(idle: Trace) -> Finding:
         return Finding(name, "fail", f"without force it goes backwards ({fastest:.3g} m/s)")
     return Finding(
         name, "warn", f"without force it creeps to {fastest:.3g} m/s",
-        "as an automatic gearbox does; the controllers have to brake against it",
+        "as an automatic gearbox does",
     )  # fmt: skip
 
 
 def holds(rolling: Trace, braking_role: str) -> Finding:
-    """Test whether brakes that are held on let a vehicle stand."""
+    """Test whether brakes that are held on stop a vehicle and let it stand."""
     name, slowest = "brakes hold", float(rolling.speed.min())
+    late, end = rolling.speed[-1 - round(1.0 / rolling.step_size)], float(rolling.speed[-1])
+    if end > STANDSTILL and late - end < STANDSTILL:
+        return Finding(name, "fail", f"held on, they do not stop it: {end:.3g} m/s is left")
     if slowest >= -CREEPS:
         return Finding(name, "pass", f"held on, they slow it down to {slowest:.3g} m/s")
     return Finding(

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.profile.wires import Wire
 
+HELD = 0.2  # [m/s] speed below which a vehicle that is braked or not driven is held
+
 
 class Command(ABC):
     """Turns a force into the values of the FMU's inputs."""
@@ -110,6 +112,20 @@ class SetpointCommand(Command):
         inputs[0] = self.wire.to_raw(max(0.0, speed + self.lead * acceleration))
 
 
+@dataclass(frozen=True)
+class HoldingCommand(Command):
+    """Another command, and a brake that is held at a standstill unless the vehicle is to drive."""
+
+    command: Command
+    hold: float  # [N]
+
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """Fill the inputs; see :class:`Command`."""
+        if speed <= HELD and force <= 0.0:
+            force = min(force, -self.hold)
+        self.command.apply(force, speed, inputs)
+
+
 def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: float) -> Command:
     """Return the inverse map for the inputs that a profile names.
 
@@ -119,6 +135,10 @@ def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: floa
         step_size: Step size of the controller [s].
     """
     inputs, M, alpha = profile.inputs, profile.inverse_map.mass, profile.inverse_map.friction
+    if inputs.hold:
+        own = inputs.model_copy(update={"hold": None, "block_reverse": False})
+        unheld = make_command(profile.model_copy(update={"inputs": own}), wires, step_size)
+        return HoldingCommand(unheld, inputs.hold)
     if inputs.force is not None:
         wire = wires[0]
         return ForceCommand(wire.scale, wire.shift, inputs.block_reverse)

@@ -79,6 +79,8 @@ class Inputs(StrictTable):
     grade: VehicleAxis | None = None
     # True: at a standstill, no braking force or acceleration is passed on
     block_reverse: bool = True
+    # [N] brake force at a standstill unless the vehicle is to drive; None: a run finds it
+    hold: float | None = Field(None, ge=0, le=1e7)
 
     @model_validator(mode="after")
     def _one_way(self) -> Inputs:

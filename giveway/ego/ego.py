@@ -34,6 +34,9 @@ from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EgoRow
 from pedestrian_model import Surroundings
 
+_GRAVITY = 9.81  # [m/s^2]
+_WALKING_PACE = 2.0  # speed [m/s] below which the force bears the weight; fully 1 m/s below it
+_RELEASE = 1.0  # force [N] that lets the brakes go downhill
 _STRAIGHT = 1.0  # time [s] for which other vehicles are predicted to go straight on
 
 
@@ -281,10 +284,24 @@ class Ego:
         if self._slope is None:
             self.vehicle.step(self._force)
         else:
-            self.vehicle.step(self._force, self._slope.grade(self.front, self.shape.length))
+            grade = self._slope.grade(self.front, self.shape.length)
+            self.vehicle.step(self._on_grade(grade), grade)
         self._locate()
         self.rules.advance(self.front, self.speed, self._time_step)
         self.news.advance()
+
+    def _on_grade(self, grade: float) -> float:
+        """Return the force [N] with which a vehicle that feels a ``grade`` [rad] stops and starts.
+
+        The controllers do not know the grade, and would roll back when they drive off. At walking
+        pace the weight is therefore borne here, except where the brakes hold the vehicle.
+        """
+        force, stands = self._force, self.speed <= STANDING
+        share = min(max(_WALKING_PACE - self.speed, 0.0), 1.0)
+        if share == 0.0 or (stands and force <= 0.0) or not self.vehicle.knows_grades:
+            return force
+        borne = force + share * self.config.vehicle.mass * _GRAVITY * math.sin(grade)
+        return max(borne, min(force, _RELEASE)) if stands else borne
 
     def _locate(self) -> None:
         """Update station and pose from the FMU's position, and the speed from its speed output."""

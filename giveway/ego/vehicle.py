@@ -22,11 +22,17 @@ from fmus import (
 )
 from fmus.checking import (
     Answers,
+    Standing,
+    Told,
     convergence,
+    holding,
     judge,
     measure,
     opener_of,
+    openers_held,
     remedy,
+    standing,
+    stays,
     told_of,
     too_weak,
 )
@@ -49,7 +55,7 @@ _FILTERED = 4.0  # [m] difference of position and speed that a filter of half a 
 _SAME_STEP = 1e-6  # relative tolerance for two equal step sizes
 _OTHER_SIZE = 2.0  # ratio of masses from which the defaults for a car no longer fit
 # FMUs that passed the self-check in this process
-_sound: set[tuple[str, str, float, float, float, float, float | None]] = set()
+_sound: dict[tuple[str, str, float, float, float, float, float | None], Standing] = {}
 
 
 def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
@@ -95,7 +101,7 @@ def open_for(
     """
     settings = config.vehicle
     path, profile = fmu_path(settings), profile_of(settings)
-    ours = is_bundled(path)
+    ours, standing_remark = is_bundled(path), ""
     start_values: dict[str, Any] = {}
     if ours and profile is None:
         start_values = {
@@ -107,9 +113,11 @@ def open_for(
 
     if not ours:
         profile = choose_profile(path, profile)
-        _require_sound(path, profile, config, time_step)
+        rests = _require_sound(path, profile, config, time_step)
         if config.found is not None and config.found.sensor_lag > 0.0:
             profile = profile.model_copy(update={"model": config.found})
+        if rests.hold and profile.inputs.hold is None:
+            profile, standing_remark = holding(profile, rests.hold), _held(path, rests)
     vehicle = open_vehicle(
         path,
         step_size=time_step,
@@ -123,7 +131,17 @@ def open_for(
     described["isolated"] = not ours if isolated is None else isolated
     if profile is not None:
         described["profile"] = profile.model_dump(exclude_unset=True)
+    if standing_remark:
+        described["standing"] = standing_remark
     return vehicle, described
+
+
+def _held(path: Path, found: Standing) -> str:
+    """Return the remark on a vehicle whose brakes are held at a standstill."""
+    return (
+        f"{path.name} {found.fact}: at a standstill its brakes are held with {found.hold:.4g} N; "
+        "`hold` in [inputs] of its profile can be another force, or 0"
+    )
 
 
 def _require_sound(
@@ -131,15 +149,18 @@ def _require_sound(
     profile: VehicleProfile,
     config: EgoRunConfig,
     time_step: float,
-) -> None:
+) -> Standing:
     """Drive an FMU for some seconds in full steps and in smaller ones, once per process.
 
     The FMU is always isolated, so that a crash does not end this process. An FMU that fails with
     every step is left to the run, which keeps the rows up to the failure.
 
+    Returns:
+        Its motion at rest, and the brake force that holds it.
+
     Raises:
         FmuError: its steps do not converge, it does not answer as a vehicle that can be driven and
-            stopped, or as another one than the profile and the flags tell.
+            stopped, or as another one than the profile and the flags tell, or nothing holds it.
     """
     speed = config.ego.initial_speed
     speed = DEFAULT_SPEED if speed is None else speed
@@ -148,7 +169,7 @@ def _require_sound(
     digest = sha256(path.read_bytes()).hexdigest()
     key = (digest, profile.model_dump_json(), time_step, speed, force, vehicle.force_limit, mass)
     if key in _sound:
-        return
+        return _sound[key]
     try:
         if profile.fmu.self_check:
             _require_convergence(path, profile, time_step, force, speed)
@@ -156,11 +177,34 @@ def _require_sound(
     except (FmuStartCrashError, FmuUnsuitableError):
         raise  # the run would have no rows, and would wait for a hang again
     except FmuError:
-        return
-    for finding in judge(answers, told_of(profile, mass), profile):
+        return Standing()
+    told = told_of(profile, mass)
+    for finding in judge(answers, told, profile):
         if finding.verdict != "pass":
             raise FmuUnsuitableError(sudden or f"{path}: {finding.text}; {finding.remedy}")
-    _sound.add(key)
+    _sound[key] = found = _at_rest(path, profile, time_step, answers, told)
+    return found
+
+
+def _at_rest(
+    path: Path, profile: VehicleProfile, time_step: float, answers: Answers, told: Told
+) -> Standing:
+    """Find what keeps an FMU at rest; one that fails on the way is left to the run.
+
+    Raises:
+        FmuUnsuitableError: nothing does.
+    """
+    free = _without_bound(impatient(profile))
+    opener = opener_of(path, step_size=time_step, profile=free)
+    held = openers_held(path, step_size=time_step, profile=free)
+    try:
+        found = standing(opener, held, profile, answers, told)
+    except FmuError:
+        return Standing()
+    finding = stays(found, profile)
+    if finding.verdict == "fail":
+        raise FmuUnsuitableError(f"{path}: {finding.text}; {finding.remedy}")
+    return found
 
 
 def _answers(

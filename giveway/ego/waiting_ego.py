@@ -60,7 +60,8 @@ class WaitingEgo:
     def warnings(self) -> list[str]:
         """The warnings about its FMUs, one sentence each."""
         own = self.controller.warnings if isinstance(self.controller, PluggedIn) else []
-        return [*self.vehicle.warnings, *own]
+        standing = self.description.get("standing")
+        return [*self.vehicle.warnings, *([str(standing)] if standing else []), *own]
 
     def close(self) -> None:
         """End its controller if that is a process. The exit stack closes the vehicle."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+import zipfile
 from pathlib import Path
 
 import pytest
 
-from fmus import VehicleFmu, read_profile
+from fmus import VehicleFmu, make_profile, open_vehicle, read_profile
 
 PAGE = Path(__file__).parents[2] / "docs" / "vehicles.md"
 SECTIONS = dict(re.findall(r"^### (.+?)\n(.*?)(?=^##)", PAGE.read_text("utf-8"), re.M | re.S))
@@ -85,6 +86,43 @@ def test_a_worked_example_drives_its_car(zoo, tmp_path, beginning):
             expected += H / mass * (force - friction * expected)
         assert car.speed == pytest.approx(expected, abs=0.05)
         assert car.position > 5.0
+
+
+def test_parts_that_are_zipped_as_shown_are_one_vehicle(zoo, tmp_path):
+    """Powertrain and brakes are lags of 0.5 and 0.1 s: the zoo's car of so many kg, 1 N.s/m."""
+    system = re.search(r"```xml\n(.*?)```", PAGE.read_text("utf-8"), re.S)[1]
+    lags = {"powertrain": 0.5, "brakes": 0.1}
+    parts = {
+        name: zoo.car(
+            names={"force": "demand", "speed": "output"},
+            units={"speed": ("N", 1.0, 0.0)},
+            outputs=("speed",),
+            values={"mass": lag, "friction": 1.0},
+            file=f"{name}_of_the_page",
+        )
+        for name, lag in lags.items()
+    }
+    parts["chassis"] = zoo.car(role="drive_brake", outputs=("speed",))
+    with zipfile.ZipFile(tmp_path / "car.ssp", "w") as archive:
+        archive.writestr("SystemStructure.ssd", system)
+        for name, file in parts.items():
+            archive.write(file, f"resources/{name}.fmu")
+    roles = {
+        "inputs": {
+            "drive_force": {"variable": "powertrain.demand"},
+            "brake_force": {"variable": "brakes.demand"},
+        },
+        "outputs": {"speed": {"variable": "chassis.speed"}},
+    }
+    profile = make_profile(roles, "test")
+    with open_vehicle(tmp_path / "car.ssp", step_size=H, profile=profile) as car:
+        car.start()
+        for _ in range(60):
+            car.step(2000.0)
+        assert car.speed == pytest.approx(4.5, abs=0.3)
+        for _ in range(20):
+            car.step(-3000.0)
+        assert car.speed < 2.5
 
 
 def test_the_examples_are_all_there():

@@ -44,7 +44,7 @@ class Car:
         self._late = deque([0.0] * round(self.delay / FINE))
         self._random = np.random.default_rng(self.seed)
 
-    def step(self, force: float) -> None:
+    def step(self, force: float, _grade: float = 0.0) -> None:
         force = min(max(self.sign * force, -self.brake_limit), self.drive_limit)
         force *= self.brake_gain if force < 0.0 else 1.0
         lag = self.lag if force >= 0.0 and self._force >= 0.0 else self.late_brake

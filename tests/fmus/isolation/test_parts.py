@@ -197,6 +197,76 @@ def by_plain_fmpy(files, steps, forces):
     return np.array(rows)
 
 
+def container_of(files, path, step):
+    """One FMU with the same parts inside, made by FMPy; it does steps of one length [s]."""
+    from fmpy import read_model_description
+    from fmpy.container_fmu.cli import create_container_fmu
+    from fmpy.container_fmu.config import Component, Configuration, Connection
+    from fmpy.model_description import CoSimulation, DefaultExperiment, ModelDescription, Unknown
+    from fmpy.model_description import ModelVariable as Variable
+
+    parts, inside = {}, {}
+    for name, file in files.items():
+        described = read_model_description(str(file), validate=False)
+        parts[name] = Component(name, file, described)
+        for variable in described.modelVariables:
+            variable.type = "Float64" if variable.type == "Real" else variable.type
+            inside[f"{name}.{variable.name}"] = (parts[name], variable)
+    clock = Variable(name="time", type="Float64", causality="independent", variability="continuous")
+    shown, mapped = [clock], {}
+    for name, causality, start, places in (
+        ("drive", "input", "0", ["powertrain.demand"]),
+        ("brake", "input", "0", ["brakes.demand"]),
+        ("mass", "parameter", "1200", ["chassis.mass"]),
+        ("initial_speed", "parameter", "0", ["chassis.initial_speed"]),
+        ("speed", "output", None, ["chassis.speed"]),
+        ("position", "output", None, ["chassis.position"]),
+    ):
+        changes = "fixed" if causality == "parameter" else "continuous"
+        variable = Variable(
+            name=name, type="Float64", causality=causality, variability=changes, start=start
+        )
+        shown.append(variable)
+        mapped[variable] = [inside[place] for place in places]
+    model = ModelDescription(
+        fmiVersion="3.0",
+        modelName="car",
+        instantiationToken="car",
+        coSimulation=CoSimulation(modelIdentifier="car", fixedInternalStepSize=step),
+        defaultExperiment=DefaultExperiment(stepSize=str(step)),
+        modelVariables=shown,
+        outputs=[Unknown(variable=variable) for variable in shown[-2:]],
+    )
+    links = [
+        Connection(*(each for place in link for each in (inside[place][0], [inside[place][1]])))
+        for link in CONNECTIONS
+        if all("." in place for place in link)
+    ]
+    folder = path.with_suffix("")
+    folder.mkdir()
+    create_container_fmu(
+        Configuration(False, model, list(parts.values()), links, mapped), folder, path
+    )
+    return path
+
+
+def test_it_drives_as_the_container_of_the_same_parts(vehicle, tmp_path):
+    car = vehicle((0.01, 0.01, 0.01))
+    path = container_of(car.files, tmp_path / "container.fmu", 0.01)
+    axes = {name: {"variable": name, "unit": "N"} for name in ("drive", "brake")}
+    roles = {
+        "fmu": {"step": 0.01},
+        "inputs": {"drive_force": axes["drive"], "brake_force": axes["brake"]},
+        "outputs": {
+            "speed": {"variable": "speed", "unit": "m/s"},
+            "position": {"variable": "position", "unit": "m"},
+        },
+        "initial": {"speed": {"variable": "initial_speed", "unit": "m/s"}},
+    }
+    one = open_vehicle(path, step_size=H, profile=make_profile(roles, "test"))
+    assert np.abs(driven(car, FORCES) - driven(one, FORCES)).max() < 1e-9
+
+
 def test_it_drives_as_in_other_masters_each_part_at_its_own_step(vehicle):
     for steps in ((0.01, 0.01, 0.01), (0.01, 0.02, 0.05), (0.03, 0.05, 0.01)):
         car = vehicle(steps)

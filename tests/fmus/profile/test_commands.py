@@ -33,10 +33,10 @@ def wire(scale: float = 1.0, shift: float = 0.0) -> Wire:
     return Wire("role", Channel(Variable("x", 1, "Real", "input")), scale, shift, "")
 
 
-def command(kind: str, *wires: Wire, block_reverse: bool = True):
+def command(kind: str, *wires: Wire, **inputs: float):
     profile = make_profile(
         {
-            "inputs": {**PROFILES[kind], "block_reverse": block_reverse},
+            "inputs": {**PROFILES[kind], **inputs},
             "outputs": {"speed": V},
             "inverse_map": {"mass": M, "friction": ALPHA},
         },
@@ -49,6 +49,21 @@ def apply(command, force: float, speed: float) -> tuple[float, float]:
     inputs = memoryview(bytearray(16)).cast("d")
     command.apply(force, speed, inputs)
     return inputs[0], inputs[1]
+
+
+@pytest.mark.parametrize(
+    ("force", "speed", "expected"),
+    [
+        (0.0, 0.0, (0.0, 1800.0)),
+        (-500.0, 0.1, (0.0, 1800.0)),
+        (-2500.0, 0.1, (0.0, 2500.0)),  # the controller brakes harder
+        (0.0, -0.3, (0.0, 1800.0)),  # it rolls back
+        (0.0, 0.3, (0.0, 0.0)),
+        (10.0, 0.0, (10.0, 0.0)),  # it is to drive off
+    ],
+)
+def test_a_brake_is_held_at_a_standstill(force, speed, expected):
+    assert apply(command("split", hold=1800.0), force, speed) == expected
 
 
 # ---- numbers ----

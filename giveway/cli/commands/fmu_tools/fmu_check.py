@@ -7,10 +7,19 @@ from pathlib import Path
 from rich.console import Console
 
 from fmus import FmuError
-from fmus.checking import CheckReport, Finding, check, expected_of, opener_of, without_guards
+from fmus.checking import (
+    CheckReport,
+    Finding,
+    check,
+    expected_of,
+    opener_of,
+    openers_held,
+    without_guards,
+)
 from fmus.checking.remedies import tried
 from fmus.checking.scale import CLASS_MASSES
 from fmus.checking.self_check import plain
+from fmus.checking.standing import NAME as STANDING
 from fmus.profile.bundled import is_bundled
 from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import VehicleAxis, VehicleProfile
@@ -20,7 +29,12 @@ from giveway.cli.option_groups import DryRun
 from giveway.cli.screen.printing import findings_table, print_json, print_place
 from giveway.errors import ConfigError
 
-_OF_STEPS = {"step halving", "starts", "reproducible"}  # tests that an edited axis does not mend
+_OF_STEPS = {
+    "step halving",
+    "starts",
+    "reproducible",
+    STANDING,
+}  # tests that an edited axis does not mend
 _NOTHING = "none of the lines that were tried mends it"
 _STYLES = {
     "pass": "green", "skip": "cyan", "warn": "yellow", "ask": "bold magenta", "fail": "bold red",
@@ -64,6 +78,7 @@ def check_command(path: Path, profile: Path | None, trial: DryRun) -> int:
     except FmuError as error:
         return _conclude(console, path, [Finding("fits", "fail", plain(error))], as_json=as_json)
     with console.status("Driving ...") as status:
+        free = without_guards(chosen)
         report = check(
             opener_of(path, step_size=step, profile=chosen),
             expected_of(
@@ -76,7 +91,8 @@ def check_command(path: Path, profile: Path | None, trial: DryRun) -> int:
             ),
             step_size=step,
             fmu_step=fmu_step,
-            unguarded=opener_of(path, step_size=step, profile=without_guards(chosen)),
+            unguarded=opener_of(path, step_size=step, profile=free),
+            held=openers_held(path, step_size=step, profile=free),
             progress=lambda name: status.update(f"Driving: {name} ..."),
         )
         status.update("Trying remedies ...")

@@ -20,6 +20,7 @@ from fmus.checking import (
     expected_of,
     identify,
     opener_of,
+    openers_held,
     without_guards,
 )
 from fmus.checking.beside_fmpy import Beside, beside_fmpy
@@ -113,12 +114,14 @@ def passport_command(path: Path, profile: Path | None, out: Path, mass: float | 
 def _checked(
     path: Path, profile: VehicleProfile, prepared: Prepared, mass: float | None, progress: Any
 ) -> CheckReport:
+    free = without_guards(profile)
     return check(
         opener_of(path, step_size=STEP, profile=profile),
         expected_of(profile, mass=mass, force_limit=FORCE_LIMIT),
         step_size=STEP,
         fmu_step=prepared.step_plan.step,
-        unguarded=opener_of(path, step_size=STEP, profile=without_guards(profile)),
+        unguarded=opener_of(path, step_size=STEP, profile=free),
+        held=openers_held(path, step_size=STEP, profile=free),
         progress=progress,
     )
 

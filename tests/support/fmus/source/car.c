@@ -48,7 +48,8 @@ static void rates_at(const Car *car, const double x[], double rates[]) {
     if (parameter(car, Q_lag) > 0.0) rates[2] = (wanted_force(car, x[1]) - x[2]) / parameter(car, Q_lag);
     if (parameter(car, Q_engaged) == 0.0 && force > 0.0) force = 0.0;
     if (force > 0.0) force *= parameter(car, Q_gears) * (car->shifted ? parameter(car, Q_gear_ratio) : 1.0);
-    if (force < 0.0 && car->x[1] < 0.0 && parameter(car, Q_holds) != 0.0) force = -force; /* it rolls back */
+    bool rubs = parameter(car, Q_holds) != 0.0 && pull(car, 0.0) != 0.0; /* brakes act against the motion */
+    if (rubs && force < 0.0 && car->x[1] < 0.0) force = -force;
     if (!car->held) {
         rates[0] = x[1];
         rates[1] = (force + pull(car, x[1]) - resistance(car, x[1])) / parameter(car, Q_mass);
