@@ -10,15 +10,18 @@ import numpy as np
 import pandas as pd
 
 from giveway.metrics.ego_fields import EGO_FIELDS
-from giveway.risk.estimators import Estimate, Stage
+from giveway.risk.estimators import Estimate, Stage, clopper_pearson
 from giveway.risk.risk_folder import RiskFolder
+from giveway.risk.severity import Severity, may_be_children, severities
 from giveway.run_data.columns import Column
 from giveway.studies.folder.frames import FAILURE_COLUMNS, measured_columns
 from giveway.studies.folder.table_files import write_described
 from giveway.studies.record import CRASHED
 
 _KM = 1000.0  # m in a km
-_PROBABILITIES = frozenset({"probability", "low", "high", "per_km", "per_km_low", "per_km_high"})
+_PROBABILITIES = frozenset(
+    {"probability", "low", "high", "mean", "in_a_run", "per_km", "per_km_low", "per_km_high"}
+)
 _STAGE_MEANINGS = {
     "repeat": (None, "number of the repeat"),
     "stage": (None, "number of the stage within the repeat"),
@@ -50,6 +53,16 @@ RISK_COLUMNS = (
     Column(
         "doubts", "string", None, "reasons for which the interval may not hold; empty: none known"
     ),
+)
+SEVERITY_COLUMNS = (
+    Column("curve", "string", None, "authors and year of the curve"),
+    Column("outcome", "string", None, "injury: death or MAIS3+"),
+    Column("impacts", "integer", None, "egos with a frontal contact in all runs"),
+    Column("valid", "integer", None, "of these, those for which the curve holds"),
+    Column("mean", "number", None, "mean probability of the injury in these; empty: outside"),
+    Column("in_a_run", "number", None, "probability of the injury in a run; empty: not known"),
+    Column("low", "number", None, "lower bound, for the number of impacts"),
+    Column("high", "number", None, "upper bound, for the number of impacts"),
 )
 _HEAD = (
     Column("run", "string", None, "id of the run, for giveway rerun"),
@@ -125,6 +138,7 @@ def write_risk_tables(folder: RiskFolder) -> None:
         "stages": (stages_frame(folder.estimate.stages), STAGE_COLUMNS),
         "runs": (runs_frame(folder), runs_columns(folder)),
         "events": (events_frame(folder), _EVENT_COLUMNS),
+        "severity": (severity_frame(folder), SEVERITY_COLUMNS),
         "failures": (failures_frame(folder), FAILURE_COLUMNS),
     }
     title = f"giveway risk {name}"
@@ -153,6 +167,29 @@ def stages_frame(stages: Sequence[Stage]) -> pd.DataFrame:
     """Return ``stages.csv``: a row per stage."""
     names = [column.name for column in STAGE_COLUMNS]
     return pd.DataFrame([asdict(stage) for stage in stages], columns=names)
+
+
+def severities_of(folder: RiskFolder) -> list[Severity]:
+    """Return the injuries at the frontal contacts of all runs, by each curve."""
+    rows = [row for _, record in folder.runs for row in record.rows]
+    children = may_be_children(folder.plan.config(folder.runs[0][0].vector).crowd)
+    return severities(rows, children=children)
+
+
+def severity_frame(folder: RiskFolder) -> pd.DataFrame:
+    """Return ``severity.csv``: a row per curve.
+
+    The probability in a run is known from plain runs alone, and if the curve holds for all impacts.
+    """
+    plain, runs = folder.plan.definition.method == "monte-carlo", len(folder.runs)
+    rows = []
+    for one in severities_of(folder):
+        known = plain and one.impacts == one.valid > 0
+        low, high = clopper_pearson(one.impacts, runs, folder.plan.definition.confidence)
+        scale = one.mean if known else math.nan
+        shares = {"in_a_run": one.impacts / runs, "low": low, "high": high}
+        rows.append({**asdict(one), **{name: share * scale for name, share in shares.items()}})
+    return pd.DataFrame(rows, columns=[column.name for column in SEVERITY_COLUMNS])
 
 
 def runs_columns(folder: RiskFolder) -> tuple[Column, ...]:

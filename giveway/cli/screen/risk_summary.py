@@ -5,7 +5,8 @@ from rich.table import Table
 
 from giveway.cli.screen.printing import escape, numbers_of
 from giveway.risk.risk_folder import RiskFolder
-from giveway.risk.tables import per_kilometre
+from giveway.risk.severity import Severity
+from giveway.risk.tables import per_kilometre, severities_of
 
 _LISTED = 5  # Largest number of runs that are listed
 
@@ -37,7 +38,31 @@ def print_risk(console: Console, folder: RiskFolder) -> None:
         )
     for doubt in estimate.doubts:
         console.print(f"[yellow]The interval may not hold:[/] {escape(doubt)}", highlight=False)
+    _print_severity(console, folder)
     _print_runs(console, folder)
+
+
+def _print_severity(console: Console, folder: RiskFolder) -> None:
+    """Print the probability of each injury at a frontal contact by each curve."""
+    found = [one for one in severities_of(folder) if one.impacts]
+    for outcome in dict.fromkeys(one.outcome for one in found):
+        mine = [one for one in found if one.outcome == outcome]
+        means = [one.mean for one in mine if one.valid == one.impacts]
+        spread = ""
+        if len(means) > 1:
+            spread = f"; the curves differ by a factor of {max(means) / min(means):.1f}"
+        told = ", ".join(_by_curve(one) for one in mine)
+        console.print(
+            f"Probability of {outcome} at a frontal contact in these runs: {told}{spread}",
+            highlight=False,
+        )
+
+
+def _by_curve(one: Severity) -> str:
+    if one.valid == one.impacts:
+        return f"{100.0 * one.mean:.2g} % ({one.curve})"
+    outside = one.impacts - one.valid
+    return f"outside validity ({one.curve}; {outside} of {one.impacts} contacts)"
 
 
 def _print_runs(console: Console, folder: RiskFolder) -> None:

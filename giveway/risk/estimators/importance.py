@@ -24,6 +24,8 @@ _DEFENSIVE, _SCOUTING = 0.1, 0.1  # Shares of the mixture
 _COMPONENTS = 4  # Number of normal distributions of the mixture
 _ITERATIONS = 30  # Rounds of expectation and maximisation
 _LEAST_VARIANCE = 1e-3  # Added to each variance, so that no component shrinks to a point
+# Factor on the fitted deviations: fitted to few vectors, they leave the event's borders out
+_WIDER = 1.2
 _LEAST_SIZE = 50.0  # Effective sample size of the events below which the estimate is in doubt
 _HEAVY = 0.7  # Shape of the weights' tail above which their mean is in doubt (Vehtari et al. 2024)
 _TAIL = 0.2  # Share of the events' weights that is their tail
@@ -222,5 +224,5 @@ def _root(offsets: Array, weights: Array, effective: float) -> Array:
     diagonal = np.diag(np.diag(covariance))
     trust = effective / (effective + dimension)
     mixed = trust * covariance + (1.0 - trust) * diagonal
-    root: Array = np.linalg.cholesky(mixed + _LEAST_VARIANCE * np.eye(dimension))
+    root: Array = _WIDER * np.linalg.cholesky(mixed + _LEAST_VARIANCE * np.eye(dimension))
     return root

@@ -7,11 +7,12 @@ import pytest
 
 from giveway.errors import GivewayError, ResultsError
 from giveway.risk.risk_folder import RiskFolder
+from giveway.risk.severity import rosen_sander
 from giveway.studies.repeated_run import rerun
 from giveway.studies.study import StudyInterruptedError
 from giveway.studies.study_options import StudyOptions
 
-TABLES = ("risk", "runs", "events", "stages", "failures")
+TABLES = ("risk", "runs", "events", "stages", "severity", "failures")
 
 
 def tables_of(folder):
@@ -36,6 +37,16 @@ def test_the_runs_with_the_event_are_listed_the_worst_first(small_risk):
     assert events["criticality"].is_monotonic_decreasing
     assert events["criticality"].tolist() == events["frontal_impact_speed"].tolist()
     assert events["reproduce"].str.startswith("giveway rerun ").all()
+
+
+def test_the_severity_by_the_default_curve_is_known_from_plain_runs(small_risk):
+    severity = pd.read_csv(small_risk.path / "severity.csv").iloc[0]
+    speeds = pd.read_csv(small_risk.path / "events.csv")["frontal_impact_speed"]
+    risks = [rosen_sander(3.6 * speed) for speed in speeds]
+    assert severity["impacts"] == severity["valid"] == len(speeds)
+    assert severity["mean"] == pytest.approx(sum(risks) / len(risks), rel=1e-4)
+    assert severity["in_a_run"] == pytest.approx(sum(risks) / 8, rel=1e-4)
+    assert severity["low"] < severity["in_a_run"] < severity["high"]
 
 
 def test_a_run_can_be_made_again_with_the_same_numbers(small_risk):
