@@ -161,6 +161,10 @@ class RiskEstimate(NamedTuple):
         int | None,
         typer.Option("--runs", "--budget", help="Runs, or the budget (default 1000).", min=1),
     ] = None
+    why: Annotated[
+        int | None,
+        typer.Option(help="Base vectors of the Sobol indices of the criticality.", min=0),
+    ] = None
     seed: Annotated[int | None, typer.Option(help="Of all vectors (default 1).", min=0)] = None
     confidence: Annotated[
         float | None, typer.Option(help="Of the interval (default 0.95).", min=0.5, max=1.0)

@@ -35,6 +35,13 @@ class RiskDefinition(Section):
         "that would have been needed, the clearance ahead, or the time to a collision",
     )
     runs: int = Field(1000, description="Number of runs, or the budget", ge=1, le=100_000_000)
+    why: int = Field(
+        0,
+        description="Number of base vectors for the Sobol indices of the criticality. Each costs "
+        "two runs, and one for each group of inputs. By default there are no indices",
+        ge=0,
+        le=1_000_000,
+    )
     seed: int = Field(1, description="Seed of the vectors of all runs", ge=0, le=2**31 - 1)
     confidence: float = Field(0.95, description="of the interval", gt=0.5, lt=1.0)
     folder: str = Field(

@@ -20,6 +20,7 @@ from giveway.errors import ConfigError, suggestion
 
 CROWD = "crowd"  # Name of the input that places people by components of their own
 SEED = 0  # Component of the seed
+NOISE = "noise"  # Name of what the seed draws
 _SEEDS = 2**31 - 1  # Number of seeds
 _NUMBERS = {
     "normal": ("mean", "deviation"),
@@ -98,6 +99,13 @@ class RandomInputs:
     def dimension(self) -> int:
         """The number of components of the vector."""
         return 1 + len(self.scalars) + DRAWS_PER_PERSON * self.people
+
+    @property
+    def groups(self) -> dict[str, list[int]]:
+        """The components of each purpose: the noise by the seed, each input, the people."""
+        scalars = {one.name: [1 + number] for number, one in enumerate(self.scalars)}
+        people = list(range(1 + len(self.scalars), self.dimension))
+        return {NOISE: [SEED], **scalars, **({CROWD: people} if people else {})}
 
     def settings(self, vector: NDArray[np.float64]) -> dict[str, Any]:
         """Return the settings of the run that a vector (dimension,) makes."""

@@ -20,9 +20,12 @@ from giveway.results.inputs import scenario_inputs
 from giveway.risk.definition import RiskDefinition
 from giveway.risk.estimators import (
     LEAST_BUDGET,
+    Estimate,
     Sampler,
+    SobolIndex,
     importance_sampling,
     monte_carlo,
+    sobol_indices,
     subset_simulation,
 )
 from giveway.risk.events import Event, read_event
@@ -129,19 +132,46 @@ class RiskPlan:
         return monte_carlo(dimension, wanted.runs, random, wanted.confidence)
 
 
-Batches = Generator[list[RiskRun], list[RunRecord], Any]
-"""Batches of runs, which are sent their records in the same order; it returns the estimate."""
+@dataclass(frozen=True)
+class Findings:
+    """The results of all runs of a risk.
+
+    Attributes:
+        estimate: Probability of the event.
+        indices: Sobol indices of the criticality; empty if they were not wanted.
+    """
+
+    estimate: Estimate
+    indices: tuple[SobolIndex, ...] = ()
+
+
+Batches = Generator[list[RiskRun], list[RunRecord], Findings]
+"""Batches of runs, which are sent their records in the same order."""
 
 
 def batches(plan: RiskPlan) -> Batches:
-    """Yield the estimator's batches as runs, and return the estimate."""
-    sampler, first = plan.sampler(), 1
+    """Yield all batches of runs, and return the findings."""
+    estimate: Estimate = yield from _asked(plan, plan.sampler(), 1)
+    wanted = plan.definition
+    if not wanted.why:
+        return Findings(estimate)
+    inputs = plan.inputs
+    explaining = sobol_indices(
+        inputs.dimension, inputs.groups, wanted.why, wanted.seed, wanted.confidence
+    )
+    return Findings(estimate, (yield from _asked(plan, explaining, 1 + estimate.runs)))
+
+
+def _asked(
+    plan: RiskPlan, vectors: Generator[NDArray[np.float64], NDArray[np.float64], Any], first: int
+) -> Generator[list[RiskRun], list[RunRecord], Any]:
+    """Yield batches of vectors as runs, numbered from ``first``, and return their result."""
     try:
-        vectors = next(sampler)
+        batch = next(vectors)
         while True:
-            records = yield plan.runs(vectors, first)
-            first += len(vectors)
-            vectors = sampler.send(np.array([plan.criticality(record) for record in records]))
+            records = yield plan.runs(batch, first)
+            first += len(batch)
+            batch = vectors.send(np.array([plan.criticality(record) for record in records]))
     except StopIteration as end:
         return end.value
 

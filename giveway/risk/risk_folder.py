@@ -11,8 +11,8 @@ from giveway.config.files.layers import Layer
 from giveway.errors import ResultsError
 from giveway.gate import DEFINITIONS, MANIFEST, read_text
 from giveway.risk.definition import parse_risk
-from giveway.risk.estimators import Estimate
-from giveway.risk.plan import RiskPlan, RiskRun, batches, plan_risk
+from giveway.risk.estimators import Estimate, SobolIndex
+from giveway.risk.plan import Findings, RiskPlan, RiskRun, batches, plan_risk
 from giveway.studies.folder.folder_contents import read_manifest, require_definition
 from giveway.studies.folder.store import RecordStore
 from giveway.studies.record import RunRecord
@@ -57,8 +57,8 @@ class RiskFolder:
         self._store = RecordStore(path, identity)
 
     @cached_property
-    def _replayed(self) -> tuple[list[tuple[RiskRun, RunRecord]], Estimate | None]:
-        """Return the finished runs in order, and the estimate if all are there."""
+    def _replayed(self) -> tuple[list[tuple[RiskRun, RunRecord]], Findings | None]:
+        """Return the finished runs in order, and the findings if all are there."""
         found: list[tuple[RiskRun, RunRecord]] = []
         asking = batches(self.plan)
         try:
@@ -79,8 +79,8 @@ class RiskFolder:
 
     @property
     def runs(self) -> list[tuple[RiskRun, RunRecord]]:
-        """The finished runs with their records, in the order of their numbers."""
-        return self._replayed[0]
+        """The runs of the estimate with their records, in the order of their numbers."""
+        return self._replayed[0][: self.estimate.runs]
 
     @property
     def estimate(self) -> Estimate:
@@ -89,13 +89,26 @@ class RiskFolder:
         Raises:
             ResultsError: runs are missing.
         """
-        estimate = self._replayed[1]
-        if estimate is None:
+        return self._findings.estimate
+
+    @property
+    def indices(self) -> tuple[SobolIndex, ...]:
+        """The Sobol indices of the criticality.
+
+        Raises:
+            ResultsError: runs are missing.
+        """
+        return self._findings.indices
+
+    @property
+    def _findings(self) -> Findings:
+        made, findings = self._replayed
+        if findings is None:
             raise ResultsError(
-                f"{self.path}: runs are missing, {len(self.runs):,} are there; go on with giveway "
+                f"{self.path}: runs are missing, {len(made):,} are there; go on with giveway "
                 "risk and --resume"
             )
-        return estimate
+        return findings
 
     def record(self, run: str) -> RunRecord | None:
         """Return the record of a run.
@@ -114,12 +127,12 @@ class RiskFolder:
         return self.plan.layer(self._run(run)[0].vector)
 
     def _run(self, run: str) -> tuple[RiskRun, RunRecord]:
-        for one, record in self.runs:
+        made = self._replayed[0]
+        for one, record in made:
             if one.id == run:
                 return one, record
         raise ResultsError(
-            f"run '{run}': not in {self.path}; expected r<number>, r1 to r{len(self.runs)}: see "
-            "runs.csv"
+            f"run '{run}': not in {self.path}; expected r<number>, r1 to r{len(made)}: see runs.csv"
         )
 
 

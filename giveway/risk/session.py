@@ -122,7 +122,8 @@ class _Session:
         return (self._plan.task(run) for run in {run.key: run for run in runs}.values())
 
     def _report(self, record: RunRecord | None) -> None:
-        total = max(self._plan.definition.runs, self.finished)
+        definition, groups = self._plan.definition, len(self._plan.inputs.groups)
+        total = max(definition.runs + definition.why * (groups + 2), self.finished)
         self._watcher(StudyProgress(total, self._kept, self._made, self._failed, record))
 
     def _write_manifest(self, *, complete: bool) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from giveway.metrics.ego_fields import EGO_FIELDS
-from giveway.risk.estimators import Estimate, Stage, clopper_pearson
+from giveway.risk.estimators import Estimate, SobolIndex, Stage, clopper_pearson
 from giveway.risk.risk_folder import RiskFolder
 from giveway.risk.severity import Severity, may_be_children, severities
 from giveway.run_data.columns import Column
@@ -63,6 +63,16 @@ SEVERITY_COLUMNS = (
     Column("in_a_run", "number", None, "probability of the injury in a run; empty: not known"),
     Column("low", "number", None, "lower bound, for the number of impacts"),
     Column("high", "number", None, "upper bound, for the number of impacts"),
+)
+WHY_COLUMNS = (
+    Column("group", "string", None, "noise (by the seed), an input, or crowd"),
+    Column("first", "number", None, "share of the criticality's variance that it explains alone"),
+    Column("first_low", "number", None, "lower bound"),
+    Column("first_high", "number", None, "upper bound"),
+    Column("total", "number", None, "share of the variance in which it takes part"),
+    Column("total_low", "number", None, "lower bound"),
+    Column("total_high", "number", None, "upper bound"),
+    Column("used", "integer", None, "base vectors with a result in all their runs"),
 )
 _HEAD = (
     Column("run", "string", None, "id of the run, for giveway rerun"),
@@ -139,6 +149,7 @@ def write_risk_tables(folder: RiskFolder) -> None:
         "runs": (runs_frame(folder), runs_columns(folder)),
         "events": (events_frame(folder), _EVENT_COLUMNS),
         "severity": (severity_frame(folder), SEVERITY_COLUMNS),
+        "why": (why_frame(folder.indices), WHY_COLUMNS),
         "failures": (failures_frame(folder), FAILURE_COLUMNS),
     }
     title = f"giveway risk {name}"
@@ -190,6 +201,12 @@ def severity_frame(folder: RiskFolder) -> pd.DataFrame:
         shares = {"in_a_run": one.impacts / runs, "low": low, "high": high}
         rows.append({**asdict(one), **{name: share * scale for name, share in shares.items()}})
     return pd.DataFrame(rows, columns=[column.name for column in SEVERITY_COLUMNS])
+
+
+def why_frame(indices: Sequence[SobolIndex]) -> pd.DataFrame:
+    """Return ``why.csv``: the Sobol indices of each group of inputs."""
+    rows = [asdict(one) for one in indices]
+    return pd.DataFrame(rows, columns=[column.name for column in WHY_COLUMNS])
 
 
 def runs_columns(folder: RiskFolder) -> tuple[Column, ...]:

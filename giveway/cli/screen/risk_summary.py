@@ -38,8 +38,22 @@ def print_risk(console: Console, folder: RiskFolder) -> None:
         )
     for doubt in estimate.doubts:
         console.print(f"[yellow]The interval may not hold:[/] {escape(doubt)}", highlight=False)
+    _print_why(console, folder)
     _print_severity(console, folder)
     _print_runs(console, folder)
+
+
+def _print_why(console: Console, folder: RiskFolder) -> None:
+    """Print the share of each group of inputs in the criticality's variance."""
+    if not folder.indices:
+        return
+    table = Table(*numbers_of("alone", "from", "to", "in all", "from", "to"), box=None)
+    for one in folder.indices:
+        first = one.first, one.first_low, one.first_high
+        total = one.total, one.total_low, one.total_high
+        table.add_row(escape(one.group), *(f"{share:.2f}" for share in (*first, *total)))
+    console.print("Share of the criticality's variance (Sobol indices)", highlight=False)
+    console.print(table)
 
 
 def _print_severity(console: Console, folder: RiskFolder) -> None:

@@ -9,16 +9,19 @@ result.
 from giveway.risk.estimators.estimate import Estimate, Sampler, Stage, run_sampler
 from giveway.risk.estimators.importance import importance_sampling
 from giveway.risk.estimators.monte_carlo import clopper_pearson, monte_carlo
+from giveway.risk.estimators.sobol import SobolIndex, sobol_indices
 from giveway.risk.estimators.subset import LEAST_BUDGET, subset_simulation
 
 __all__ = [
     "LEAST_BUDGET",
     "Estimate",
     "Sampler",
+    "SobolIndex",
     "Stage",
     "clopper_pearson",
     "importance_sampling",
     "monte_carlo",
     "run_sampler",
+    "sobol_indices",
     "subset_simulation",
 ]

@@ -19,7 +19,7 @@ from giveway.studies.study_options import StudyOptions
 LOCK = ".lock"
 REPORT = "report.html"
 BENCHMARK = "benchmark.csv"
-RISK_TABLES = ("runs", "risk", "events", "stages", "severity", "failures")
+RISK_TABLES = ("runs", "risk", "events", "stages", "severity", "why", "failures")
 _DERIVED_FILES = frozenset(
     {*(f"{name}.csv" for name in (*TABLES, *RISK_TABLES)), PACKAGE, REPORT, BENCHMARK}
 )

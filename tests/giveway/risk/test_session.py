@@ -12,7 +12,7 @@ from giveway.studies.repeated_run import rerun
 from giveway.studies.study import StudyInterruptedError
 from giveway.studies.study_options import StudyOptions
 
-TABLES = ("risk", "runs", "events", "stages", "severity", "failures")
+TABLES = ("risk", "runs", "events", "stages", "severity", "why", "failures")
 
 
 def tables_of(folder):
@@ -88,6 +88,22 @@ def test_more_runs_need_only_the_new_ones(small_risk, risk_of, resumed, tmp_path
     more = risk_of(out, resumed, lambda progress: made.append(progress.made), runs=4)
     assert max(made) == 2
     assert [run.id for run, _ in more.runs] == ["r1", "r2", "r3", "r4"]
+
+
+def test_sobol_indices_cost_further_runs_that_leave_the_estimate_alone(
+    small_risk, risk_of, resumed, tmp_path
+):
+    out = tmp_path / "why"
+    risk_of(out)
+    made = []
+    folder = risk_of(out, resumed, lambda progress: made.append(progress.made), why=4)
+    assert max(made) == 4 * (3 + 2)
+    assert folder.estimate == small_risk.estimate
+    why = pd.read_csv(out / "why.csv")
+    assert list(why["group"]) == ["noise", "vehicle.mass", "crowd"]
+    assert (why["used"] == 4).all()
+    assert len(pd.read_csv(out / "runs.csv")) == 8
+    assert folder.record("r28") is not None
 
 
 def test_another_folder_is_not_taken_for_a_risk(small_risk, risk_of, tmp_path):
