@@ -61,9 +61,9 @@ def idles(idle: Trace) -> Finding:
 def holds(rolling: Trace, braking_role: str) -> Finding:
     """Test whether brakes that are held on stop a vehicle and let it stand."""
     name, slowest = "brakes hold", float(rolling.speed.min())
-    late, end = rolling.speed[-1 - round(1.0 / rolling.step_size)], float(rolling.speed[-1])
-    if end > STANDSTILL and late - end < STANDSTILL:
-        return Finding(name, "fail", f"held on, they do not stop it: {end:.3g} m/s is left")
+    last = rolling.speed[-1 - round(1.0 / rolling.step_size) :]
+    if last.min() > STANDSTILL and last[0] - last[-1] < STANDSTILL:
+        return Finding(name, "fail", f"held on, they do not stop it: {last[-1]:.3g} m/s is left")
     if slowest >= -CREEPS:
         return Finding(name, "pass", f"held on, they slow it down to {slowest:.3g} m/s")
     return Finding(

@@ -96,7 +96,7 @@ def holding(profile: VehicleProfile, force: float) -> VehicleProfile:
 
 
 def openers_held(
-    path: Path, *, step_size: float, profile: VehicleProfile
+    path: Path, *, step_size: float, profile: VehicleProfile, isolated: bool | None = None
 ) -> Callable[[float], Opener]:
     """Return a function from a brake force [N], held at a standstill, to an opener of vehicles.
 
@@ -104,8 +104,11 @@ def openers_held(
         path: Path of the .fmu file.
         step_size: Step size for which a force is held [s].
         profile: Profile of the vehicle.
+        isolated: True to run it in a process of its own; None for this unless it is a shipped FMU.
     """
-    return lambda force: opener_of(path, step_size=step_size, profile=holding(profile, force))
+    return lambda force: opener_of(
+        path, step_size=step_size, profile=holding(profile, force), isolated=isolated
+    )
 
 
 def stays(found: Standing, profile: VehicleProfile | None) -> Finding:

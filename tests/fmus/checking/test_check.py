@@ -1,9 +1,12 @@
 """What the dry run says of cars that have something wrong."""
 
+import numpy as np
 import pytest
 
 from fmus import bundled_fmu
-from fmus.checking import check, expected_of, opener_of, without_guards
+from fmus.checking import check, expected_of, opener_of, openers_held, without_guards
+from fmus.checking.manoeuvres import Trace
+from fmus.checking.observations import holds
 from fmus.profile.bundled import BUNDLED_PROFILE
 from fmus.profile.vehicle_profile import make_profile
 
@@ -14,7 +17,13 @@ def checked(zoo, path, isolated=False, known=None, **changes):
         opener_of(path, step_size=0.05, profile=chosen, isolated=isolated)
         for chosen in (profile, without_guards(profile))
     )
-    return check(guarded, expected_of(profile, **known or {}), step_size=0.05, unguarded=unguarded)
+    return check(
+        guarded,
+        expected_of(profile, **known or {}),
+        step_size=0.05,
+        unguarded=unguarded,
+        held=openers_held(path, step_size=0.05, profile=without_guards(profile), isolated=isolated),
+    )
 
 
 def finding(report, name):
@@ -66,6 +75,31 @@ def test_a_car_that_is_not_in_gear(zoo):
     found = finding(report, "drives against coasting")
     assert found.verdict == "fail"
     assert "no force moves it" in found.text
+
+
+def test_a_car_that_creeps_and_one_that_nothing_holds(zoo):
+    creeps = {"creep": 900.0}
+    report = checked(zoo, zoo.car(role="throttle_brake", values=creeps))
+    assert report.passed
+    assert "creeps to 0.9" in finding(report, "stands still").text
+    assert "hold it" in finding(report, "stays where it stopped").text
+    report = checked(zoo, zoo.car(role="throttle_brake", values=creeps | {"holds": 0.0}))
+    assert finding(report, "stays where it stopped").verdict == "fail"
+
+
+def test_brakes_that_do_not_stop_it():
+    step, still = 0.05, np.zeros(140)
+    speed = np.maximum(4.0 - 3.0 * step * np.arange(141), 0.4)
+    trace = Trace(step, still, np.zeros(141), speed, np.zeros(141), still, ())
+    assert holds(trace, "brake").verdict == "fail"
+    assert "0.4 m/s is left" in holds(trace, "brake").text
+
+
+def test_a_filtered_speed_output_is_a_warning(zoo):
+    car = zoo.car(outputs=("speed", "position"), values={"sensor_lag": 0.4}, file="filtered")
+    report = checked(zoo, car)
+    assert report.passed
+    assert "0.4 s late: filtered" in finding(report, "speed and position").text
 
 
 def test_brakes_that_reverse(zoo):

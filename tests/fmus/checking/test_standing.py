@@ -30,7 +30,7 @@ def at_rest(zoo):
             values["inputs"]["hold"] = hold
         profile = without_guards(make_profile(values, "test"))
         opener = opener_of(path, step_size=STEP, profile=profile, isolated=False)
-        held = openers_held(path, step_size=STEP, profile=profile)
+        held = openers_held(path, step_size=STEP, profile=profile, isolated=False)
         answers = measure(opener, brake_force=9600.0)
         found = standing(opener, held, profile, answers, told_of(profile, None))
         return found, stays(found, profile)

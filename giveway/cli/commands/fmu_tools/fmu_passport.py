@@ -202,7 +202,7 @@ def _not_asked(report: CheckReport, found: Identification | None, prepared: Prep
     points += [
         "another control step than 0.05 s, other start values than those of the profile, and "
         f"other platforms than {this_platform()}",
-        "grades: its input for them was 0"
+        "grades: its input for them was 0, except at rest"
         if prepared.wiring.grade is not None
         else "grades: it has no input for them, and drives everywhere as on the level",
         "steering, tyres on wet or icy roads, temperature, wear and energy",
