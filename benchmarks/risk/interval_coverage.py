@@ -1,7 +1,7 @@
 """Coverage of the intervals of ``giveway risk`` on problems with a known probability.
 
-    python benchmarks/risk/coverage.py --out FOLDER          # can be ended and resumed
-    python benchmarks/risk/coverage.py --out FOLDER --table  # the table alone
+    python benchmarks/risk/interval_coverage.py --out FOLDER          # can be ended and resumed
+    python benchmarks/risk/interval_coverage.py --out FOLDER --table --keep benchmarks/risk/interval_coverage.csv
 
 needs ``pip install openturns otbenchmark`` beside giveway; without them only the counter-examples
 are tried. Each line of FOLDER/coverage.csv is one estimate.
@@ -12,10 +12,11 @@ import csv
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
+from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from problems import Problem, counter_examples, otbenchmark_problems
+from known_probabilities import Problem, counter_examples, otbenchmark_problems
 
 from giveway.risk.estimators import (
     Estimate,
@@ -37,7 +38,8 @@ def main() -> None:
     parser.add_argument("--budget", type=int, default=20_000)
     parser.add_argument("--method", choices=METHODS, action="append")
     parser.add_argument("--only", action="append", help="name of a problem")
-    parser.add_argument("--table", action="store_true")
+    parser.add_argument("--table", action="store_true", help="make nothing")
+    parser.add_argument("--keep", type=Path, help="CSV file for the summary, kept beside this one")
     wanted = parser.parse_args()
     wanted.out.mkdir(parents=True, exist_ok=True)
     file = wanted.out / "coverage.csv"
@@ -45,7 +47,10 @@ def main() -> None:
     methods = wanted.method or ["subset"]
     if not wanted.table:
         _complete(file, problems, methods, wanted.budget, wanted.repeats)
-    for line in table(file, problems, wanted.budget):
+    rows = list(summary(file, problems))
+    if wanted.keep is not None:
+        keep(rows, wanted.keep)
+    for line in table(rows):
         print(line)
 
 
@@ -96,32 +101,101 @@ def _rows(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-def table(file: Path, problems: list[Problem], budget: int) -> Iterator[str]:
-    """Yield the lines of the table: coverage, width and doubts of each problem and method."""
-    groups: defaultdict[tuple[str, str], list[dict[str, str]]] = defaultdict(list)
+@dataclass(frozen=True)
+class Row:
+    """The coverage of one problem by one method.
+
+    Attributes:
+        problem: Name of the problem.
+        dimension: Number of inputs.
+        source: Probability by the source.
+        truth: Probability that is to be covered, by an integral where there is one.
+        method: Estimator.
+        budget: Its budget.
+        repeats: Number of estimates.
+        mean: Mean of the estimates.
+        covered: Number of intervals that cover the truth.
+        source_covered: Number of intervals that cover the source's probability.
+        doubts: Number of estimates that say that the interval may not hold.
+        silent: Number of estimates that neither cover the truth nor say so.
+        ratio: Median of upper over lower bound.
+        runs: Median number of runs.
+    """
+
+    problem: str
+    dimension: int
+    source: float
+    truth: float
+    method: str
+    budget: int
+    repeats: int
+    mean: float
+    covered: int
+    source_covered: int
+    doubts: int
+    silent: int
+    ratio: float
+    runs: int
+
+
+def summary(file: Path, problems: list[Problem]) -> Iterator[Row]:
+    """Yield the coverage of each problem and method."""
+    groups: defaultdict[tuple[str, str, str], list[dict[str, str]]] = defaultdict(list)
     for row in _rows(file):
-        if row["budget"] == str(budget):
-            groups[row["problem"], row["method"]].append(row)
+        groups[row["method"], row["budget"], row["problem"]].append(row)
     known = {problem.name: problem for problem in problems}
-    yield "| problem | d | reference | method | mean | n | covered | in doubt | high/low | runs |"
-    yield "|---|---|---|---|---|---|---|---|---|---|"
-    for (name, method), rows in sorted(groups.items(), key=lambda item: item[0][::-1]):
+    for (method, budget, name), rows in sorted(groups.items()):
         if name not in known:
             continue
-        truth = known[name].probability
+        problem = known[name]
         low, high, mean, runs = (
             np.array([float(row[key]) for row in rows])
             for key in ("low", "high", "probability", "runs")
         )
-        covered = (low <= truth) & (truth <= high)
+        covered = (low <= problem.truth) & (problem.truth <= high)
+        source = (low <= problem.probability) & (problem.probability <= high)
         doubt = np.array([bool(row["doubts"]) for row in rows])
         with np.errstate(divide="ignore"):
             ratio = float(np.median(high / low))
-        bad = np.count_nonzero(~covered & ~doubt)
+        yield Row(
+            name,
+            problem.dimension,
+            problem.probability,
+            problem.truth,
+            method,
+            int(budget),
+            len(rows),
+            float(mean.mean()),
+            int(covered.sum()),
+            int(source.sum()),
+            int(doubt.sum()),
+            int(np.count_nonzero(~covered & ~doubt)),
+            ratio,
+            int(np.median(runs)),
+        )
+
+
+def keep(rows: list[Row], file: Path) -> None:
+    """Write the summary as a CSV file."""
+    with file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(field.name for field in fields(Row))
+        for row in rows:
+            values = astuple(row)
+            writer.writerow(f"{v:.4g}" if isinstance(v, float) else v for v in values)
+
+
+def table(rows: list[Row]) -> Iterator[str]:
+    """Yield the lines of the table in docs/risk.md."""
+    heads = (
+        "problem | inputs | probability | method | budget | covered | doubted | neither | high/low"
+    )
+    yield f"| {heads} |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    for row in rows:
         yield (
-            f"| {name} | {known[name].dimension} | {truth:.4g} | {method} | {mean.mean():.4g} | "
-            f"{len(rows)} | {np.count_nonzero(covered)} | {np.count_nonzero(doubt)} "
-            f"({bad} neither) | {ratio:.2f} | {np.median(runs):.0f} |"
+            f"| {row.problem} | {row.dimension} | {row.truth:.3g} | {row.method} | "
+            f"{row.budget:,} | {row.covered} | {row.doubts} | {row.silent} | {row.ratio:.2f} |"
         )
 
 
