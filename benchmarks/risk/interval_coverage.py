@@ -1,7 +1,7 @@
 """Coverage of the intervals of ``giveway risk`` on problems with a known probability.
 
-    python benchmarks/risk/interval_coverage.py --out FOLDER          # can be ended and resumed
-    python benchmarks/risk/interval_coverage.py --out FOLDER --table --keep benchmarks/risk/interval_coverage.csv
+    python benchmarks/risk/interval_coverage.py --out FOLDER    # can be ended and resumed
+    python benchmarks/risk/interval_coverage.py --out FOLDER --table --keep FILE.csv
 
 needs ``pip install openturns otbenchmark`` beside giveway; without them only the counter-examples
 are tried. Each line of FOLDER/coverage.csv is one estimate.
