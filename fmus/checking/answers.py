@@ -24,6 +24,7 @@ LOWER: Final = 0.6  # factor from one force to the next lower one
 SAME: Final = 1.15  # ratio of two masses of one vehicle
 TRIES: Final = 5  # largest number of forces per side
 STILL: Final = 0.3  # [m/s] speed below which brakes may hold
+CREEPS: Final = 0.3  # [m/s] speed without a force from which a vehicle creeps
 UNKNOWN: Final = 1000.0  # [kg] first guess of the mass of a vehicle that creeps
 LINEAR: Final = 0.9  # share of the variation of coasting that a straight line explains
 STEEPEST: Final = -0.5  # [1/s] change of coasting with the speed that is drag, and no lag
@@ -106,8 +107,9 @@ def _driving_off(opener: Opener) -> float:
     gained = float(trace.speed[-1] - trace.speed[0])
     if abs(gained) < 0.5 * MOVING:
         return np.inf
-    impulse = float(trace.force.sum()) * trace.step_size
-    return impulse / gained if impulse else UNKNOWN  # without any force, it creeps
+    if trace.speed[np.argmax(trace.force > 0.0)] > CREEPS or not trace.force.any():
+        return UNKNOWN
+    return float(trace.force.sum()) * trace.step_size / gained
 
 
 def _drives(opener: Opener, mass: float, gentle: float) -> tuple[Trace, float, float]:

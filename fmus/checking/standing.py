@@ -9,7 +9,7 @@ from typing import Final
 from fmus.checking.answers import Answers
 from fmus.checking.findings import Finding
 from fmus.checking.judgement import Told, roles_of
-from fmus.checking.manoeuvres import Opener, Phase, drive, opener_of
+from fmus.checking.manoeuvres import Opener, Phase, Trace, drive, opener_of
 from fmus.isolation import processes_reused
 from fmus.profile.vehicle_profile import VehicleProfile
 
@@ -27,6 +27,7 @@ class Standing:
 
     Attributes:
         creep: Speed [m/s] that it reaches on the level without a demand.
+        creep_force: Brake force [N] that would balance it when it begins to creep.
         roll: Speed [m/s] that it reaches on a grade without a demand; 0 without an input for it.
         hold: Brake force [N] that keeps it standing; 0 if it needs none, or one that is commanded
             again and again. None if none does.
@@ -34,6 +35,7 @@ class Standing:
     """
 
     creep: float = 0.0
+    creep_force: float = 0.0
     roll: float = 0.0
     hold: float | None = 0.0
     slowest: float = 0.0
@@ -72,10 +74,11 @@ def standing(
     grades = profile is not None and profile.inputs.grade is not None
     slopes = (atan(SLOPE), -atan(SLOPE)) if grades else ()
     strength = min(told.least_braking * answers.brake_mass, answers.brake_force)
-    creep = _speed(opener, 0.0, 0.0)
+    creep, rise = _creeping(opener)
+    pull = rise * answers.brake_mass if creep > LEAVES else 0.0
     roll = max((_speed(opener, 0.0, slope) for slope in slopes), key=abs, default=0.0)
     if max(abs(creep), abs(roll)) <= LEAVES:
-        return Standing(creep, roll)
+        return Standing(creep, 0.0, roll)
     slowest = inf
     for tried, force, hold, still in (
         (held(strength), 0.0, strength, STANDS),
@@ -84,9 +87,9 @@ def standing(
     ):
         fastest = max((_speed(tried, force, slope) for slope in (0.0, *slopes)), key=abs)
         if abs(fastest) <= still:
-            return Standing(creep, roll, hold, fastest)
+            return Standing(creep, pull, roll, hold, fastest)
         slowest = min(slowest, fastest, key=abs)
-    return Standing(creep, roll, None, slowest)
+    return Standing(creep, pull, roll, None, slowest)
 
 
 def holding(profile: VehicleProfile, force: float) -> VehicleProfile:
@@ -137,7 +140,18 @@ def stays(found: Standing, profile: VehicleProfile | None) -> Finding:
     )  # fmt: skip
 
 
+def _creeping(opener: Opener) -> tuple[float, float]:
+    """Return the speed [m/s] at the end without a demand, and the acceleration [m/s2] before."""
+    trace = drive(opener, [Phase(0.0, SECONDS)])
+    window = max(round(0.2 / trace.step_size), 1)
+    rises = trace.speed[window:] - trace.speed[:-window]
+    return _last(trace), float(rises.max(initial=0.0)) / (window * trace.step_size)
+
+
 def _speed(opener: Opener, force: float, grade: float) -> float:
     """Return the speed [m/s] at the end of a drive from rest, as a mean over half a second."""
-    trace = drive(opener, [Phase(force, SECONDS, grade=grade)])
+    return _last(drive(opener, [Phase(force, SECONDS, grade=grade)]))
+
+
+def _last(trace: Trace) -> float:
     return float(trace.speed[-max(round(0.5 / trace.step_size), 1) :].mean())

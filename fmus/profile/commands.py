@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.profile.wires import Wire
 
-HELD = 0.2  # [m/s] speed below which a vehicle that is braked or not driven is held
+HELD = 0.4  # [m/s] speed below which a vehicle that is not driven is held ever more firmly
 
 
 class Command(ABC):
@@ -121,8 +121,8 @@ class HoldingCommand(Command):
 
     def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
         """Fill the inputs; see :class:`Command`."""
-        if speed <= HELD and force <= 0.0:
-            force = min(force, -self.hold)
+        if speed < HELD and force <= 0.0:
+            force = min(force, -self.hold * (1.0 - max(speed, 0.0) / HELD))
         self.command.apply(force, speed, inputs)
 
 

@@ -25,6 +25,7 @@ from giveway.ego.stop_cause import waits_for
 from giveway.ego.vehicle_ahead import VehicleNews
 from giveway.ego.vehicle_model import late_speed_of
 from giveway.ego.waiting_ego import WaitingEgo
+from giveway.ego.walking_pace import WalkingPace
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -34,9 +35,6 @@ from giveway.run_data.outputs import ROAD_GRADE
 from giveway.run_data.tracks import EgoRow
 from pedestrian_model import Surroundings
 
-_GRAVITY = 9.81  # [m/s^2]
-_WALKING_PACE = 2.0  # speed [m/s] below which the force bears the weight; fully 1 m/s below it
-_RELEASE = 1.0  # force [N] that lets the brakes go downhill
 _STRAIGHT = 1.0  # time [s] for which other vehicles are predicted to go straight on
 
 
@@ -88,6 +86,7 @@ class Ego:
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal, self.vehicle = goal, waiting.vehicle
+        self._pace = WalkingPace(config.vehicle.mass, waiting.rests, waiting.vehicle)
         self._late = None if waiting.recorded else late_speed_of(config, time_step)
         gap = config.own(PaperPidOptions)
         self.corridor = Corridor(
@@ -282,26 +281,13 @@ class Ego:
         if self._late is not None:
             self._late.applied(self._force)
         if self._slope is None:
-            self.vehicle.step(self._force)
+            self.vehicle.step(self._pace.force(self._force, self.speed))
         else:
             grade = self._slope.grade(self.front, self.shape.length)
-            self.vehicle.step(self._on_grade(grade), grade)
+            self.vehicle.step(self._pace.force(self._force, self.speed, grade), grade)
         self._locate()
         self.rules.advance(self.front, self.speed, self._time_step)
         self.news.advance()
-
-    def _on_grade(self, grade: float) -> float:
-        """Return the force [N] with which a vehicle that feels a ``grade`` [rad] stops and starts.
-
-        The controllers do not know the grade, and would roll back when they drive off. At walking
-        pace the weight is therefore borne here, except where the brakes hold the vehicle.
-        """
-        force, stands = self._force, self.speed <= STANDING
-        share = min(max(_WALKING_PACE - self.speed, 0.0), 1.0)
-        if share == 0.0 or (stands and force <= 0.0) or not self.vehicle.knows_grades:
-            return force
-        borne = force + share * self.config.vehicle.mass * _GRAVITY * math.sin(grade)
-        return max(borne, min(force, _RELEASE)) if stands else borne
 
     def _locate(self) -> None:
         """Update station and pose from the FMU's position, and the speed from its speed output."""

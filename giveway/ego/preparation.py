@@ -39,11 +39,11 @@ def make_waiting_ego(
     """
     crowd, expected = crowd_of(config), expected_of(config)
     with retold(FmuError, VehicleError):
-        vehicle, description = open_for(config, time_step, stack)
+        vehicle, description, rests = open_for(config, time_step, stack)
     predictor = predictor_of(config, controller, time_step, expected)
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
-    ego = WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)
+    ego = WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety, rests)
     stack.callback(ego.close)
     return ego
 

@@ -86,8 +86,8 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
 
 def open_for(
     config: EgoRunConfig, time_step: float, stack: ExitStack
-) -> tuple[Vehicle, dict[str, object]]:
-    """Open the vehicle of one ego, and return it with its description for the manifest.
+) -> tuple[Vehicle, dict[str, object], Standing]:
+    """Open the vehicle of one ego; return it, its description for the manifest and how it rests.
 
     An FMU that is not giveway's is first driven for some seconds, in full and in smaller steps.
 
@@ -101,7 +101,7 @@ def open_for(
     """
     settings = config.vehicle
     path, profile = fmu_path(settings), profile_of(settings)
-    ours, standing_remark = is_bundled(path), ""
+    ours, rests, remark = is_bundled(path), Standing(), ""
     start_values: dict[str, Any] = {}
     if ours and profile is None:
         start_values = {
@@ -117,7 +117,7 @@ def open_for(
         if config.found is not None and config.found.sensor_lag > 0.0:
             profile = profile.model_copy(update={"model": config.found})
         if rests.hold and profile.inputs.hold is None:
-            profile, standing_remark = holding(profile, rests.hold), _held(path, rests)
+            profile, remark = holding(profile, rests.hold), _held(path, rests)
     vehicle = open_vehicle(
         path,
         step_size=time_step,
@@ -131,9 +131,9 @@ def open_for(
     described["isolated"] = not ours if isolated is None else isolated
     if profile is not None:
         described["profile"] = profile.model_dump(exclude_unset=True)
-    if standing_remark:
-        described["standing"] = standing_remark
-    return vehicle, described
+    if remark:
+        described["standing"] = remark
+    return vehicle, described, rests
 
 
 def _held(path: Path, found: Standing) -> str:

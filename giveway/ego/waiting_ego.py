@@ -1,9 +1,10 @@
 """An ego before it departs, with its vehicle FMU loaded and its controller set up."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from controller import Controller, SafetyParameters, WorstMotion
 from fmus import FmuError, Vehicle
+from fmus.checking import Standing
 from giveway.config import EgoRunConfig
 from giveway.ego.people_assumed import people_at_worst
 from giveway.ego.recorded_ego import RecordedVehicle
@@ -31,6 +32,7 @@ class WaitingEgo:
     predictor: CrowdPredictor | None
     walking_speed_limit: float  # highest walking speed [m/s]
     safety: SafetyParameters | None  # limits of the safety layer, or None without one
+    rests: Standing = field(default_factory=Standing)  # motion of the vehicle at rest
 
     @property
     def id(self) -> str:

@@ -55,10 +55,10 @@ def apply(command, force: float, speed: float) -> tuple[float, float]:
     ("force", "speed", "expected"),
     [
         (0.0, 0.0, (0.0, 1800.0)),
-        (-500.0, 0.1, (0.0, 1800.0)),
+        (-500.0, 0.1, (0.0, 1350.0)),
         (-2500.0, 0.1, (0.0, 2500.0)),  # the controller brakes harder
         (0.0, -0.3, (0.0, 1800.0)),  # it rolls back
-        (0.0, 0.3, (0.0, 0.0)),
+        (0.0, 0.5, (0.0, 0.0)),
         (10.0, 0.0, (10.0, 0.0)),  # it is to drive off
     ],
 )
