@@ -28,6 +28,7 @@ from fmus.checking.model_fit.prediction import (
     position_errors,
     speed_errors,
     true_speed,
+    unfiltered,
 )
 from fmus.checking.model_fit.remarks import estimate_remarks, resistance_remarks, side_remarks
 from fmus.checking.model_fit.selection import identify_sides
@@ -147,6 +148,7 @@ def modelled(
     profile: VehicleProfile | None = None,
     *,
     coarse: bool = False,
+    sensor: float | None = None,
 ) -> Identification:
     """Fit the model to drives that have been recorded.
 
@@ -157,21 +159,24 @@ def modelled(
         path: Path of the FMU, for messages.
         profile: Profile of the vehicle: it has the inverse map, and the lines for advice.
         coarse: True for a quick fit with lag, dead time, and limits of force and rate only.
+        sensor: Lag [s] of the speed output that is to be taken out of the speeds before the fit.
 
     Raises:
         FmuOutputError: the vehicle does not respond to forces like a vehicle.
     """
-    sensor, h = sensor_lag(tests), validation.step_size
+    h, known = validation.step_size, sensor
+    sensor = sensor_lag(tests) if known is None else known
     mapped = profile and (profile.inputs.acceleration or profile.inputs.speed_setpoint)
     map_friction = profile.inverse_map.friction if profile and mapped else 0.0
     # A sensor that is half a step ahead: the vehicle does forward Euler steps.
     euler = sensor is not None and abs(sensor + 0.5 * h) < 1e-3 * h
     late = sensor if sensor is not None and sensor > 0.5 * h else 0.0
     filtered = not coarse and (sensor is None or late > 0.0)
+    seen = [replace(t, speed=unfiltered(t.speed, known or 0.0, h)) for t in (*tests, validation)]
     measured, held_out, beginnings = (
         Measurements.of(traces, map_friction=map_friction, full=_full_forces(profile), euler=at,
                         filtered=filtered)
-        for traces, at in ((tests, euler), ([validation], euler), (tests, True))
+        for traces, at in ((seen[:-1], euler), (seen[-1:], euler), (seen[:-1], True))
     )  # fmt: skip
     if min(measured.acceleration.size, held_out.acceleration.size) < FEWEST:
         raise FmuOutputError(
@@ -181,14 +186,18 @@ def modelled(
     estimate = identify_sides(measured, coarse=coarse)
     pressed = [max(float(np.abs(trace.force).max()) for trace in tests) > full
                for full in _full_forces(profile)]  # fmt: skip
-    sides = [side_model(estimate, side, late, pressed=pressed[side]) for side in (0, 1)]
+    left = late if known is None else 0.0
+    sides = [side_model(estimate, side, left, pressed=pressed[side]) for side in (0, 1)]
+    if left > 0.0 and any(side.lag + side.delay > h for side in sides if side is not None):
+        # Both lags in one response cannot be told apart well: that of the output is known.
+        return modelled(tests, validation, horizon, path, profile, coarse=coarse, sensor=late)
     common = fit_common(beginnings, estimate, map_friction)
     if common is None or sides == [None, None]:
         raise FmuOutputError(
             f"{path}: it does not respond to forces like a vehicle; expected more speed with more "
             "force; 'giveway fmu check' shows what it does instead"
         )
-    known = [side for side in sides if side is not None]
+    both = [side for side in sides if side is not None]
     judged = replace(validation, speed=true_speed(validation.speed, late, h))
     ahead = position_errors(judged, common.mass, common.friction, horizon)
     one_step = speed_errors(judged, common.mass, common.friction)
@@ -196,8 +205,8 @@ def modelled(
     model = FittedModel.model_construct(
         mass=common.mass,
         friction=common.friction,
-        lag=float(np.mean([side.lag for side in known])),
-        delay=float(np.mean([side.delay for side in known])),
+        lag=float(np.mean([side.lag for side in both])),
+        delay=float(np.mean([side.delay for side in both])),
         sensor_lag=late,
         r_squared=estimate.explained(held_out),
         speed_error=float(np.sqrt(np.mean(one_step**2))) if one_step.size else 0.0,

@@ -21,6 +21,13 @@ def true_speed(speed: NDArray[np.float64], lag: float, step: float) -> NDArray[n
     return np.maximum(speed + lag / step * np.diff(speed, prepend=speed[0]), 0.0)
 
 
+def unfiltered(speed: NDArray[np.float64], lag: float, step: float) -> NDArray[np.float64]:
+    """Return the same with the outputs after each instant, too, which a fit knows but no run."""
+    if lag <= 0.0:
+        return speed
+    return np.maximum(speed + lag * np.gradient(speed, step), 0.0)
+
+
 def speed_errors(trace: Trace, mass: float, friction: float) -> NDArray[np.float64]:
     """Return the errors (m,) [m/s] of the speed one step ahead, while the vehicle moves."""
     h, v, v_next = trace.step_size, trace.speed[:-1], trace.speed[1:]

@@ -61,7 +61,7 @@ def _lateness(model: FittedModel, *, positions: bool) -> list[str]:
     late = [side.lag + side.delay for side in (model.drive, model.brake) if side is not None]
     if model.sensor_lag > 0.0:
         return [f"its speed output is {model.sensor_lag:.2g} s behind its position: a filter of "
-                "the sensor, no lag of the actuators; a run allows for it"]  # fmt: skip
+                "the sensor, which a run allows for"]  # fmt: skip
     if max(late) <= model.time_step:
         return []
     alike = max(late) - min(late) <= model.time_step
