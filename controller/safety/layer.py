@@ -31,6 +31,7 @@ SLACK = 1e-9  # distance [m] that a new force keeps in addition to full braking,
 WHOLE_STEPS = 1e-6  # tolerance [steps] when a time is rounded up to whole steps
 _PEOPLE = RECORDED["recorded-99.9"]
 _NO_KERBS = np.zeros((0, 3))
+_EXACT = np.zeros(0)  # errors of velocities that are exact
 
 
 def past_commands(dead_time: float, time_step: float) -> Array:
@@ -197,6 +198,7 @@ class SafetyLayer:
         velocity: Array,
         errors: Array | None = None,
         kerbs: Array = _NO_KERBS,
+        velocity_errors: Array = _EXACT,
     ) -> SafeForce:
         """Return the force if it is safe, or the largest safe one below it.
 
@@ -210,9 +212,10 @@ class SafetyLayer:
             errors: Largest errors (n,) [m] of ``position``, or None for the parameters' error.
             kerbs: Kerbs (n, 3) of people on a sidewalk: unit vector to the kerb and distance [m];
                 0 for the others. An array (0, 3) if nobody is on a sidewalk.
+            velocity_errors: Largest errors (n,) [m/s] of ``velocity``, or (0,) if it is exact.
         """
         errors = self.errors(len(position)) if errors is None else errors
-        people = position, velocity, errors, kerbs
+        people = position, velocity, errors, kerbs, velocity_errors
         safe, verdict = largest_safe_force(force, speed, front, people, self.memory)
         return SafeForce(safe, verdict != LETS_THROUGH, self.REASONS[verdict])
 
@@ -228,7 +231,7 @@ def largest_safe_force(
     force: float,
     speed: float,
     front: tuple[Array, float],
-    people: tuple[Array, Array, Array, Array],
+    people: tuple[Array, Array, Array, Array, Array],
     memory: tuple[Array, Array, Array, Array],
 ) -> tuple[float, int]:
     """Find the largest safe force up to ``force`` [N], and remember it as the last command.
@@ -238,7 +241,8 @@ def largest_safe_force(
         speed: Speed of the ego [m/s].
         front: Poses (k, 4) of the front ahead, and the distance [m] between them.
         people: Positions (n, 2) [m], velocities (n, 2) [m/s], largest errors of the positions
-            (n,) [m] or more, and kerbs (n, 3) or none; see :meth:`SafetyLayer.filter`.
+            (n,) [m] or more, kerbs (n, 3) or none, and largest errors of the velocities (n,)
+            [m/s] or none; see :meth:`SafetyLayer.filter`.
         memory: Packed :class:`Limits`; past forces (delay + 1,) [N], the latest last, changed;
             scratch (longest stop + 1, 9); bounds (3,) [N] of the forces that act, changed, and the
             speed [m/s] by which the ego may be slower.

@@ -224,7 +224,7 @@ def _touches(
 
 @inner
 def _may_meet(
-    person: tuple[float, float, float, float, float],
+    person: tuple[float, float, float, float, float, float],
     kerb: tuple[float, float, float],
     steps: int,
     slack: float,
@@ -233,32 +233,34 @@ def _may_meet(
 ) -> bool:
     """Return whether a person perceived at (x, y) with velocity (v_x, v_y) can meet the front.
 
-    A person who accelerates by at most a_max is within a_max t^2/2 of x + v t. A person who walks
-    at most at v_max is within v_max t of x. A person on a sidewalk, ``depth`` [m] from the kerb in
-    the direction (to_x, to_y), gets no farther in this direction than :func:`towards_kerb` says.
+    A person who accelerates by at most a_max is within a_max t^2/2 of x + v t; if v may be off by
+    dv, within dv t + a_max t^2/2. A person who walks at most at v_max is within v_max t of x. A
+    person on a sidewalk, ``depth`` [m] from the kerb in the direction (to_x, to_y), gets no farther
+    in this direction than :func:`towards_kerb` says.
 
     Args:
-        person: Position x, y [m], velocity v_x, v_y [m/s], and largest error [m] of the position.
+        person: Position x, y [m], velocity v_x, v_y [m/s], and largest errors of the position [m]
+            and of the velocity [m/s].
         kerb: Unit vector to the kerb (to_x, to_y), and its distance [m]; 0 off the sidewalk.
         steps: Number of steps until the ego stands.
         slack: Distance [m] added to the clearance.
         c: Limits of the ego's and people's motion.
         boxes: Rectangles that hold the front, one for each instant.
     """
-    (x, y, v_x, v_y, error), (to_x, to_y, depth) = person, kerb
+    (x, y, v_x, v_y, error, off), (to_x, to_y, depth) = person, kerb
     for j in range(steps + 1):
         box = boxes[j]
         if box[8] < 0.0:
             continue
         t = j * c.time_step
-        accelerated = 0.5 * c.people.acceleration * t * t
+        accelerated = off * t + 0.5 * c.people.acceleration * t * t
         if not _touches(box, x + v_x * t, y + v_y * t, accelerated, error, slack, c):
             continue
         if not _touches(box, x, y, c.people.speed * t, error, slack, c):
             continue
         if depth <= error:
             return True
-        pace = v_x * to_x + v_y * to_y
+        pace = v_x * to_x + v_y * to_y + off
         nearer = towards_kerb(t, pace, depth - error, c.people.setting_out, c.people.acceleration)
         between = _nearest(box, to_x, to_y) - (x * to_x + y * to_y)
         if between - nearer <= box[8] + error + slack:
@@ -299,7 +301,7 @@ def is_safe(
     force: float,
     speed: float,
     front: tuple[Array, float],
-    people: tuple[Array, Array, Array, Array],
+    people: tuple[Array, Array, Array, Array, Array],
     c: Limits,
     memory: tuple[Array, Array, Array],
     slack: float,
@@ -310,13 +312,14 @@ def is_safe(
         force: Force [N] of the present step.
         speed: Speed of the ego [m/s].
         front: Poses (k, 4) of the front ahead, and the distance [m] between them.
-        people: Positions (n, 2), velocities (n, 2), errors (n,) or more, and kerbs (n, 3) or none.
+        people: Positions (n, 2), velocities (n, 2), errors (n,) or more, kerbs (n, 3) or none, and
+            errors of the velocities (n,) or none.
         c: Limits of the ego's and people's motion.
         memory: Forces of the past, the rectangles, which are overwritten, and bounds of the
             forces that act, with the speed [m/s] by which the ego may be slower.
         slack: Distance [m] added to the clearance.
     """
-    position, velocity, errors, kerbs = people
+    position, velocity, errors, kerbs, off = people
     (way, spacing), boxes = front, memory[1]
     steps, travel = _stop(force, speed, way, spacing, c, memory)
     if steps < 0:
@@ -333,7 +336,8 @@ def is_safe(
         to_x, to_y, depth = 0.0, 0.0, 0.0
         if i < kerbs.shape[0]:
             to_x, to_y, depth = kerbs[i, 0], kerbs[i, 1], kerbs[i, 2]
-        person = x, y, velocity[i, 0], velocity[i, 1], errors[i]
+        turns = off[i] if i < off.shape[0] else 0.0
+        person = x, y, velocity[i, 0], velocity[i, 1], errors[i], turns
         if _may_meet(person, (to_x, to_y, depth), steps, slack, c, boxes):
             return False
     return True

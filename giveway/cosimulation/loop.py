@@ -27,10 +27,10 @@ from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.recording_instants import Instants
 from giveway.cosimulation.standstill import Standstill
 from giveway.cosimulation.traffic.interactions import Meetings
+from giveway.cosimulation.world import World
 from giveway.crowd.reachable import flow_remark, spawn_remark, way_of
 from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
-from giveway.ego.perception.truth import Truth
 from giveway.errors import ControlError, CrowdError, RuleError, SensorError, VehicleError
 from giveway.geometry.kernel import Array
 from giveway.journal.recorder import Recorder
@@ -77,9 +77,7 @@ class Loop:
         self.meetings = Meetings(parts.sumo, parts.yielding, parts.gaps)
         self._instants = Instants(recorder, parts.config.record, parts.time_step)
         self._fronts = np.empty((0, 2))
-        self._truth = Truth.of_people(parts.roster.crowd)
-        if parts.config.crowd.walls and parts.surroundings.walls is not None:
-            self._truth.outlines = parts.surroundings.walls.segments
+        self._world = World(parts, self._mirror)
         self.followed = Followed(parts) if follow else None
         walks = None if self.followed is None else self.followed.walks
         self._walking = Walking(parts.config, parts.crowd_model, parts.roster, walks)
@@ -263,8 +261,7 @@ class Loop:
         recorder, mirror = self._recorder, self._mirror
         recorder.instant(time)
         mirror.place(self._egos)
-        truth, surroundings = self._truth, self._parts.surroundings
-        truth.people, truth.vehicles, truth.time = self._roster.crowd, mirror.poses[0], time
+        truth, surroundings = self._world.at(time, self._egos), self._parts.surroundings
         predicting = controlling = 0.0
         acting = ""
         for row, ego in enumerate(self._egos):

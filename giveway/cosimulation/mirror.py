@@ -129,8 +129,7 @@ class Mirror:
 
     def mark_beside(self, egos: Sequence[Ego]) -> None:
         """Tell egos which rows are vehicles that pass beside, and how hard each row brakes."""
-        ids = self.background.ids
-        near = [ids[i] for i in self._near]
+        near = self.background_ids
         braking = self._session.vehicles.emergency_braking(near)
         step = self._substeps * self._time_step
         for ego in egos:
@@ -178,6 +177,11 @@ class Mirror:
         if self._slows.any():
             times = since * self._time_step, self._time_step, self._slowing.step
             slow_down(self.poses, self._news, self._egos, self._slows, times)
+
+    @property
+    def background_ids(self) -> list[str]:
+        """The ids of the background vehicles that have rows, in their order."""
+        return [self.background.ids[i] for i in self._near]
 
     # --- to SUMO ------------------------------------------------------------------------------
 

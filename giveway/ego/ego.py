@@ -199,7 +199,7 @@ class Ego:
                 if seen.followed.decelerates > 0.0:
                     braking = self.news.stations(leader, seen.followed, self._times)
                     vehicles = np.minimum(vehicles, braking)
-        rules.look(front, speed, seen.percept.people, leader)
+        rules.look(front, speed, seen.percept.people, leader, seen.hidden)
         if rules.leader is not NO_LEADER:
             leader = min(leader, rules.leader)
             merging = rules.leader.station + rules.leader.speed * self._times

@@ -4,6 +4,7 @@ from giveway.ego.foresight.building import foresight_of
 from giveway.ego.foresight.relevance import Nearby, Relevance
 from giveway.ego.percept import Perceived
 from giveway.ego.perception.corridor import Corridor
+from giveway.ego.perception.hidden_people import HidingPlaces
 from giveway.ego.perception.kerbs import Kerbs
 from giveway.ego.perception.protocol import Ids, OwnState, Percept
 from giveway.ego.perception.sensing import Perception
@@ -40,6 +41,7 @@ class PeopleInFront:
         self._chosen: Crowd | None = None  # memory for those who matter
         perception = Perception(waiting.config, worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
+        self._hiding_places = HidingPlaces(path) if waiting.config.safety.hidden_speed else None
         self._sudden_starts = SuddenStarts(worst.setting_out, time_step)
         self.foresight = foresight_of(waiting, path, shape, half_width, time_step)
 
@@ -67,6 +69,9 @@ class PeopleInFront:
             percept = Percept(truth.people, person_ids)
         else:
             percept = perception.observe(truth, person_ids, own)
+            sensor = perception.tells_unseen
+            if sensor is not None and self._hiding_places is not None:
+                seen.hidden = self._hiding_places.ahead(sensor, truth, own.row, front, own.speed)
         people, predictor = percept.people, self._predictor
         seen.percept = percept
         if self._drift is not None:
@@ -101,7 +106,7 @@ class PeopleInFront:
             own: State of the ego.
             front: Station of the front bumper [m].
         """
-        people, numbers, _, errors = seen.percept
+        people, numbers, _, errors, _ = seen.percept
         foresight, speed = self.foresight, own.speed
         if foresight is None:
             relevant = self._relevance.of(people, own.pose.x, own.pose.y, speed)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from controller import VehicleAhead
 from giveway.ego.foresight.crowd_foresight import CrowdForesight
+from giveway.ego.perception.hidden_people import NOWHERE, Hidden
 from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.perception.protocol import Percept
@@ -37,6 +38,7 @@ class Perceived:
         row: Row of the ego among the vehicles.
         to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
         kerbs: Kerbs (n, 3) of the people on sidewalks.
+        hidden: Places ahead where people could come out of hiding.
         sudden_starts: Ids of the people who violate the safety layer's assumption now, by a sudden
             start.
     """
@@ -56,4 +58,5 @@ class Perceived:
     row: int = 0
     to_clear: float = 0.0
     kerbs: Array = field(default_factory=lambda: NO_KERBS)
+    hidden: Hidden = NOWHERE
     sudden_starts: NDArray[np.int64] = field(default_factory=lambda: NOBODY)

@@ -113,16 +113,17 @@ class Safeguards:
             seen: World as the ego perceives it, and what the rules of the road demand.
             slower: Speed [m/s] by which the ego may be slower.
         """
-        vehicles, decision, people = self._vehicles, asked, seen.percept.people
+        vehicles, decision = self._vehicles, asked
         if vehicles is not None:
             force = vehicles.filter(asked.force, speed, seen.followed)
             if force < asked.force:
                 decision = asked._replace(force=force, acting="safety", reason=vehicles.REASON)
         followed = decision
         if self._people is not None:
-            bound = seen.percept.position_bound
             self._people.may_be_slower(slower)
-            safe = self._people.overrule(decision, front, speed, people, bound, seen.kerbs)
+            safe = self._people.overrule(
+                decision, front, speed, seen.percept, seen.kerbs, seen.hidden
+            )
             decision = decision if safe is None else safe
         if self._entry is not None:
             least = self._entry.least_force(front, speed, seen)

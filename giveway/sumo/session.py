@@ -30,6 +30,7 @@ from giveway.sumo.network.footpaths import FootPaths
 from giveway.sumo.network.junction_links import Junctions
 from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.network.soundness import require_sound
+from giveway.sumo.opaque_bodies import OpaqueBodies
 from giveway.sumo.persons.handover import NOWHERE
 from giveway.sumo.persons.person_moves import PersonMoves
 from giveway.sumo.persons.scenario_persons import ScenarioPersons
@@ -104,6 +105,7 @@ class SumoSession:
         self.devices = Devices(self._sumo)
         self.light_requests = LightRequests(self._sumo)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
+        self.opaque = OpaqueBodies(self._sumo)
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._persons: ScenarioPersons | None = None
         self._added: set[str] = set()

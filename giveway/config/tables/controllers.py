@@ -285,6 +285,16 @@ class SafetyConfig(Section):
         "and the ego heeds [rules] following",
         flag="--safety-vehicles",
     )
+    hidden_speed: float = option(
+        5.0 / 3.6,
+        "m/s",
+        "Speed at which people who are not seen may come out of hiding, where a sensor tells what "
+        "it does not see (Euro NCAP's obstructed child: 5 km/h). 0: nobody does",
+        ge=0,
+        le=10,
+        least=0.01,
+        because="slower people hardly move, and nobody runs faster",
+    )
 
 
 class NoOptions(Section):

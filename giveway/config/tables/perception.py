@@ -1,6 +1,10 @@
 """The table of the configuration about what is seen of the people, and believed of them."""
 
+from math import isfinite
 from typing import Literal
+
+from pydantic import field_validator
+from pydantic_core import PydanticCustomError
 
 from giveway.config.option import Preset, Section, option
 from giveway.config.plug_in_names import (
@@ -19,6 +23,12 @@ class PerceptionConfig(Section):
         None,
         "Sensor that perceives people: all (everybody), or another package's, by its declared "
         "name or as module:Class",
+    )
+    opaque: str = option(
+        "building 10, wall 2, hedge 1.5",
+        None,
+        "Types of SUMO's polygons that hide people from sensors, each with a height [m]; the "
+        "parameter 'height' of a polygon comes before it",
     )
     position_noise: float = option(
         0.0,
@@ -63,6 +73,18 @@ class PerceptionConfig(Section):
         "people walk by; the paper's controllers know those of the crowd",
     )
 
+    @field_validator("opaque")
+    @classmethod
+    def _have_heights(cls, text: str) -> str:
+        """Return the text after a check that each type has a height."""
+        _heights(text)
+        return text
+
+    @property
+    def heights(self) -> dict[str, float]:
+        """The height [m] of each type of polygon that hides people."""
+        return _heights(self.opaque)
+
     @property
     def plugged_in_sensor(self) -> bool:
         """True if the sensor is a plug-in."""
@@ -72,3 +94,19 @@ class PerceptionConfig(Section):
     def plugged_in(self) -> bool:
         """True if the predicting pedestrian model is a plug-in."""
         return self.model not in BUNDLED_BELIEFS
+
+
+def _heights(text: str) -> dict[str, float]:
+    """Read types of polygons with their heights, as in ``building 10, wall 2``."""
+    found: dict[str, float] = {}
+    for part in filter(None, map(str.strip, text.split(","))):
+        kind, _, number = part.rpartition(" ")
+        try:
+            height = float(number)
+        except ValueError:
+            height = 0.0
+        if not kind.strip() or not isfinite(height) or height <= 0.0:
+            msg = f"'{part}': expected a type and a height [m], like 'building 10'"
+            raise PydanticCustomError("opaque", "{expected}", {"expected": msg})
+        found[kind.strip()] = height
+    return found

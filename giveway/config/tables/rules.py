@@ -51,6 +51,12 @@ class RulesConfig(PlugInTable):
     following: bool | None = option(
         None, None, "The ego keeps its distance to vehicles in front. It does by default"
     )
+    hidden_people: bool | None = option(
+        None,
+        None,
+        "The ego slows down before places where people could come out of hiding. It does by "
+        "default if its sensor tells what it does not see",
+    )
     speed_limits: bool | None = option(
         None,
         None,

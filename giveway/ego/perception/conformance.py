@@ -4,13 +4,14 @@ A dozen people walk past a car that drives by a parked car and a wall.
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from giveway.ego.perception.plugged_in_sensor import PluggedInSensor
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, SensorSetup
-from giveway.ego.perception.truth import Truth
+from giveway.ego.perception.truth import ADULT, Truth
 from giveway.errors import SensorError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -52,10 +53,11 @@ class _Scene:
         vehicles[:, :2] = self._placed(vehicles[:, :2])
         heading = TURN if self._is_turned else 0.0
         vehicles[:, 2] += heading
-        wall = self._placed(np.array([[15.0, 5.0], [25.0, 5.0]])).reshape(1, 4)
+        wall = np.append(self._placed(np.array([[15.0, 5.0], [25.0, 5.0]])), 3.0).reshape(1, 5)
         x, y = self._placed(front)[0].tolist()
         pose = Pose(x, y, heading)
-        return Truth(people, vehicles, wall, clock), OwnState(pose, 4.0, 0, _SHAPE)
+        heights = np.full(2, 1.5), np.full(_PEOPLE, ADULT)
+        return Truth(people, vehicles, wall, clock, *heights), OwnState(pose, 4.0, 0, _SHAPE)
 
 
 def check_sensor(
@@ -79,7 +81,7 @@ class _Copied:
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         everybody = np.ones(len(person_ids), dtype=np.bool_)
-        own = Truth(truth.people.select(everybody), truth.vehicles, truth.outlines, truth.time)
+        own = replace(truth, people=truth.people.select(everybody))
         answer: Percept = self._observe(own, person_ids, ego)
         return answer
 
@@ -123,7 +125,7 @@ class _Battery(Battery[PluggedInSensor, _Perceived]):
         perceived = []
         for step in range(_STEPS):
             truth, own = scene.at(step)
-            people, ids, _, _ = hosted.observe(truth, scene.ids, own)
+            people, ids, *_ = hosted.observe(truth, scene.ids, own)
             rows = np.argsort(ids)
             perceived.append((ids[rows], people.position[rows]))
             if other is not None:
@@ -171,7 +173,7 @@ class _Battery(Battery[PluggedInSensor, _Perceived]):
         scene, sensor = _Scene(self._setup.time_step), self.fresh()
         for step in range(_STEPS):
             truth, own = scene.at(step)
-            people, ids, _, bound = sensor.observe(truth, scene.ids, own)
+            people, ids, _, bound, _ = sensor.observe(truth, scene.ids, own)
             if bound is None:
                 continue
             true = truth.people.position[np.searchsorted(scene.ids, ids)]

@@ -6,11 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, Sensor, SensorSetup
 from giveway.ego.perception.truth import Truth
 from giveway.errors import SensorError
+from giveway.geometry.kernel import Array
 from giveway.plug_ins.faults import blamed, shown
 from giveway.plug_ins.finding import load_maker
 from giveway.plug_ins.sockets import SENSOR
@@ -95,7 +97,14 @@ class PluggedInSensor:
         """
         everybody = np.ones(len(person_ids), dtype=np.bool_)
         self._room = truth.people.select(everybody, self._room)
-        copied = Truth(self._room, truth.vehicles.copy(), truth.outlines.copy(), truth.time)
+        copied = Truth(
+            self._room,
+            truth.vehicles.copy(),
+            truth.outlines.copy(),
+            truth.time,
+            truth.vehicle_heights.copy(),
+            truth.person_heights.copy(),
+        )
         own = OwnState(ego.pose, ego.speed, ego.row, ego.shape)
         most = int(person_ids.max(initial=-1)) + 1
         if most > len(self._known):
@@ -104,6 +113,25 @@ class PluggedInSensor:
         with blamed(self._name, SensorError):
             answer = self._sensor.observe(copied, person_ids.copy(), own)
         return self._checked(answer)
+
+    @property
+    def tells_unseen(self) -> bool:
+        """True if the sensor tells where people would not be in sight."""
+        return hasattr(self._sensor, "unseen")
+
+    def unseen(self, points: Array) -> NDArray[np.bool_]:
+        """Return the checked marks (k,) of the points (k, 2) [m] that are not in sight.
+
+        Raises:
+            SensorError: the sensor raises, or its answer cannot be used.
+        """
+        with blamed(self._name, SensorError):
+            marks = self._sensor.unseen(points)  # type: ignore[attr-defined]
+        if not (isinstance(marks, np.ndarray) and marks.dtype == np.bool_):
+            raise self._unusable(marks, "an array of marks", "told as unseen")
+        if marks.shape != (len(points),):
+            raise self._unusable(marks.shape, f"the shape ({len(points)},)", "told as unseen")
+        return marks
 
     def _checked(self, answer: Any) -> Percept:
         """Return the answer if all of it can be used, or raise a `SensorError`."""
@@ -124,7 +152,7 @@ class PluggedInSensor:
             if not np.isfinite(array := getattr(people, name)).all():
                 bad = float(array[~np.isfinite(array)][0])
                 raise self._unusable(bad, "finite numbers", f"returned {name}")
-        for name in ("age", "position_bound"):
+        for name in ("age", "position_bound", "velocity_bound"):
             array = getattr(answer, name)
             if array is None:
                 continue

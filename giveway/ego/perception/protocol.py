@@ -27,12 +27,14 @@ class Percept(NamedTuple):
         person_ids: Id (n,) of each perceived person, which the person keeps during the run.
         age: Time (n,) [s] since each person was last seen, or None if all are seen now.
         position_bound: Largest error (n,) [m] of each position, or None if the sensor claims none.
+        velocity_bound: Largest error (n,) [m/s] of each velocity, or None in the same case.
     """
 
     people: Crowd
     person_ids: Ids
     age: Array | None = None
     position_bound: Array | None = None
+    velocity_bound: Array | None = None
 
 
 @dataclass(slots=True)
@@ -79,6 +81,10 @@ class Sensor(Protocol):
     """A sensor: it looks at the truth and returns what an ego perceives of it.
 
     A person may be missing from an answer, appear late, vanish and come back.
+
+    A sensor may also have the method ``unseen(points)``. It returns the marks (k,) of the points
+    (k, 2) [m] at which a person would not be in sight now. The ego then allows for people who come
+    out there.
     """
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:

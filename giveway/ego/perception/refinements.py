@@ -42,7 +42,7 @@ class PositionNoise:
         noisy, bound = self._own.of(people), percept.position_bound
         np.add(people.position, noise, out=noisy.position)
         bound = None if bound is None else bound + self._bound
-        return Percept(noisy, percept.person_ids, percept.age, bound)
+        return percept._replace(people=noisy, position_bound=bound)
 
 
 class DesiredSpeeds:
@@ -66,7 +66,7 @@ class DesiredSpeeds:
         own.desired_speed[:] = (
             self._typical if pace is None else pace.learn(people, percept.person_ids)
         )
-        return Percept(own, *percept[1:])
+        return percept._replace(people=own)
 
 
 class HeadingGoals:
@@ -75,7 +75,7 @@ class HeadingGoals:
     def refine(self, percept: Percept) -> Percept:
         """The percept in which everybody walks straight on and standing people stay."""
         people = percept.people
-        return Percept(_walking_on(people), *percept[1:]) if len(people) else percept
+        return percept._replace(people=_walking_on(people)) if len(people) else percept
 
 
 def _walking_on(crowd: Crowd) -> Crowd:

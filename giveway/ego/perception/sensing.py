@@ -35,6 +35,10 @@ class Perception:
         config: Configuration of the ego.
         acceleration: Largest acceleration [m/s^2] of a person that the tracker assumes.
         time_step: Time between two observations [s].
+
+    Attributes:
+        exact: Whether everything is perceived as it is.
+        tells_unseen: The sensor, if it tells where people would not be in sight, or None.
     """
 
     def __init__(self, config: EgoRunConfig, acceleration: float, time_step: float) -> None:
@@ -54,6 +58,7 @@ class Perception:
         if seen.goals != "known":
             self._chain.append(HeadingGoals())
         self.exact = own is None and not self._chain
+        self.tells_unseen = own if own is not None and own.tells_unseen else None
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         """Return what the ego perceives; the next call overwrites it.

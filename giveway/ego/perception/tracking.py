@@ -8,7 +8,8 @@ running mean, kept within the bound.
 
 Velocities are perceived exactly. A person with velocities v and v' at two instants and an
 acceleration of at most a_max moves by dt (v + v') / 2, with an error of at most a_max dt^2 / 4 on
-each axis: the largest area between v(t) and its chord.
+each axis: the largest area between v(t) and its chord. If velocities are off by at most dv, the
+error is larger by dv dt.
 """
 
 import numpy as np
@@ -36,7 +37,7 @@ class Tracker:
         self._known = np.zeros((0, _COLUMNS))
         self._seen = np.zeros(0, dtype=np.int64)  # number of the last look at each person
         self._look = 1
-        self._errors = np.zeros(0)
+        self._errors, self._slacks = np.zeros(0), np.zeros(0)
         self._own = OwnArrays("position")
 
     def refine(self, percept: Percept) -> Percept:
@@ -54,19 +55,23 @@ class Tracker:
             self._known = np.concatenate([self._known, np.zeros((more, _COLUMNS))])
             self._seen = np.concatenate([self._seen, np.zeros(more, dtype=np.int64)])
         if n > len(self._errors):
-            self._errors = np.zeros(2 * n)
+            self._errors, self._slacks = np.zeros(2 * n), np.zeros(2 * n)
         self._look += 1
         errors = self._errors[:n]
         errors[:] = self._error if percept.position_bound is None else percept.position_bound
+        slacks = self._slacks[:n]
+        slacks[:] = self._slack
+        if percept.velocity_bound is not None:
+            slacks += self._time_step * percept.velocity_bound
         _track(
             (people.position, people.velocity),
             numbers,
             self._look,
-            (self._slack, self._time_step),
+            (slacks, self._time_step),
             (self._known, self._seen),
             errors,
         )
-        return Percept(people, numbers, percept.age, errors)
+        return percept._replace(people=people, position_bound=errors)
 
 
 @kernel
@@ -74,7 +79,7 @@ def _track(
     people: tuple[Array, Array],
     numbers: NDArray[np.int64],
     look: int,
-    motion: tuple[float, float],
+    motion: tuple[Array, float],
     memory: tuple[Array, NDArray[np.int64]],
     errors: Array,
 ) -> None:
@@ -84,15 +89,15 @@ def _track(
         people: Positions (n, 2) [m], changed, and velocities (n, 2) [m/s].
         numbers: Person ids (n,).
         look: Number of this look.
-        motion: Largest error [m] of a step's displacement on each axis, and time [s] between two
-            looks.
+        motion: Largest error (n,) [m] of a step's displacement on each axis, and time [s] between
+            two looks.
         memory: State of each person by id, see ``_COLUMNS``, and number of the last look at each
             person; changed.
         errors: Largest errors (n,) [m] on each axis; filled with those of the estimates.
     """
-    (position, velocity), (slack, time_step), (known, seen) = people, motion, memory
+    (position, velocity), (slacks, time_step), (known, seen) = people, motion, memory
     for row in range(len(numbers)):
-        mine, error = known[numbers[row]], errors[row]
+        mine, error, slack = known[numbers[row]], errors[row], slacks[row]
         lost = seen[numbers[row]] != look - 1
         seen[numbers[row]] = look
         for axis in range(2):

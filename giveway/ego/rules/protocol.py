@@ -11,6 +11,7 @@ from math import inf
 from types import MappingProxyType
 from typing import NamedTuple, Protocol, runtime_checkable
 
+from giveway.ego.perception.hidden_people import NOWHERE, Hidden
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.junctions import PathJunction, Traffic
 from giveway.ego.rules.merge_points import MergePoint, MergingVehicle
@@ -49,6 +50,7 @@ class Situation:
     merging: Mapping[MergePoint, Mapping[str, MergingVehicle]] = field(
         default_factory=dict
     )  # vehicles at each merge point, by their ids
+    hidden: Hidden = NOWHERE  # places ahead where people could come out of hiding
 
     def leader_at_rest(self) -> Leader:
         """The vehicle ahead, placed where it comes to rest if it has to stop at the red light."""

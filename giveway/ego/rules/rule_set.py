@@ -6,8 +6,10 @@ from collections.abc import Callable, Sequence
 from math import inf
 from typing import Any
 
+from giveway.ego.perception.hidden_people import NOWHERE, Hidden
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.rules.crossings import Crossings
+from giveway.ego.rules.hidden_people import HiddenPeople
 from giveway.ego.rules.junctions import SIGHT
 from giveway.ego.rules.merge_points import SIGHT as MERGE_SIGHT
 from giveway.ego.rules.merge_points import FollowingConstraint, MergePoint
@@ -30,6 +32,7 @@ RULES: tuple[Callable[[RouteContext], Rule | None], ...] = (
     Crossings.on,
     RightOfWay.on,
     SpeedLimits.on,
+    HiddenPeople.on,
 )
 """The factories of giveway's own rules, in the order in which the rules are asked.
 
@@ -170,7 +173,9 @@ class RuleSet:
         for update in self._updates:
             update(situation)
 
-    def look(self, station: float, speed: float, crowd: Crowd, leader: Leader) -> None:
+    def look(
+        self, station: float, speed: float, crowd: Crowd, leader: Leader, hidden: Hidden = NOWHERE
+    ) -> None:
         """Ask each rule what it demands, and keep the strictest.
 
         Args:
@@ -178,12 +183,13 @@ class RuleSet:
             speed: Speed of the ego [m/s].
             crowd: Pedestrians as the ego sees them.
             leader: Vehicle ahead.
+            hidden: Places ahead where people could come out of hiding.
         """
         if not self._demands:
             return
         situation = self.situation
         situation.station, situation.speed = station, speed
-        situation.crowd, situation.leader = crowd, leader
+        situation.crowd, situation.leader, situation.hidden = crowd, leader, hidden
         self._reset()
         for ask in self._demands:
             demand = ask(situation)

@@ -6,6 +6,7 @@ from support.front_poses import front_poses
 
 from controller import Decision, SafetyParameters
 from giveway.config import EgoRunConfig
+from giveway.ego.perception import Percept
 from giveway.ego.safety_layer import EgoSafetyLayer
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
@@ -28,8 +29,8 @@ def guard(path: EgoPath) -> EgoSafetyLayer:
     return EgoSafetyLayer(SafetyParameters(), config, path, VehicleShape(5.0, 2.0), 0.05)
 
 
-def person_at(x: float, y: float) -> Crowd:
-    return Crowd.create([(x, y)], [(0.0, 0.0)], 1.4, [[(x, y)]])
+def person_at(x: float, y: float) -> Percept:
+    return Percept(Crowd.create([(x, y)], [(0.0, 0.0)], 1.4, [[(x, y)]]), np.zeros(1, np.int64))
 
 
 def test_on_a_straight_way_one_pose_says_everything() -> None:

@@ -32,7 +32,7 @@ def observed(answer) -> Percept:
 
 
 def test_what_it_overwrites_is_a_copy():
-    truth, ids = Truth(crowd(), np.ones((1, 7)), np.ones((2, 4)), 3.0), IDS.copy()
+    truth, ids = Truth(crowd(), np.ones((1, 7)), np.ones((2, 5)), 3.0), IDS.copy()
 
     def overwrites(shown, person_ids, ego):
         everybody = person_ids.copy()

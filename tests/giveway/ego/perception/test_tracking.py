@@ -41,7 +41,7 @@ class World:
 
 def tracked(by: Tracker, crowd: Crowd, ids=WHO) -> tuple[Crowd, np.ndarray]:
     """The estimates and their bounds, kept beyond the next call."""
-    people, _, _, bound = by.refine(Percept(crowd, ids))
+    people, _, _, bound, _ = by.refine(Percept(crowd, ids))
     return people.copy(), bound.copy()
 
 

@@ -1,0 +1,42 @@
+"""The world as it is at a control step, which the egos' sensors are shown."""
+
+from collections.abc import Sequence
+
+from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.mirror import Mirror
+from giveway.ego.ego import Ego
+from giveway.ego.perception.truth import Truth
+
+
+class World:
+    """Fills in the truth at each control step.
+
+    Heights and walls are read only if an ego has a sensor that may need them.
+
+    Args:
+        parts: Parts of the run.
+        mirror: Source of the vehicles' poses.
+    """
+
+    def __init__(self, parts: Parts, mirror: Mirror) -> None:
+        self._roster, self._mirror = parts.roster, mirror
+        self._truth = Truth.of_people(parts.roster.crowd)
+        looked_at = any(ego.config.perception.plugged_in_sensor for ego in parts.egos)
+        self._opaque = parts.sumo.opaque if looked_at else None
+        if self._opaque is not None:
+            self._truth.outlines = self._opaque.walls(parts.config.perception.heights)
+
+    def at(self, time: float, egos: Sequence[Ego]) -> Truth:
+        """Return the truth at an instant; the next call overwrites it.
+
+        Args:
+            time: SUMO's clock [s].
+            egos: Egos on the road, in the order of their rows.
+        """
+        truth, opaque, mirror = self._truth, self._opaque, self._mirror
+        truth.people, truth.vehicles, truth.time = self._roster.crowd, mirror.poses[0], time
+        if opaque is not None:
+            vehicles = [ego.id for ego in egos] + mirror.background_ids
+            truth.vehicle_heights = opaque.vehicle_heights(vehicles)
+            truth.person_heights = opaque.person_heights(self._roster.names)
+        return truth

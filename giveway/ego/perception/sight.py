@@ -1,0 +1,272 @@
+"""The sensor `sight`: cameras with a range and a field of view, from which things hide people.
+
+A person is seen if at least half of the width of the body is within the field of view of one of the
+mounts, nearer than its range, and hidden by nothing: vehicles, walls, and other people if they
+count. Seen people are perceived late and not exactly, as the options say. A person who is lost from
+sight is remembered for a while, as walking on.
+"""
+
+from dataclasses import dataclass
+from math import cos, pi, radians, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller.driving_constants import STANDING
+from controller.parameters import require, require_not_negative, require_positive
+from giveway.crowd.motion.noise import BOUND, planar_noise
+from giveway.ego.perception.protocol import Ids, OwnState, Percept, SensorSetup
+from giveway.ego.perception.truth import Truth
+from giveway.ego.perception.visibility import (
+    CHILD,
+    RADIUS,
+    Eye,
+    chords_of,
+    fill_shares,
+    sides_of,
+)
+from giveway.geometry.kernel import Array
+
+_ENOUGH = 0.5  # share of a body's width from which on it is seen; rounding aside
+_ROUNDING = 1e-9
+_NEVER = -1.0
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A camera on the body of an ego.
+
+    Attributes:
+        ahead: Place [m] ahead of the front bumper, negative behind it.
+        aside: Place [m] to the left of the middle.
+        height: Height [m] above the ground.
+        heading: Direction [degree] to the left of straight ahead.
+        range: Largest distance [m] at which people are seen.
+        field_of_view: Width [degree] of the field of view.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
+    """
+
+    ahead: float = -1.5
+    aside: float = 0.0
+    height: float = 1.3
+    heading: float = 0.0
+    range: float = 60.0
+    field_of_view: float = 120.0
+
+    def __post_init__(self) -> None:
+        for name, unit in {"height": "m", "range": "m", "field_of_view": "degree"}.items():
+            require_positive(name, getattr(self, name), unit)
+        require(self.field_of_view <= 360.0, "field_of_view", self.field_of_view, "at most 360")
+
+    def eye(self, ego: OwnState) -> Eye:
+        """Return the camera where it is now."""
+        x, y, heading = ego.pose
+        return Eye(
+            x + self.ahead * cos(heading) - self.aside * sin(heading),
+            y + self.ahead * sin(heading) + self.aside * cos(heading),
+            self.height,
+            heading + radians(self.heading),
+            self.range,
+            min(radians(self.field_of_view) / 2.0, pi),
+        )
+
+
+USUAL = (
+    Mount(),
+    Mount(-1.8, 0.9, 1.0, 90.0, 15.0, 190.0),
+    Mount(-1.8, -0.9, 1.0, -90.0, 15.0, 190.0),
+)
+"""A camera behind the windscreen, and wide ones on the outside mirrors, as cars have them."""
+
+
+@dataclass(frozen=True)
+class SightOptions:
+    """Options of the sensor.
+
+    Attributes:
+        mounts: Cameras; by default one behind the windscreen and one on each outside mirror.
+        latency: Time [s] between an instant and its perception.
+        missed: Share of the observations of a person in sight that are missed.
+        missed_time: Time [s] for which a person is missed.
+        memory: Time [s] for which a person who is not seen any more is remembered.
+        position_noise: Standard deviation [m] of positions, per axis.
+        noise_per_metre: Its growth per metre of distance.
+        velocity_noise: Standard deviation [m/s] of velocities, per axis.
+        acceleration: Largest acceleration [m/s^2] of people on which claimed bounds rely.
+        people_hide: Whether people hide each other.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
+    """
+
+    mounts: tuple[Mount, ...] = USUAL
+    latency: float = 0.0
+    missed: float = 0.0
+    missed_time: float = 0.1
+    memory: float = 1.0
+    position_noise: float = 0.0
+    noise_per_metre: float = 0.0
+    velocity_noise: float = 0.0
+    acceleration: float = 3.0
+    people_hide: bool = False
+
+    def __post_init__(self) -> None:
+        require(bool(self.mounts), "mounts", list(self.mounts), "at least one")
+        for name, unit in _UNITS.items():
+            require_not_negative(name, getattr(self, name), unit)
+        require(self.missed < 1.0, "missed", self.missed, "a number from 0 to below 1")
+        require_positive("missed_time", self.missed_time, "s")
+
+
+_UNITS = {
+    "latency": "s",
+    "missed": "1",
+    "memory": "s",
+    "position_noise": "m",
+    "noise_per_metre": "m/m",
+    "velocity_noise": "m/s",
+    "acceleration": "m/s^2",
+}
+
+
+class Sight:
+    """Perceives the people in sight.
+
+    Args:
+        setup: Setup of the sensor.
+        options: Options of the sensor.
+    """
+
+    Options = SightOptions
+
+    def __init__(self, setup: SensorSetup, options: SightOptions) -> None:
+        self._options, self._time_step = options, setup.time_step
+        self._random = setup.random()
+        self._late = round(options.latency / setup.time_step)
+        self._past: list[tuple[Ids, Array, Array, NDArray[np.bool_], Array]] = []
+        self._known = np.zeros((0, _COLUMNS))
+        self._eyes: tuple[Eye, ...] = ()
+        self._walls = self._lasting = np.empty((0, 5))
+
+    def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
+        """Return the people who are seen, or were seen a short time ago.
+
+        Args:
+            truth: World as it is.
+            person_ids: Id of each pedestrian in ``truth.people``, (n,).
+            ego: State of the ego that carries the sensor.
+        """
+        o, now, people = self._options, truth.time, truth.people
+        self._look(truth, ego)
+        seen = self._seen(truth)
+        seen &= self._noticed(person_ids, now)
+        off = people.position - ego.pose[:2]
+        spread = o.position_noise + o.noise_per_metre * np.hypot(off[:, 0], off[:, 1])
+        self._past.append(
+            (person_ids, people.position.copy(), people.velocity.copy(), seen, spread)
+        )
+        if len(self._past) > self._late:
+            self._learn(*self._past.pop(0), now - self._late * self._time_step)
+        return self._remembered(truth, person_ids, now)
+
+    def unseen(self, points: Array) -> NDArray[np.bool_]:
+        """Return at which points (k, 2) [m] a child could stand now and not be in sight.
+
+        People and moving vehicles hide nobody here: who is behind them comes on a visible way.
+        """
+        return ~self._in_sight(self._lasting, points, np.full(len(points), CHILD))
+
+    def _look(self, truth: Truth, ego: OwnState) -> None:
+        """Take note of where the cameras are, and of what hides people."""
+        self._eyes = tuple(mount.eye(ego) for mount in self._options.mounts)
+        sides = sides_of(truth.vehicles, truth.vehicle_heights, ego.row)
+        self._walls = np.concatenate([truth.outlines, sides])
+        stands = np.repeat(np.delete(truth.vehicles[:, 3], ego.row) < STANDING, 4)
+        self._lasting = np.concatenate([truth.outlines, sides[stands]])
+
+    def _seen(self, truth: Truth) -> NDArray[np.bool_]:
+        """Return which people (n,) are in sight of a camera."""
+        position, heights, walls = truth.people.position, truth.person_heights, self._walls
+        if not self._options.people_hide:
+            return self._in_sight(walls, position, heights)
+        seen = np.zeros(len(position), dtype=np.bool_)
+        for eye in self._eyes:
+            chords = chords_of(position, heights, eye, RADIUS)
+            seen |= _sees(eye, np.concatenate([walls, chords]), position, heights)
+        return seen
+
+    def _in_sight(self, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:
+        """Return which bodies (k,) at ``points`` are in sight of a camera."""
+        seen = np.zeros(len(points), dtype=np.bool_)
+        for eye in self._eyes:
+            seen |= _sees(eye, walls, points, heights)
+        return seen
+
+    def _noticed(self, person_ids: Ids, now: float) -> NDArray[np.bool_]:
+        """Return which people (n,) are not missed now; who is missed is so for a while."""
+        o, known = self._options, self._rows(person_ids)
+        if not o.missed:
+            return np.ones(len(person_ids), dtype=np.bool_)
+        begins = o.missed * self._time_step / (o.missed_time * (1.0 - o.missed))
+        draws = self._random.random(len(known))[person_ids]  # by id: the order does not matter
+        free = known[person_ids, 5] <= now
+        known[person_ids[free & (draws < begins)], 5] = now + o.missed_time
+        noticed: NDArray[np.bool_] = known[person_ids, 5] <= now
+        return noticed
+
+    def _rows(self, person_ids: Ids) -> Array:
+        """The memory, with a row for each person."""
+        most = int(person_ids.max(initial=-1)) + 1
+        if most > len(self._known):
+            more = np.zeros((2 * most - len(self._known), _COLUMNS))
+            more[:, 4] = _NEVER
+            self._known = np.concatenate([self._known, more])
+        return self._known
+
+    def _learn(
+        self,
+        person_ids: Ids,
+        position: Array,
+        velocity: Array,
+        seen: NDArray[np.bool_],
+        spread: Array,
+        then: float,
+    ) -> None:
+        """Remember the people who were seen at an instant, with noise."""
+        o, known, n = self._options, self._rows(person_ids), int(seen.sum())
+        ids, spread = person_ids[seen], spread[seen]
+        order = np.argsort(ids)
+        noise = np.zeros((2, n, 2))
+        if o.position_noise or o.noise_per_metre or o.velocity_noise:
+            for part in noise:
+                part[order] = planar_noise(self._random, n)
+        known[ids, 0:2] = position[seen] + spread[:, None] * noise[0]
+        known[ids, 2:4] = velocity[seen] + o.velocity_noise * noise[1]
+        known[ids, 4] = then
+        known[ids, 6] = _WITHIN * spread
+
+    def _remembered(self, truth: Truth, person_ids: Ids, now: float) -> Percept:
+        """Return the people of whom something is known, moved on to where they should be."""
+        o, known = self._options, self._rows(person_ids)[person_ids]
+        late = self._late * self._time_step
+        kept = (known[:, 4] >= 0.0) & (now - known[:, 4] <= late + o.memory + _ROUNDING)
+        known, people = known[kept], truth.people.select(kept)
+        age = now - known[:, 4]
+        people.velocity[:] = known[:, 2:4]
+        people.position[:] = known[:, 0:2] + age[:, None] * known[:, 2:4]
+        turns = _WITHIN * o.velocity_noise
+        bound = known[:, 6] + age * (turns + 0.5 * o.acceleration * age)
+        return Percept(people, person_ids[kept], age, bound, turns + o.acceleration * age)
+
+
+def _sees(eye: Eye, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:
+    """Return which bodies (k,) at ``points`` one camera sees."""
+    shares = np.empty(len(points))
+    fill_shares(eye, (points, heights, RADIUS), walls, shares)
+    return shares >= _ENOUGH - _ROUNDING
+
+
+_COLUMNS = 7  # x, y [m]; velocity [m/s]; time when seen; until when missed [s]; error [m]
+_WITHIN = sqrt(2.0) * BOUND  # largest noise in standard deviations: cut off on each axis

@@ -1,0 +1,61 @@
+"""What hides people: the heights of SUMO's vehicles and persons, and the walls of its polygons."""
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from giveway.geometry.kernel import Array
+from giveway.sumo.library import direct
+
+_HEIGHT = "height"  # parameter of a polygon that is taller or lower than others of its type
+
+
+class OpaqueBodies:
+    """Reads the heights of bodies, and the walls that polygons stand for.
+
+    Args:
+        sumo: The libsumo module, with a simulation running.
+    """
+
+    def __init__(self, sumo: Any) -> None:
+        self._polygon = sumo.polygon
+        self._of_vehicle = cache(direct(sumo, "vehicle", "getHeight"))
+        self._of_person = cache(direct(sumo, "person", "getHeight"))
+
+    def vehicle_heights(self, names: Iterable[str]) -> Array:
+        """The heights (m,) [m] of vehicles on the road."""
+        return np.array([self._of_vehicle(name) for name in names], dtype=np.float64)
+
+    def person_heights(self, names: Iterable[str]) -> Array:
+        """The heights (n,) [m] of persons in SUMO."""
+        return np.array([self._of_person(name) for name in names], dtype=np.float64)
+
+    def walls(self, heights: Mapping[str, float]) -> Array:
+        """The sides (k, 5) of opaque polygons: x0, y0, x1, y1, height [m].
+
+        Args:
+            heights: Height [m] of each type of polygon that hides people. A type stands for its
+                kinds, too: ``building`` for ``building.house``. A polygon's own parameter
+                ``height`` [m] comes before it.
+        """
+        sides = [np.empty((0, 5))]
+        for name in sorted(self._polygon.getIDList()):
+            height = _height_of(self._polygon.getType(name), heights)
+            if height is None:
+                continue
+            own = self._polygon.getParameter(name, _HEIGHT)
+            shape = np.array(self._polygon.getShape(name), dtype=np.float64)[:, :2]
+            tops = np.full((len(shape) - 1, 1), float(own) if own else height)
+            sides.append(np.hstack([shape[:-1], shape[1:], tops]))
+        return np.concatenate(sides)
+
+
+def _height_of(kind: str, heights: Mapping[str, float]) -> float | None:
+    """The height [m] of a type of polygon, or None if it hides nobody."""
+    while kind:
+        if kind in heights:
+            return heights[kind]
+        kind = kind.rpartition(".")[0]
+    return None
