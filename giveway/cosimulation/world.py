@@ -6,6 +6,9 @@ from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.mirror import Mirror
 from giveway.ego.ego import Ego
 from giveway.ego.perception.truth import Truth
+from giveway.ego.perception.visibility import CHILD
+from giveway.geometry.kernel import Array
+from giveway.sumo.opaque_bodies import OpaqueBodies
 
 
 class World:
@@ -38,5 +41,14 @@ class World:
         if opaque is not None:
             vehicles = [ego.id for ego in egos] + mirror.background_ids
             truth.vehicle_heights = opaque.vehicle_heights(vehicles)
-            truth.person_heights = opaque.person_heights(self._roster.names)
+            truth.person_heights = self._person_heights(opaque)
         return truth
+
+    def _person_heights(self, opaque: OpaqueBodies) -> Array:
+        """The heights (n,) [m] of the people: SUMO's, but children's of giveway's own."""
+        traits, names = self._roster.traits, self._roster.names
+        heights = opaque.person_heights(names)
+        if traits:
+            kinds = [name in traits and traits[name].kind == "child" for name in names]
+            heights[kinds] = CHILD
+        return heights

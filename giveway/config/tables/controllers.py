@@ -286,10 +286,11 @@ class SafetyConfig(Section):
         flag="--safety-vehicles",
     )
     hidden_speed: float = option(
-        5.0 / 3.6,
+        0.5,
         "m/s",
         "Speed at which people who are not seen may come out of hiding, where a sensor tells what "
-        "it does not see (Euro NCAP's obstructed child: 5 km/h). 0: nobody does",
+        "it does not see. By default they begin to walk; Euro NCAP's obstructed child runs at "
+        "1.39. 0: nobody comes out",
         ge=0,
         le=10,
         least=0.01,

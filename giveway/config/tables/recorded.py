@@ -7,6 +7,7 @@ from typing import Any, Final, Literal
 from pydantic import ValidationError
 
 from giveway.config.option import Name, Section, expectation, option, read_tables
+from giveway.config.tables.people import ADULT, Kind
 
 RECORDED: Final = "recorded"
 """Name of the model that moves people as they were recorded."""
@@ -77,6 +78,11 @@ class RecordedConfig(Section):
         ge=0,
         le=1000,
         because="nothing is known of people so far from where they were seen",
+    )
+    kind: Kind = option(
+        ADULT,
+        None,
+        "Kind of its people, as in [crowd.people]. Children are smaller, for sensors",
     )
     vehicle: str = option(
         "",

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from giveway.config import RunConfig
+from giveway.config.tables.people import ADULT
 from giveway.config.tables.recorded import RECORDED
 from giveway.crowd.generation.recorded import RecordedPeople
 from giveway.crowd.roster import Roster
@@ -38,5 +39,6 @@ def recorded_people(
         people = people_of_run(entry, read_clip(entry), free_prefix(f"{entry.name}.", files))
         require_inside(entry, people, network.boundary)
         follow = config.crowd.model == RECORDED
-        sources.append(RecordedPeople(people, roster, time_step, follow=follow))
+        kind = "" if entry.kind == ADULT else entry.kind
+        sources.append(RecordedPeople(people, roster, time_step, follow=follow, kind=kind))
     return sources

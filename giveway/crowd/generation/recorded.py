@@ -6,7 +6,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from giveway.crowd.motion.as_recorded import WrittenWalk
-from giveway.crowd.roster import Roster
+from giveway.crowd.roster import Roster, Trait
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
@@ -52,15 +52,22 @@ class RecordedPeople:
         roster: Crowd that they join.
         time_step: Time step of the co-simulation [s].
         follow: True if they walk as recorded, False if a model moves them at once.
+        kind: Kind of these people; empty for adults.
     """
 
     def __init__(
-        self, people: Sequence[RecordedPerson], roster: Roster, time_step: float, *, follow: bool
+        self,
+        people: Sequence[RecordedPerson],
+        roster: Roster,
+        time_step: float,
+        *,
+        follow: bool,
+        kind: str = "",
     ) -> None:
         self._people = tuple(people)
         self._roster = roster
         self._time_step = time_step
-        self._follow = follow
+        self._follow, self._kind = follow, kind
         self._coming = sorted(self._people, key=lambda person: (float(person.time[0]), person.name))
         self._step = -1
         self._entered: list[str] = []  # ids of people who react from the next call on
@@ -72,7 +79,9 @@ class RecordedPeople:
 
     def afresh(self, roster: Roster) -> Self:
         """Return the same people from their beginning, for another crowd."""
-        return type(self)(self._people, roster, self._time_step, follow=self._follow)
+        return type(self)(
+            self._people, roster, self._time_step, follow=self._follow, kind=self._kind
+        )
 
     def enter(self, step: int) -> list[list[str]]:
         """Let those in who are due at the control step ``step``; return their ids, as one list.
@@ -106,7 +115,7 @@ class RecordedPeople:
                 [person.desired_speed for person in people],
                 [person.destination[None] for person in people],
             ),
-            {},
+            {person.name: Trait(self._kind) for person in people} if self._kind else {},
         )
         for person, walk in zip(people, walks, strict=True):
             if self._follow:

@@ -17,13 +17,17 @@ from giveway.ego.perception.visibility import sides_of
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath
 
-SPACING = 0.25  # distance [m] between the stations that are looked at
+_NEAR = 6.0  # distance [m] up to which stations are as close as this [m]:
+_SPACING = 0.125
+_FAR_SPACING = 0.5  # distance [m] between the stations beyond, where there is time to look again
 _ACROSS = 0.25  # distance [m] between places across the path, and
 _HALVINGS = 3  # how many times it is halved where the first hidden place is sought
 _ASIDE = 5.0  # distance [m] from the path beyond which nobody hidden matters
 _MORE = 3.0  # distance [m] beyond a comfortable stop that is looked at
 _OFFSETS = np.arange(0.0, _ASIDE, _ACROSS)
-ERROR = 0.5 * float(np.hypot(SPACING, _ACROSS / 2**_HALVINGS))  # largest error [m] of a place
+ERROR = 0.08
+"""Largest distance [m] by which a hiding place is nearer than the found ones about it: a line of
+sight comes nearer by 0.06 m between two stations, and what is within reach of both by 0.02 m."""
 
 
 class Hidden(NamedTuple):
@@ -73,7 +77,8 @@ class HidingPlaces:
             speed: Speed of the ego [m/s].
         """
         reach = 0.5 * speed * speed / COMFORTABLE + _MORE
-        distances = np.arange(0.5 * SPACING, reach, SPACING)
+        close = np.arange(0.0, min(reach, _NEAR), _SPACING)
+        distances = np.concatenate([close, np.arange(_NEAR, reach, _FAR_SPACING)])
         self._view.station = front
         poses = self._view.poses(distances)
         others = np.delete(truth.vehicles, row, axis=0)

@@ -21,8 +21,10 @@ from giveway.geometry.kernel import Array
 CRAWL = 1.5
 """Speed [m/s] that hiding places never slow an ego below, a walking pace: they hold it nowhere."""
 
-_SHARE = 0.8  # share of the hardest braking that is planned with, and
-_SPARE = 0.25  # distance [m] beside the body that is kept, so that the safety layer need not act
+_SHARE = 0.9  # share of the hardest braking that is planned with, and
+_LATE = 0.1  # time [s] that a stop takes longer than by that braking alone
+_KEPT = 6.0  # distance [m] before a place over which its speed is kept, past a row of cars
+_SPARE = 0.12  # distance [m] beside the body that is kept, so that the safety layer need not act
 
 
 class HiddenPeople:
@@ -70,10 +72,10 @@ class HiddenPeople:
         gap = np.maximum(hidden.aside - self._inside, 0.0)
         v, a = self._speed, self._acceleration
         time = (np.sqrt(v * v + 2.0 * a * gap) - v) / a
-        there = np.maximum(self._braking * time, CRAWL)
+        there = np.maximum(self._braking * (time - _LATE), CRAWL)
         ahead = hidden.station - situation.station
         left = np.concatenate([ahead[None], ahead - situation.speed * self._times])
-        caps = np.sqrt(there * there + 2.0 * COMFORTABLE * np.maximum(left, 0.0))
+        caps = np.sqrt(there * there + 2.0 * COMFORTABLE * np.maximum(left - _KEPT, 0.0))
         caps[left < 0.0] = inf
         speeds = caps.min(axis=1)
         return Demand(inf, "", inf, float(speeds[0]), inf, NO_LEADER, speeds[1:])
