@@ -209,6 +209,7 @@ def _result_of(
         crowd_track=rows.crowd_track(),
         background_track=rows.background_track(),
         signal_track=rows.signal_track(),
+        sight_track=rows.sight_track(),
         people_track=rows.people_track(),
         timings=rows.timings(),
         elapsed=float(np.nansum(rows.timings().seconds[:, -1])),

@@ -71,6 +71,7 @@ def outcome(
         crowd_track=crowd_track,
         background_track=rows.background_track(),
         signal_track=rows.signal_track(),
+        sight_track=rows.sight_track(),
         people_track=rows.people_track(),
         timings=rows.timings(),
         elapsed=elapsed,

@@ -273,6 +273,8 @@ class Loop:
             recorder.ego(ego.id, ego.row(time, seen, decision))
             if len(seen.sudden_starts):
                 recorder.hasty(ego.id, seen.sudden_starts)
+            if len(seen.sights):
+                recorder.sights(time, ego.id, seen.sights)
             if ego.has_outputs:
                 recorder.outputs(ego.id, *ego.outputs())
             predicted = ego.expected(seen) if self._instants.looks else None

@@ -8,6 +8,7 @@ from giveway.ego.perception.hidden_people import HidingPlaces
 from giveway.ego.perception.kerbs import Kerbs
 from giveway.ego.perception.protocol import Ids, OwnState, Percept
 from giveway.ego.perception.sensing import Perception
+from giveway.ego.perception.sights import Sights
 from giveway.ego.perception.sudden_starts import SuddenStarts
 from giveway.ego.perception.truth import Truth
 from giveway.ego.waiting_ego import WaitingEgo
@@ -41,6 +42,7 @@ class PeopleInFront:
         self._chosen: Crowd | None = None  # memory for those who matter
         perception = Perception(waiting.config, worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
+        self._sights = Sights() if waiting.config.perception.plugged_in_sensor else None
         self._hiding_places = HidingPlaces(path) if waiting.config.safety.hidden_speed else None
         self._sudden_starts = SuddenStarts(worst.setting_out, time_step)
         self.foresight = foresight_of(waiting, path, shape, half_width, time_step)
@@ -69,6 +71,8 @@ class PeopleInFront:
             percept = Percept(truth.people, person_ids)
         else:
             percept = perception.observe(truth, person_ids, own)
+            if self._sights is not None:
+                seen.sights = self._sights.changes(percept, own)
             sensor = perception.tells_unseen
             if sensor is not None and self._hiding_places is not None:
                 seen.hidden = self._hiding_places.ahead(sensor, truth, own.row, front, own.speed)

@@ -12,6 +12,7 @@ from giveway.ego.perception.hidden_people import NOWHERE, Hidden
 from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.ego.perception.protocol import Percept
+from giveway.ego.perception.sights import NO_CHANGES
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
@@ -39,6 +40,8 @@ class Perceived:
         to_clear: Keep-clear distance [m]: distance to drive until the zone is free.
         kerbs: Kerbs (n, 3) of the people on sidewalks.
         hidden: Places ahead where people could come out of hiding.
+        sights: Who comes in sight or is lost from sight, as
+            :meth:`~giveway.ego.perception.sights.Sights.changes` returns it.
         sudden_starts: Ids of the people who violate the safety layer's assumption now, by a sudden
             start.
     """
@@ -59,4 +62,5 @@ class Perceived:
     to_clear: float = 0.0
     kerbs: Array = field(default_factory=lambda: NO_KERBS)
     hidden: Hidden = NOWHERE
+    sights: Array = field(default_factory=lambda: NO_CHANGES)
     sudden_starts: NDArray[np.int64] = field(default_factory=lambda: NOBODY)

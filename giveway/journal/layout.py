@@ -8,6 +8,7 @@ from giveway.run_data.tracks import (
     BackgroundTrack,
     EgoRow,
     PeopleTrack,
+    SightTrack,
     SignalTrack,
     Timings,
 )
@@ -36,6 +37,7 @@ ROWS: dict[str, tuple[str, ...]] = {
     "predictions": ("step", "ego", "pedestrian", "look_ahead", "x", "y"),
     "signals": _names(SignalTrack),
     "people": _names(PeopleTrack),
+    "sights": _names(SightTrack),
     "hasty": ("ego", "pedestrian"),
     "reacting": ("step", "pedestrian", "reacts"),
     "outputs": ("step", "output", "value"),

@@ -22,6 +22,7 @@ from giveway.run_data.tracks import (
     EgoTrack,
     PeopleTrack,
     PredictionTrack,
+    SightTrack,
     SignalTrack,
     Timings,
     as_indices,
@@ -178,6 +179,17 @@ class RecordedRows:
         rows = self._rows["signals"]
         system, state = self._words(rows["system"]), self._words(rows["state"])
         return SignalTrack(time=rows["time"].copy(), system=system, state=state)
+
+    def sight_track(self) -> SightTrack:
+        """Return the rows of who is in sight as arrays."""
+        rows, egos = self._rows["sights"], np.array(self._names["egos"], dtype=np.str_)
+        return SightTrack(
+            time=rows["time"].copy(),
+            ego=egos[as_indices(rows["ego"])],
+            pedestrian=as_indices(rows["pedestrian"]),
+            seen=rows["seen"] > 0.0,
+            distance=rows["distance"].copy(),
+        )
 
     def people_track(self) -> PeopleTrack:
         """Return the rows of people's planned routes as arrays."""

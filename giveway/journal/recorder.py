@@ -125,6 +125,18 @@ class Recorder:
         block = self._rows["hasty"].block(len(pedestrians))
         block[:, 0], block[:, 1] = self._names["egos"].index(ego_id), pedestrians
 
+    def sights(self, time: float, ego_id: str, changes: Array) -> None:
+        """Record who comes in sight of an ego, or is lost from sight, at ``time`` [s].
+
+        Args:
+            time: Time [s].
+            ego_id: Id of the ego.
+            changes: Rows (k, 3): index of the pedestrian, 1 or 0, distance [m].
+        """
+        block = self._rows["sights"].block(len(changes))
+        block[:, 0], block[:, 1] = time, self._names["egos"].index(ego_id)
+        block[:, 2:] = changes
+
     def reacting(self, pedestrian: int, reacts: bool) -> None:
         """Note that a pedestrian begins to react to vehicles, or walks in without doing so."""
         self._rows["reacting"].add(self._steps - 1, pedestrian, reacts)

@@ -17,6 +17,7 @@ TABLES = (
     "ledger",
     "people",
     "signals",
+    "sights",
     "signal_delays",
     "waiting",
     "measures",

@@ -28,14 +28,17 @@ from giveway.metrics.travel import SIGNAL_DELAY_FIELDS, TRAVEL_FIELDS
 from giveway.metrics.waiting import WAITING_FIELDS, waiting_by_footway
 from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
+from giveway.results.frames import framed, stacked
 from giveway.results.inputs import sha256
 from giveway.results.law import ledger_table, people_table, signal_table
 from giveway.results.provenance import CONFIGURATION
+from giveway.results.sights import sight_table
 from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_pieces
 from giveway.run_data.columns import (
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
     PREDICTION_COLUMNS,
+    SIGHT_COLUMNS,
     SIGNAL_COLUMNS,
     SUMMARY_HEAD,
     TIMING_COLUMNS,
@@ -51,6 +54,7 @@ from giveway.run_data.tracks import (
     CrowdTrack,
     EgoTrack,
     PeopleTrack,
+    SightTrack,
     SignalTrack,
     Timings,
 )
@@ -73,6 +77,7 @@ class RunTables:
         egos: Egos that were on the road, in the order of their departure.
         crowd_track, background_track: Rows as arrays, in SI units.
         signal_track: Changes of the traffic lights that govern something on an ego's path.
+        sight_track: Changes of who is in sight of an ego, if it has a sensor.
         people_track: Planned routes of people, if the law of the road rules an ego's path.
         elapsed: Wall clock time of the loop [s].
         facts: Manifest, which may lack the hash of the configuration.
@@ -93,6 +98,7 @@ class RunTables:
     crowd_track: CrowdTrack
     background_track: BackgroundTrack
     signal_track: SignalTrack
+    sight_track: SightTrack
     people_track: PeopleTrack
     timings: Timings
     elapsed: float
@@ -149,7 +155,7 @@ class RunTables:
         """The table with one row per control instant and ego."""
         names = [column.name for column in self.schemas["ego"]]
         tables = [ego_table(ego.track, ego.id, ego.outputs) for ego in self.egos]
-        return _stacked([table.reindex(columns=names) for table in tables], names, by="time")
+        return stacked([table.reindex(columns=names) for table in tables], names, by="time")
 
     @cached_property
     def trajectories(self) -> "pd.DataFrame":
@@ -175,7 +181,7 @@ class RunTables:
         ]
         if self.walks is not None:
             tables = [self.walks.reindex(columns=names)]
-        return _stacked(tables, names)
+        return stacked(tables, names)
 
     @cached_property
     def walks(self) -> "pd.DataFrame | None":
@@ -193,7 +199,7 @@ class RunTables:
         names = [column.name for column in PREDICTION_COLUMNS]
         ids = self.crowd_track.ids
         tables = [prediction_table(ego.predictions, ego.id, ids) for ego in self.egos]
-        return _stacked(tables, names, by="time")
+        return stacked(tables, names, by="time")
 
     @cached_property
     def ledger(self) -> "pd.DataFrame":
@@ -207,20 +213,22 @@ class RunTables:
         return signal_table(self.signal_track)
 
     @cached_property
+    def sights(self) -> "pd.DataFrame":
+        """The table of who was in sight of which ego, and when."""
+        return sight_table(self.sight_track, self.crowd_track.ids)
+
+    @cached_property
     def signal_delays(self) -> "pd.DataFrame":
         """The table with one row per ego and traffic light that it passed."""
-        import pandas as pd
-
         rows = [{"ego": ego.id} | asdict(one) for ego in self.egos for one in ego.signal_delays]
-        return pd.DataFrame(rows, columns=[column.name for column in SIGNAL_DELAY_COLUMNS])
+        return framed(rows, SIGNAL_DELAY_COLUMNS)
 
     @cached_property
     def waiting(self) -> "pd.DataFrame":
         """The table of the time for which people stood, by crossing and by edge."""
-        import pandas as pd
-
-        rows = waiting_by_footway(self.time, self.crowd_track, self.footways)
-        return pd.DataFrame(rows, columns=[column.name for column in WAITING_FIELDS])
+        return framed(
+            waiting_by_footway(self.time, self.crowd_track, self.footways), WAITING_FIELDS
+        )
 
     @cached_property
     def people(self) -> "pd.DataFrame":
@@ -273,13 +281,8 @@ class RunTables:
     @property
     def summary_table(self) -> "pd.DataFrame":
         """The rows of the summary as a table."""
-        import pandas as pd
-
-        names = [column.name for column in self.schemas["summary"]]
-        rows = [self._row(ego) for ego in self.egos]
-        if self.walks is not None:
-            rows = [self.summary]
-        return pd.DataFrame(rows, columns=names)
+        rows = [self.summary] if self.walks is not None else [self._row(ego) for ego in self.egos]
+        return framed(rows, self.schemas["summary"])
 
     @property
     def timing_summary(self) -> dict[str, Any]:
@@ -315,6 +318,8 @@ class RunTables:
         outputs = {output.name: output.column for ego in self.egos for output in ego.outputs}
         if len(self.signal_track.time):
             optional |= {"signals": SIGNAL_COLUMNS}
+        if any(ego.config.perception.plugged_in_sensor for ego in self.egos):
+            optional |= {"sights": SIGHT_COLUMNS}
         if any(ego.signal_delays for ego in self.egos):
             optional |= {"signal_delays": SIGNAL_DELAY_COLUMNS}
         if self.footways.edges:
@@ -334,17 +339,3 @@ class RunTables:
 _EGO = Column("ego", "string", None, "SUMO id of the ego that the row is about")
 SIGNAL_DELAY_COLUMNS = (_EGO, *SIGNAL_DELAY_FIELDS)
 PEDESTRIAN_TABLE = (_EGO, *PEDESTRIAN_FIELDS, *SEVERITY_FIELDS)
-
-
-def _stacked(
-    tables: "list[pd.DataFrame]", names: list[str], by: str | None = None
-) -> "pd.DataFrame":
-    """Return the tables one below the other, with the columns ``names``, sorted by ``by``."""
-    import pandas as pd
-
-    if not tables:
-        return pd.DataFrame(columns=names)
-    table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
-    if by is not None and len(tables) > 1:
-        table = table.sort_values(by, kind="stable", ignore_index=True)
-    return table[names]

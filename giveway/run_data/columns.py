@@ -118,6 +118,14 @@ SIGNAL_COLUMNS = (
     Column("state", "string", None, "one letter per movement, SUMO's"),
 )
 
+SIGHT_COLUMNS = (
+    Column("ego", "string", None, "SUMO id of the ego whose sensor it is"),
+    Column("id", "string", None, "the pedestrian"),
+    Column("time", "number", "s", "simulation time from which on the ego perceives the person"),
+    Column("until", "number", "s", "simulation time from which on it does not; empty: to the end"),
+    Column("distance", "number", "m", "from the front bumper to the person at `time`"),
+)
+
 PEOPLE_COLUMNS = (
     Column("time", "number", "s", "simulation time from which on it holds"),
     Column("id", "string", None, "the pedestrian"),

@@ -246,6 +246,17 @@ class SignalTrack:
 
 
 @dataclass(frozen=True)
+class SightTrack:
+    """The changes of who is in sight of an ego, in time order."""
+
+    time: NDArray[np.float64]  # (S,) [s] time of the change
+    ego: NDArray[np.str_]  # (S,) id of the ego
+    pedestrian: NDArray[np.int64]  # (S,) index into the crowd's ``ids``
+    seen: NDArray[np.bool_]  # (S,) whether the person is in sight from then on
+    distance: NDArray[np.float64]  # (S,) [m] from the front bumper; NaN for who is lost
+
+
+@dataclass(frozen=True)
 class PeopleTrack:
     """The planned routes and desired speeds of pedestrians, as flat records in time order.
 

@@ -1,0 +1,38 @@
+"""When each person comes in sight of an ego and is lost from sight again."""
+
+import numpy as np
+
+from giveway.ego.perception.protocol import OwnState, Percept
+from giveway.geometry.kernel import Array
+
+NO_CHANGES: Array = np.empty((0, 3))
+
+
+class Sights:
+    """Notes who is perceived, from one observation to the next."""
+
+    def __init__(self) -> None:
+        self._known = np.empty(0, dtype=np.int64)
+
+    def changes(self, percept: Percept, own: OwnState) -> Array:
+        """Return who is perceived from now on (1) and no longer (0).
+
+        Args:
+            percept: Present percept.
+            own: State of the ego.
+
+        Returns:
+            Rows (k, 3): person id, 1 or 0, distance [m] from the middle of the front bumper to the
+            place where the person is perceived; NaN for who is lost.
+        """
+        ids = percept.person_ids
+        new, lost = ~np.isin(ids, self._known), np.setdiff1d(self._known, ids)
+        if not new.any() and not len(lost):
+            return NO_CHANGES
+        self._known = ids.copy()
+        off = percept.people.position[new] - own.pose[:2]
+        rows = np.full((int(new.sum()) + len(lost), 3), np.nan)
+        rows[:, 0] = np.concatenate([ids[new], lost])
+        rows[:, 1] = np.arange(len(rows)) < new.sum()
+        rows[: len(off), 2] = np.hypot(off[:, 0], off[:, 1])
+        return rows

@@ -1,0 +1,33 @@
+"""The table of who was in sight of an ego, when and from what distance on."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.run_data.columns import SIGHT_COLUMNS
+from giveway.run_data.tracks import SightTrack
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def sight_table(track: SightTrack, ids: tuple[str, ...]) -> "pd.DataFrame":
+    """Return ``sights.csv``: one row per ego, person and stretch of time in sight.
+
+    Args:
+        track: Changes in time order.
+        ids: Ids of the pedestrians.
+    """
+    import pandas as pd
+
+    rows: list[list[object]] = []
+    open_rows: dict[tuple[str, int], int] = {}
+    changes = zip(track.time, track.ego, track.pedestrian, track.seen, track.distance, strict=True)
+    for time, ego, pedestrian, seen, distance in changes:
+        whom = str(ego), int(pedestrian)
+        if seen:
+            open_rows[whom] = len(rows)
+            rows.append([ego, ids[pedestrian], time, np.nan, distance])
+        elif whom in open_rows:
+            rows[open_rows.pop(whom)][3] = time
+    return pd.DataFrame(rows, columns=[column.name for column in SIGHT_COLUMNS])
