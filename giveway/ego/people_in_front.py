@@ -43,7 +43,9 @@ class PeopleInFront:
         perception = Perception(waiting.config, worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
         self._sights = Sights() if waiting.config.perception.plugged_in_sensor else None
-        self._hiding_places = HidingPlaces(path) if waiting.config.safety.hidden_speed else None
+        self._hiding_places: HidingPlaces | None = None
+        if pace := waiting.config.safety.hidden_speed:
+            self._hiding_places = HidingPlaces(path, pace)
         self._sudden_starts = SuddenStarts(worst.setting_out, time_step)
         self.foresight = foresight_of(waiting, path, shape, half_width, time_step)
 

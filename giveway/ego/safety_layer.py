@@ -17,7 +17,7 @@ from controller import (
 from controller.driving_constants import FIRM
 from controller.kernels import largest_safe_force
 from giveway.config import EgoRunConfig
-from giveway.ego.perception.hidden_people import ERROR, NOWHERE, Hidden
+from giveway.ego.perception.hidden_people import NOWHERE, Hidden
 from giveway.ego.perception.kerbs import NO_KERBS
 from giveway.ego.perception.protocol import Percept
 from giveway.ego.vehicle_model import actuator_of
@@ -95,7 +95,7 @@ class EgoSafetyLayer:
         places = (hidden if speed > RUSHES else NOWHERE).position
         n = len(places)
         paces = np.full(n, self._hidden_speed)
-        unseen = places, np.zeros((n, 2)), np.full(n, ERROR), NO_KERBS, paces
+        unseen = places, np.zeros((n, 2)), np.full(n, hidden.error), NO_KERBS, paces
         asked = safe or decision
         slower = self._checked(self._for_hidden, asked, front, speed, unseen)
         if slower is not None:

@@ -164,10 +164,12 @@ class _Battery(Battery[PluggedInSensor, _Perceived]):
     def _look_at(self, sensor: PluggedInSensor, people: Crowd) -> None:
         """Show these people, then nobody, three times."""
         truth, own = _Scene(self._setup.time_step).at(0)
-        alone, no_walls = truth.vehicles[:1], np.empty((0, 4))
+        alone, no_walls = truth.vehicles[:1], np.empty((0, 5))
         for _ in range(3):
-            sensor.observe(Truth(people, alone, no_walls, 0.0), np.arange(len(people)), own)
-            sensor.observe(Truth(Crowd.empty(), alone, no_walls, 1.0), np.arange(0), own)
+            for time, there in enumerate((people, Crowd.empty())):
+                n = len(there)
+                tops = np.full(1, 1.5), np.full(n, ADULT)
+                sensor.observe(Truth(there, alone, no_walls, float(time), *tops), np.arange(n), own)
 
     def bounds(self) -> str:
         scene, sensor = _Scene(self._setup.time_step), self.fresh()

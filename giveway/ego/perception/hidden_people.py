@@ -37,11 +37,13 @@ class Hidden(NamedTuple):
         position: Coordinates (h, 2) [m].
         station: Stations (h,) [m] along the path of the ego.
         aside: Distances (h,) [m] from the middle of the path.
+        error: Largest distance [m] by which a person who is not seen is nearer.
     """
 
     position: Array
     station: Array
     aside: Array
+    error: float = 0.0
 
 
 NOWHERE = Hidden(np.empty((0, 2)), np.empty(0), np.empty(0))
@@ -49,6 +51,10 @@ NOWHERE = Hidden(np.empty((0, 2)), np.empty(0), np.empty(0))
 
 class TellsUnseen(Protocol):
     """A sensor that tells where people would not be in sight."""
+
+    @property
+    def delay(self) -> float:
+        """The time [s] by which its answers are late."""
 
     def unseen(self, points: Array) -> NDArray[np.bool_]:
         """Return which points (k, 2) [m] are not in sight."""
@@ -59,10 +65,11 @@ class HidingPlaces:
 
     Args:
         path: Path of the ego.
+        pace: Speed [m/s] of people who come out of hiding.
     """
 
-    def __init__(self, path: EgoPath) -> None:
-        self._view = PathView(path)
+    def __init__(self, path: EgoPath, pace: float) -> None:
+        self._view, self._pace = PathView(path), pace
 
     def ahead(
         self, sensor: TellsUnseen, truth: Truth, row: int, front: float, speed: float
@@ -103,7 +110,9 @@ class HidingPlaces:
             hides = sensor.unseen(_places(poses[at], sides[side] * middle))
             near, far = np.where(hides, near, middle), np.where(hides, middle, far)
         nearest = 0.5 * (near + far)
-        return Hidden(_places(poses[at], sides[side] * nearest), front + distances[at], nearest)
+        places = _places(poses[at], sides[side] * nearest)
+        error = ERROR + self._pace * sensor.delay
+        return Hidden(places, front + distances[at], nearest, error)
 
 
 def _flat(truth: Truth) -> Array:

@@ -119,6 +119,11 @@ class PluggedInSensor:
         """True if the sensor tells where people would not be in sight."""
         return hasattr(self._sensor, "unseen")
 
+    @property
+    def delay(self) -> float:
+        """The time [s] by which the sensor's answers are late."""
+        return float(getattr(self._sensor, "delay", 0.0))
+
     def unseen(self, points: Array) -> NDArray[np.bool_]:
         """Return the checked marks (k,) of the points (k, 2) [m] that are not in sight.
 

@@ -84,7 +84,7 @@ class Sensor(Protocol):
 
     A sensor may also have the method ``unseen(points)``. It returns the marks (k,) of the points
     (k, 2) [m] at which a person would not be in sight now. The ego then allows for people who come
-    out there.
+    out there. A sensor whose answers are late also has the attribute ``delay`` [s].
     """
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:

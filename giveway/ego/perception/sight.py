@@ -137,6 +137,9 @@ class Sight:
     Args:
         setup: Setup of the sensor.
         options: Options of the sensor.
+
+    Attributes:
+        delay: Latency [s], in whole steps.
     """
 
     Options = SightOptions
@@ -147,8 +150,8 @@ class Sight:
         self._late = round(options.latency / setup.time_step)
         self._past: list[tuple[Ids, Array, Array, NDArray[np.bool_], Array]] = []
         self._known = np.zeros((0, _COLUMNS))
-        self._eyes: tuple[Eye, ...] = ()
-        self._walls = self._lasting = np.empty((0, 5))
+        self.delay = self._late * setup.time_step
+        self._views: list[tuple[tuple[Eye, ...], Array]] = []
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         """Return the people who are seen, or were seen a short time ago.
@@ -159,8 +162,7 @@ class Sight:
             ego: State of the ego that carries the sensor.
         """
         o, now, people = self._options, truth.time, truth.people
-        self._look(truth, ego)
-        seen = self._seen(truth)
+        seen = self._look(truth, ego)
         seen &= self._noticed(person_ids, now)
         off = people.position - ego.pose[:2]
         spread = o.position_noise + o.noise_per_metre * np.hypot(off[:, 0], off[:, 1])
@@ -168,40 +170,33 @@ class Sight:
             (person_ids, people.position.copy(), people.velocity.copy(), seen, spread)
         )
         if len(self._past) > self._late:
-            self._learn(*self._past.pop(0), now - self._late * self._time_step)
+            self._learn(*self._past.pop(0), now - self.delay)
         return self._remembered(truth, person_ids, now)
 
     def unseen(self, points: Array) -> NDArray[np.bool_]:
-        """Return at which points (k, 2) [m] a child could stand now and not be in sight.
+        """Return at which points (k, 2) [m] a child could stand and not be in sight.
 
-        People and moving vehicles hide nobody here: who is behind them comes on a visible way.
+        With a latency, in sight at the latest instant that is perceived. People and moving vehicles
+        hide nobody here: who is behind them comes on a visible way.
         """
-        return ~self._in_sight(self._lasting, points, np.full(len(points), CHILD))
+        eyes, walls = self._views[0]
+        return ~_in_sight(eyes, walls, points, np.full(len(points), CHILD))
 
-    def _look(self, truth: Truth, ego: OwnState) -> None:
-        """Take note of where the cameras are, and of what hides people."""
-        self._eyes = tuple(mount.eye(ego) for mount in self._options.mounts)
+    def _look(self, truth: Truth, ego: OwnState) -> NDArray[np.bool_]:
+        """Return which people (n,) are in sight of a camera, and keep what hides others."""
+        eyes = tuple(mount.eye(ego) for mount in self._options.mounts)
         sides = sides_of(truth.vehicles, truth.vehicle_heights, ego.row)
-        self._walls = np.concatenate([truth.outlines, sides])
         stands = np.repeat(np.delete(truth.vehicles[:, 3], ego.row) < STANDING, 4)
-        self._lasting = np.concatenate([truth.outlines, sides[stands]])
-
-    def _seen(self, truth: Truth) -> NDArray[np.bool_]:
-        """Return which people (n,) are in sight of a camera."""
-        position, heights, walls = truth.people.position, truth.person_heights, self._walls
+        self._views.append((eyes, np.concatenate([truth.outlines, sides[stands]])))
+        del self._views[: -1 - self._late]
+        walls = np.concatenate([truth.outlines, sides])
+        position, heights = truth.people.position, truth.person_heights
         if not self._options.people_hide:
-            return self._in_sight(walls, position, heights)
+            return _in_sight(eyes, walls, position, heights)
         seen = np.zeros(len(position), dtype=np.bool_)
-        for eye in self._eyes:
+        for eye in eyes:
             chords = chords_of(position, heights, eye, RADIUS)
             seen |= _sees(eye, np.concatenate([walls, chords]), position, heights)
-        return seen
-
-    def _in_sight(self, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:
-        """Return which bodies (k,) at ``points`` are in sight of a camera."""
-        seen = np.zeros(len(points), dtype=np.bool_)
-        for eye in self._eyes:
-            seen |= _sees(eye, walls, points, heights)
         return seen
 
     def _noticed(self, person_ids: Ids, now: float) -> NDArray[np.bool_]:
@@ -250,7 +245,7 @@ class Sight:
     def _remembered(self, truth: Truth, person_ids: Ids, now: float) -> Percept:
         """Return the people of whom something is known, moved on to where they should be."""
         o, known = self._options, self._rows(person_ids)[person_ids]
-        late = self._late * self._time_step
+        late = self.delay
         kept = (known[:, 4] >= 0.0) & (now - known[:, 4] <= late + o.memory + _ROUNDING)
         known, people = known[kept], truth.people.select(kept)
         age = now - known[:, 4]
@@ -259,6 +254,16 @@ class Sight:
         turns = _WITHIN * o.velocity_noise
         bound = known[:, 6] + age * (turns + 0.5 * o.acceleration * age)
         return Percept(people, person_ids[kept], age, bound, turns + o.acceleration * age)
+
+
+def _in_sight(
+    eyes: tuple[Eye, ...], walls: Array, points: Array, heights: Array
+) -> NDArray[np.bool_]:
+    """Return which bodies (k,) at ``points`` are in sight of a camera."""
+    seen = np.zeros(len(points), dtype=np.bool_)
+    for eye in eyes:
+        seen |= _sees(eye, walls, points, heights)
+    return seen
 
 
 def _sees(eye: Eye, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:

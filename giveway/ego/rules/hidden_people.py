@@ -24,7 +24,7 @@ CRAWL = 1.5
 _SHARE = 0.9  # share of the hardest braking that is planned with, and
 _LATE = 0.1  # time [s] that a stop takes longer than by that braking alone
 _KEPT = 6.0  # distance [m] before a place over which its speed is kept, past a row of cars
-_SPARE = 0.12  # distance [m] beside the body that is kept, so that the safety layer need not act
+_SPARE = 0.05  # distance [m] beside the body that is kept, so that the safety layer need not act
 
 
 class HiddenPeople:
@@ -69,7 +69,7 @@ class HiddenPeople:
         hidden = situation.hidden
         if not len(hidden.station):
             return None
-        gap = np.maximum(hidden.aside - self._inside, 0.0)
+        gap = np.maximum(hidden.aside - self._inside - hidden.error, 0.0)
         v, a = self._speed, self._acceleration
         time = (np.sqrt(v * v + 2.0 * a * gap) - v) / a
         there = np.maximum(self._braking * (time - _LATE), CRAWL)
