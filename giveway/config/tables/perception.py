@@ -21,8 +21,8 @@ class PerceptionConfig(Section):
     sensor: SensorName = option(
         "all",
         None,
-        "Sensor that perceives people: all (everybody), or another package's, by its declared "
-        "name or as module:Class",
+        "Sensor that perceives people: all (everybody), sight (cameras, from which things hide "
+        "people), or another package's, by its declared name or as module:Class",
     )
     opaque: str = option(
         "building 10, wall 2, hedge 1.5",

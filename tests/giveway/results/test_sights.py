@@ -1,0 +1,40 @@
+"""The table of who was in sight of an ego."""
+
+import numpy as np
+import pytest
+
+from giveway.results.sights import sight_table
+from giveway.run_data.tracks import SightTrack
+
+
+def track(*rows: tuple[float, str, int, bool, float]) -> SightTrack:
+    time, ego, pedestrian, seen, distance = zip(*rows, strict=True) if rows else ((),) * 5
+    return SightTrack(
+        np.array(time, dtype=np.float64),
+        np.array(ego, dtype=np.str_),
+        np.array(pedestrian, dtype=np.int64),
+        np.array(seen, dtype=np.bool_),
+        np.array(distance, dtype=np.float64),
+    )
+
+
+def test_a_row_is_a_stretch_of_time_in_sight() -> None:
+    table = sight_table(
+        track(
+            (1.0, "ego", 0, True, 9.0),
+            (1.5, "ego", 1, True, 20.0),
+            (2.0, "ego", 0, False, np.nan),
+            (3.0, "ego", 0, True, 4.0),
+        ),
+        ("anna", "bob"),
+    )
+    assert table["id"].tolist() == ["anna", "bob", "anna"]
+    assert table["time"].tolist() == [1.0, 1.5, 3.0]
+    assert table["until"].tolist() == pytest.approx([2.0, np.nan, np.nan], nan_ok=True)
+    assert table["distance"].tolist() == [9.0, 20.0, 4.0]
+
+
+def test_nobody_in_sight_is_a_table_without_rows() -> None:
+    table = sight_table(track(), ())
+    assert list(table) == ["ego", "id", "time", "until", "distance"]
+    assert not len(table)
