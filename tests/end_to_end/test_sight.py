@@ -9,8 +9,8 @@ def frontal(result) -> int:
 
 def test_the_child_is_first_seen_where_it_comes_out_from_behind_the_car(run_once) -> None:
     result = run_once(scenario="parked_cars")
-    first = result.sights.iloc[0]
-    child = result.trajectories.query("id == @first.id and time == @first.time").iloc[0]
+    first, rows = result.sights.iloc[0], result.trajectories
+    child = rows[(rows.id == first.id) & ((rows.time - first.time).abs() < 1e-6)].iloc[0]
     assert -4.8 < child.y < -3.0  # between the parked cars, whose sides are at y = -3.7 m
     assert frontal(result) == 0
 

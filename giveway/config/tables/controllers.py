@@ -286,11 +286,11 @@ class SafetyConfig(Section):
         flag="--safety-vehicles",
     )
     hidden_speed: float = option(
-        0.5,
+        0.3,
         "m/s",
         "Speed at which people who are not seen may come out of hiding, where a sensor tells what "
-        "it does not see. By default they begin to walk; Euro NCAP's obstructed child runs at "
-        "1.39. 0: nobody comes out",
+        "it does not see. By default that of who has stood there and set out half a second ago; "
+        "Euro NCAP's obstructed child runs at 1.39. 0: nobody comes out",
         ge=0,
         le=10,
         least=0.01,
