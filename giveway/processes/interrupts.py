@@ -16,6 +16,7 @@ from types import FrameType
 from typing import Any, ClassVar, Self
 
 PATIENCE = 10.0  # Time [s] after which a second interrupt acts at once
+_IMPORT = 5.0  # Time [s] after which a signal interrupts an import
 _MOMENT = 0.01  # Time [s] after which a signal that could not be raised is tried again
 ENDING = frozenset(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
@@ -88,8 +89,7 @@ class RaisedSignals(SignalHandler):
 
     It is not raised where it would get lost or become another error: inside an import, where a
     native module answers with an ImportError, and in a destructor or a callback of native code,
-    which can raise nothing. There it is raised a moment later, for an import at the latest after
-    ``PATIENCE``.
+    which can raise nothing. There it is raised a moment later; an import that hangs is interrupted.
 
     Args:
         once: True to raise only the first signal. A signal that comes ``PATIENCE`` after it acts at
@@ -147,7 +147,7 @@ class RaisedSignals(SignalHandler):
             return
         if not self._put_off:
             self._put_off, self._since = number, now
-        if _imports(frame) and now - self._since < PATIENCE:
+        if _imports(frame) and now - self._since < _IMPORT:
             _send_later(number)
             return
         self._first = now

@@ -59,3 +59,11 @@ def test_a_library_that_makes_an_import_error_of_ctrl_c_does_not_hide_it(tmp_pat
 """
     done = giveway(tmp_path, "giveway.cli.app", what, "-m", "giveway", "scenarios")
     assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_in_the_last_instant_of_a_command_the_work_is_done(tmp_path, name):
+    what = f"import atexit; atexit.register(lambda: {KILL.format(name=name)})"
+    done = giveway(tmp_path, "giveway.cli.app", what, "-m", "giveway", "scenarios")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "shared_space" in done.stdout
