@@ -91,6 +91,10 @@ def _fmu_identify(bases: Bases, _folder: Path) -> Words:
     return ["fmu", "identify", bases.fmus[0], "--speeds", 2, *wanted]
 
 
+def _scenarios(_bases: Bases, _folder: Path) -> Words:
+    return ["scenarios"]
+
+
 def _check(_bases: Bases, _folder: Path) -> Words:
     return ["check", "controller", "idm"]
 
@@ -108,4 +112,5 @@ COMMANDS: Final[dict[str, Command]] = {
     "fmu-check": Command(_fmu_check),
     "fmu-identify": Command(_fmu_identify, pages=("identified.toml", "identified.png")),
     "check": Command(_check),
+    "scenarios": Command(_scenarios),
 }

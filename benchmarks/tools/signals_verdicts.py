@@ -60,7 +60,7 @@ class Verdict:
         command: Name of the command.
         number: Number of the case.
         outcome: Right: "line", exit code 128 + n with one line; "died", death by the signal with
-            nothing left; "finished", the regular end; "late", the command had ended before the
+            its output printed and nothing left, while Python takes itself apart; "finished", the regular end; "late", the command had ended before the
             signal; "early", not judged since the signal came before giveway's first line. Not
             right: "traceback"; "hang"; "code", another exit code; "mute", no line; "noise", more
             than one; "process", a process is left; "scratch", a temporary folder is left; "torn", a
@@ -129,7 +129,9 @@ def _outcome(ended: Ended, folder: Path, command: Command, number: int) -> tuple
     if ended.code == 0:
         return ("noise", "an error although all is done") if lines else ("finished", "")
     if ended.code == -number:
-        return ("died", "") if not lines else ("noise", "a line, and death by the signal")
+        if lines:
+            return "noise", "a line, and death by the signal"
+        return ("died", "") if ended.out.strip() else ("mute", "nothing is said or printed")
     if ended.code != 128 + number:
         return "code", f"expected {128 + number}"
     if not lines:

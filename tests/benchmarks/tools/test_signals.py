@@ -65,7 +65,8 @@ def test_a_case_is_determined_by_seed_command_and_number() -> None:
     [
         ({}, "line"),
         ({"err": f"note: SIGTERM has not been heard yet\n{LINE}"}, "line"),
-        ({"code": -15, "err": ""}, "died"),
+        ({"code": -15, "err": "", "out": "Results in out"}, "died"),
+        ({"code": -15, "err": ""}, "mute"),
         ({"code": 0, "err": ""}, "finished"),
         ({"sent": 0.0}, "late"),
         ({"sent": 0.05}, "early"),
