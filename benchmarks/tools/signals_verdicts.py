@@ -60,11 +60,12 @@ class Verdict:
         command: Name of the command.
         number: Number of the case.
         outcome: Right: "line", exit code 128 + n with one line; "died", death by the signal with
-            its output printed and nothing left, while Python takes itself apart; "finished", the regular end; "late", the command had ended before the
-            signal; "early", not judged since the signal came before giveway's first line. Not
-            right: "traceback"; "hang"; "code", another exit code; "mute", no line; "noise", more
-            than one; "process", a process is left; "scratch", a temporary folder is left; "torn", a
-            file is half written; "lost", recorded rows cannot be read.
+            its output printed and nothing left, while Python takes itself apart; "finished", the
+            regular end; "late", the command had ended before the signal; "early", not judged since
+            the signal came before giveway's first line. Not right: "traceback"; "hang"; "code",
+            another exit code; "mute", no line; "noise", more than one; "process", a process is
+            left; "scratch", a temporary folder is left; "torn", a file is half written; "lost",
+            recorded rows cannot be read.
         signal: Signal and whom it was sent to.
         sent: Time [s] from the start to the signal.
         seconds: Time [s] from the start to the end.
