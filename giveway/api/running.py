@@ -113,6 +113,8 @@ def run_checked(
     if parquet or trajectories == "parquet":
         require_parquet()
     with ExitStack() as stack:
+        # neither taking the folder nor writing into it is interrupted
+        interrupt = stack.enter_context(DeferredInterrupt())
         taken = folder is not None and stack.enter_context(
             taken_folder(folder, force=force, wording=wording)
         )
@@ -122,8 +124,6 @@ def run_checked(
         wanted = {"results": where, "taken": taken, **outputs}
         rows.write_meta({"config": dump_toml(checked.config), **wanted})
         native_log = None if journal is None or rows.failure else journal / STDERR_FILE
-        # writing must not be interrupted, either
-        interrupt = stack.enter_context(DeferredInterrupt())
         try:
             result = simulate(
                 checked,

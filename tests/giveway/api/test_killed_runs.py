@@ -10,6 +10,9 @@ import pytest
 
 import giveway
 from fmus.archive import own_folder
+from giveway.api import running
+from giveway.replays.run_folder import RunFolder
+from giveway.run_data.progress import Ending
 
 SETTINGS = {"crowd": {"pedestrians": 0}, "time_limit": 0.3}
 KILLED = f"""
@@ -29,3 +32,16 @@ def test_the_scratch_folders_of_a_killed_run_are_swept_at_the_next_start(tmp_pat
     monkeypatch.setattr(own_folder, "_swept", set())
     giveway.run(SETTINGS)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_ctrl_c_right_after_the_folder_was_taken_leaves_whole_results(tmp_path, monkeypatch):
+    written = running.dump_toml
+
+    def interrupted(config):
+        signal.raise_signal(signal.SIGINT)
+        return written(config)
+
+    monkeypatch.setattr(running, "dump_toml", interrupted)
+    result = giveway.run(SETTINGS, results=tmp_path / "out", pictures=False)
+    assert result.ending is Ending.INTERRUPTED
+    assert RunFolder.read(tmp_path / "out").seal_note == ""
