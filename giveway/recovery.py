@@ -19,6 +19,7 @@ from giveway.gate import is_own
 from giveway.journal.journal_reader import JournalContents, read_journal
 from giveway.journal.recorded import RecordedRows
 from giveway.processes.heartbeat import Heartbeat
+from giveway.processes.interrupts import DeferredInterrupt
 from giveway.processes.locks import FolderInUseError, locked
 from giveway.processes.supervisor import Verdict, journals, verdict_on_left
 from giveway.results.ego_result import results_of_egos
@@ -141,7 +142,8 @@ def recover_left(
             verdict = verdict_on_left(journal)
             error = CrashError(f"{scenario.config_file}: the run was {verdict.message}")
             result = _result_of(config, scenario, contents, error, verdict)
-            with taken_folder(folder, force=force or is_marked_only(folder)) as taken:
+            replaced = force or is_marked_only(folder)
+            with DeferredInterrupt(), taken_folder(folder, force=replaced) as taken:
                 keep(result, folder, taken, _outputs(contents))
             shutil.rmtree(journal, ignore_errors=True)
     except FolderInUseError:
