@@ -30,7 +30,7 @@ _FLAT = 0.5  # Share of the runs on one level from which on the criticality is f
 _ACCEPTED = 0.44  # Acceptance at which chains move best (Papaioannou et al. 2015)
 _FIRST_STEP, _LEAST_STEP = 0.6, 0.05
 _LEAST = 50  # Smallest number of runs of a level
-_SPREAD = 1.0  # Coefficient of variation of the repeats beyond which they disagree
+_SPAN = 10.0  # Factor between the bounds from which on the repeats disagree
 
 
 @dataclass
@@ -210,16 +210,17 @@ def _estimate(
         )
     if failed:
         doubts.append(f"{failed} runs have no result, and count as runs without the event")
+    plain = clopper_pearson(int(first[0]), int(first[1]), confidence)[1]
     if flat:
-        _, high = clopper_pearson(int(first[0]), int(first[1]), confidence)
-        probability, low = float(each.mean()), 0.0
+        probability, low, high = float(each.mean()), 0.0, plain
     else:
         probability, low, high = interval_of_repeats(each, confidence)
-        variation = float(each.std(ddof=1) / each.mean())
-        if variation > _SPREAD:
+        if high > _SPAN * low:
             doubts.append(
-                f"the repeats disagree (coefficient of variation {variation:.1f}); raise the budget"
+                f"the repeats disagree: the upper bound is {high / low:.0f} times the lower one; "
+                "raise the budget"
             )
+            high = min(high, plain)
     if scouted.low > high:
         doubts.append(
             f"scouts far from the usual inputs find {scouted.probability:.2g}: the chains missed "

@@ -54,6 +54,21 @@ def test_a_flat_criticality_gives_an_upper_bound_and_a_doubt():
     assert "did not reach the event" in estimate.doubts[0]
 
 
+def test_repeats_that_disagree_are_a_doubt_and_plain_runs_bound_them():
+    """Half of the space is a plateau just below the event, from which few chains get on."""
+
+    def rugged(u):
+        hidden = np.sin(1e3 * u[:, 0]) * np.sin(1e3 * u[:, 1])
+        return np.where(hidden > 0.999, 1.0, np.minimum(u.sum(axis=1) - 6.0, -1e-6))
+
+    for seed in range(3):
+        estimate = run_sampler(subset_simulation(2, 3000, seed), rugged)
+        if estimate.doubts:
+            assert estimate.high < 0.02
+        else:
+            assert estimate.high <= 10.0 * estimate.low
+
+
 def test_noise_by_a_held_component_keeps_the_estimate():
     """The component is the seed of noise: the criticality is random in all others."""
     truth = stats.norm.sf(3.0 / np.sqrt(1.0 + 0.25))
