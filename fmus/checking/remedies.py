@@ -121,11 +121,12 @@ class _Trial:
             return inf
         if self._wrong(*judge(answers, expected.told, profile)):
             return inf
-        off = 0.0
-        told = expected.told
-        for mass, known in ((answers.drive_mass, told.drive), (answers.brake_mass, told.brake)):
+        drive_mass, brake_mass, told = answers.drive_mass, answers.brake_mass, expected.told
+        if not (0.0 < drive_mass < inf and 0.0 < brake_mass < inf):
+            return inf
+        off = abs(log(brake_mass / drive_mass))
+        for mass, known in ((drive_mass, told.drive), (brake_mass, told.brake)):
             off = max(off, 0.0 if known is None else abs(log(known.excess(mass))))
-        off = max(off, abs(log(answers.brake_mass / answers.drive_mass)))
         return off if off <= log(CLOSE) else inf
 
     def _wrong(self, *findings: Finding) -> bool:

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from fmus import bundled_fmu
 from fmus.checking import expected_of
 from fmus.checking.remedies import MOST, _switches, tried
 from fmus.description.model import Variable
@@ -50,3 +51,18 @@ def test_gear_ignition_and_selector_are_tried_together():
         {"parameters": edit["parameters"]} for edit in edits
     ]
     assert len(edits) < MOST // 2
+
+
+def test_an_edit_that_lets_the_brakes_drive_is_no_remedy():
+    profile = make_profile(
+        {
+            "fmu": {"step": 2.05},
+            "inputs": {"force": {"variable": "force"}},
+            "outputs": {role: {"variable": role} for role in ("speed", "position")},
+            "initial": {"run_up": True, "speed": {"variable": "v0"}},
+            "limits": {"speed": 100.0},
+        },
+        "test",
+    )
+    path = bundled_fmu("3.0")
+    assert tried(path, expected_of(profile, mass=1000.0), step_size=0.05) is None
