@@ -19,11 +19,12 @@ from giveway.recordings.recording import (
     Defect,
     Recording,
 )
-from giveway.recordings.tables import read_csv, read_table
+from giveway.recordings.tables import LINES_BEFORE, read_csv, read_table, require_good
 
 Progress = Callable[[int, int, str], None]  # numbers of recordings read and of all, name
 
 _PLACEHOLDER = re.compile(r"\\\{(name|track)\\\}|\\\*")
+_LAST_FRAME = 1e15  # Largest number of a frame; whole numbers are exact up to here
 _EMPTY = ("id", "frame", "x", "y")
 
 
@@ -126,7 +127,7 @@ def read_files(files: RecordingFiles, dataset: Dataset) -> Recording:
         if "id" not in read:
             read["id"] = track
         if "frame" not in read:
-            read["frame"] = (read["time"] / unit * rate).round().astype(np.int64)
+            read["frame"] = _frames(path, table, read["time"], unit, rate)
         defects += _time_defects(path, table)
         for role, part in _by_role(files, table, dataset, read, defects):
             rows[role].append(_without_duplicates(path, table, part, defects))
@@ -191,6 +192,17 @@ def _time_unit(tables: Sequence[pd.DataFrame], rate: float) -> float:
     step = np.concatenate([np.empty(0), *steps])
     apart = float(np.median(step)) if len(step) else 1.0 / rate
     return float(10.0 ** np.round(np.log10(apart * rate)))
+
+
+def _frames(
+    path: Path, table: TrackTable, time: "pd.Series[float]", unit: float, rate: float
+) -> "pd.Series[int]":
+    """Return the number of the frame at each time; a second has ``unit`` of the file's units."""
+    frame = (time / unit * rate).round()
+    bad = ~(frame.abs() <= _LAST_FRAME).to_numpy()
+    head = LINES_BEFORE.get(table.format)
+    require_good(path, time, str(table.columns.time), head, bad, "a time within the recording")
+    return frame.astype(np.int64)
 
 
 def _time_defects(path: Path, table: TrackTable) -> list[Defect]:
@@ -276,7 +288,7 @@ def _joined(parts: Sequence[pd.DataFrame]) -> pd.DataFrame:
         return pd.DataFrame({name: pd.Series(dtype=float) for name in _EMPTY})
     rows = pd.concat(parts, ignore_index=True)
     number = pd.to_numeric(rows["id"], errors="coerce")
-    whole = number.notna().all() and (number == np.floor(number)).all()
+    whole = (number == np.floor(number)).all() and (number.abs() < 2.0**63).all()
     if whole:
         rows["id"] = number.astype(np.int64)
     rows = rows.sort_values(["id", "frame"], kind="stable", ignore_index=True)

@@ -21,7 +21,7 @@ _FARTHEST = 1e7  # Largest number in a column; a place in UTM [m] has less
 _TEXTS = frozenset({"id", "kind"})
 _SHOWN = 40  # Number of characters of a wrong value in a message
 # Number of lines of a file before its first row
-_HEAD = {"csv": 2, "text": 1}
+LINES_BEFORE = {"csv": 2, "text": 1}
 
 
 def read_table(file: Path, table: TrackTable) -> pd.DataFrame:
@@ -42,10 +42,10 @@ def read_table(file: Path, table: TrackTable) -> pd.DataFrame:
         raise DatasetError(f"{file}: column '{missing[0]}' is missing; expected {expected}")
     if raw.empty:
         raise DatasetError(f"{file}: no rows; take the file from the dataset again")
-    line = _HEAD.get(table.format)
+    line = LINES_BEFORE.get(table.format)
     return pd.DataFrame(
         {
-            name: raw[column].astype(str).str.strip()
+            name: _texts(file, raw[column], column, line, name)
             if name in _TEXTS
             else _numbers(file, raw[column], column, line, name)
             for name, column in given.items()
@@ -149,6 +149,18 @@ def _xml_rows(file: Path, table: TrackTable) -> Iterator[dict[str, str]]:
             around[0].clear()  # the file may be larger than the memory
 
 
+def _texts(
+    file: Path, column: "pd.Series[Any]", name: str, head: int | None, ours: str
+) -> "pd.Series[str]":
+    """Return a column as texts; an id is neither empty nor an infinite number."""
+    texts = column.astype(str).str.strip()
+    if ours == "id":
+        infinite = np.isinf(pd.to_numeric(texts, errors="coerce").to_numpy(dtype=np.float64))
+        bad = (column.isna() | (texts == "")).to_numpy() | infinite
+        require_good(file, column, name, head, bad, "a word or a finite number")
+    return texts
+
+
 def _numbers(
     file: Path, column: "pd.Series[Any]", name: str, head: int | None, ours: str
 ) -> NDArray[np.float64]:
@@ -159,11 +171,34 @@ def _numbers(
     with np.errstate(invalid="ignore"):
         bad = ~(np.abs(values) <= largest) | np.isinf(values)
         bad |= whole & (values != np.floor(values))
+    require_good(file, column, name, head, bad, "a whole number" if whole else "a finite number")
+    return values
+
+
+def require_good(
+    file: Path,
+    column: "pd.Series[Any]",
+    name: str,
+    head: int | None,
+    bad: NDArray[np.bool_],
+    expected: str,
+) -> None:
+    """Make sure that no value of a column is bad.
+
+    Args:
+        file: File of the data set.
+        column: Values as they stand in it.
+        name: Name of the column.
+        head: Number of lines before the first row, plus one; None if the file has no lines.
+        bad: True where a value is bad.
+        expected: Description of good values.
+
+    Raises:
+        DatasetError: one is; the message names the first one.
+    """
     if bad.any():
         row = int(bad.argmax())
-        expected = "a whole number" if whole else "a finite number"
         place = f"row {row + 1}" if head is None else f"line {row + head}"
         raise DatasetError(
             f"{file}: {place}: {name} = {str(column.iloc[row])[:_SHOWN]!r}: expected {expected}"
         )
-    return values

@@ -23,6 +23,13 @@ IND = (
     "recordingId,trackId,frame,trackLifetime,xCenter,yCenter,heading,width,length,"
     "xVelocity,yVelocity\n"
 )
+WALKER = "pedestrian,0,0,1,0,0,0\n"
+FCD_TOO_LATE = "<fcd-export>{}</fcd-export>".format(
+    "".join(
+        f'<timestep time="{time}"><person id="a" x="0" y="0" angle="0" speed="1"/></timestep>'
+        for time in ("0.0", "0.1", "0.2", "1e308")
+    )
+)
 
 
 @pytest.mark.parametrize("name", KNOWN)
@@ -212,6 +219,21 @@ def test_a_wrong_description_names_its_key(tmp_path: Path, old: str, new: str, s
         ("hermes", "a.txt", "1 2 3 4 5 6\n", "cannot be read as text in columns"),
         ("hermes", "a.txt", "1 2 x 4 5\n", "line 1: x = 'x': expected a finite number"),
         ("sumo_fcd", "a.xml", "<a><b/></a>", "column 'id' is missing"),
+        ("hermes", "a.txt", "1 inf 0 0 0\n", "line 1: frame = 'inf': expected a whole number"),
+        (
+            "hermes",
+            "a.txt",
+            "1 1 0 0 0\n-1e400 1 0 0 0\n",
+            "line 2: id = '-1e400': expected a word",
+        ),
+        (
+            "sind",
+            "Ped_smoothed_tracks.csv",
+            f"{SIND_PEOPLE}P0,,0,{WALKER}",
+            "line 2: frame_id = ''",
+        ),
+        ("sind", "Ped_smoothed_tracks.csv", f"{SIND_PEOPLE},1,0,{WALKER}", "line 2: track_id = ''"),
+        ("sumo_fcd", "a.xml", FCD_TOO_LATE, "row 4: time = '1e+308': expected a time within"),
     ],
 )
 def test_a_file_that_cannot_be_read_is_named(
@@ -224,6 +246,12 @@ def test_a_file_that_cannot_be_read_is_named(
         read_recordings(tmp_path, dataset_of(name))
     assert str(path) in str(error.value)
     assert said in str(error.value)
+
+
+def test_ids_that_no_integer_can_hold_are_words(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("1e300 1 0 0 0\n1e300 2 0 0 0\n")
+    (found,) = read_recordings(tmp_path, dataset_of("hermes"))
+    assert found.people.ids == ("1e300",)
 
 
 def test_a_file_leads_to_its_recording(tmp_path: Path) -> None:
