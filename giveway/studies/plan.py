@@ -1,7 +1,7 @@
 """The plan of a study: settings, key and order of every run, before any of them is made."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from giveway.config import RunConfig
 from giveway.config.files.layers import Layer, merge
@@ -13,7 +13,7 @@ from giveway.metrics.plugged_in import metric_columns
 from giveway.results.inputs import scenario_inputs
 from giveway.scenario_files.declared_ids import declares_people
 from giveway.studies.definition import StudyDefinition
-from giveway.studies.design import Cell, Design, design
+from giveway.studies.design import Cell, Design, Level, design
 from giveway.studies.identity import (
     cell_digest,
     input_hashes,
@@ -100,16 +100,17 @@ class Plan:
 
 
 def plan(definition: StudyDefinition, origin: str) -> Plan:
-    """Check every cell's scenario and vehicles, and give every run its key.
+    """Check every level and every cell's scenario and vehicles, and give every run its key.
 
     Args:
         definition: Definition of the study.
         origin: File of the study, for messages.
 
     Raises:
-        GivewayError: a cell cannot be run; the message names it.
+        GivewayError: a cell or level cannot be used; the message names it.
     """
     designed = design(definition, origin)
+    _require_valid_levels(definition, designed, origin)
     definition = _with_comparison(definition, designed, origin)
     _require_metrics(definition, origin)
     cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
@@ -162,6 +163,41 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
         )
     complete = wanted.model_copy(update={"factor": factor.name, "baseline": baseline.label})
     return definition.model_copy(update={"comparison": complete})
+
+
+def _require_valid_levels(definition: StudyDefinition, designed: Design, origin: str) -> None:
+    """Make sure that levels without a cell are valid, too: cells may be listed, or left out.
+
+    Raises:
+        GivewayError: a level is not valid.
+    """
+    whole = designed
+    if definition.only:
+        whole = design(definition.model_copy(update={"only": {}}), origin)
+    for factor in whole.factors:
+        used = [cell.levels[factor.name] for cell in designed.cells]
+        for level in factor.levels:
+            if level not in used:
+                _require_valid(factor.name, level, whole, definition, origin)
+
+
+def _require_valid(
+    name: str, level: Level, designed: Design, definition: StudyDefinition, origin: str
+) -> None:
+    """Make sure that a level is valid by itself, or with the other levels of some cell."""
+    place = f"{origin}: [factors] {name} = {level.label}"
+    first = None
+    for others in ({}, *(cell.levels for cell in designed.cells)):
+        layer = Cell(0, {**others, name: level}).layer(origin, definition)
+        try:
+            load([replace(layer, origin=place)])
+        except GivewayError as error:
+            first = first or error
+        else:
+            return
+    assert first is not None
+    first.args = (str(first) if origin in str(first) else f"{place}: {first}",)
+    raise first
 
 
 def _require_metrics(definition: StudyDefinition, origin: str) -> None:

@@ -105,6 +105,53 @@ def test_a_cell_that_cannot_be_run_is_found_before_anything_runs(text, said):
     assert "mine.toml" in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("cells", "level", "said"),
+    [
+        (
+            "cells = [{ scene = 'few' }]",
+            "{ crowd.pedestrians = true }",
+            "[crowd] pedestrians = True",
+        ),
+        (
+            "only = { scene = ['few'] }",
+            "{ crowd.pedestrians = true }",
+            "[crowd] pedestrians = True",
+        ),
+        ("cells = [{ scene = 'few' }]", "{ scenario = 'nowhere' }", "unknown scenario 'nowhere'"),
+    ],
+)
+def test_a_level_that_no_cell_has_is_checked_too(cells, level, said):
+    from giveway.errors import GivewayError
+
+    text = f"name = 'mine'\n{cells}\n[factors.scene]\nfew = {{}}\n'other, 2' = {level}\n"
+    with pytest.raises(GivewayError) as refused:
+        planned(text)
+    assert str(refused.value).startswith("mine.toml: [factors] scene = other, 2: ")
+    assert said in str(refused.value)
+
+
+def test_a_level_that_needs_another_factors_level_is_valid_without_a_cell():
+    text = """
+        name = "mine"
+        [run]
+        controller = "pid"
+        [factors]
+        controller = ["pid", "mpc"]
+        [factors.horizon]
+        none = {}
+        short = { controller_options = { horizon = 1.0 } }
+        long = { controller_options = { horizon = 4.0 } }
+        [[cells]]
+        controller = "mpc"
+        horizon = "short"
+        [[cells]]
+        controller = "pid"
+        horizon = "none"
+    """
+    assert len(planned(text).cells) == 2
+
+
 def test_without_a_controller_factor_the_last_one_is_compared():
     from giveway.studies.plan import plan
 
