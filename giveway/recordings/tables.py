@@ -200,5 +200,6 @@ def require_good(
         row = int(bad.argmax())
         place = f"row {row + 1}" if head is None else f"line {row + head}"
         raise DatasetError(
-            f"{file}: {place}: {name} = {str(column.iloc[row])[:_SHOWN]!r}: expected {expected}"
+            f"{file}: {place}: {name} = {str(column.iloc[row])[:_SHOWN]!r}: expected {expected}; "
+            "correct it, or take the file from the dataset again"
         )
