@@ -28,6 +28,9 @@ from giveway.gate import (
 from giveway.plug_ins.finding import find, is_fmu, is_reference, same_name, shown
 from giveway.plug_ins.sockets import VEHICLE, Socket
 
+OURS = "giveway"
+"""The distribution whose code needs nobody's word."""
+
 
 def require_trusted(
     config: RunConfig, layers: Sequence[Layer], trusted: Collection[str] = ()
@@ -49,7 +52,7 @@ def require_trusted(
         naming = [layer for layer in layers if name in _named_in(layer.values, socket)]
         told = [(layer.origin, layer.results) for layer in naming if layer.results is not None]
         by_user = any(layer.results is None for layer in naming)
-        if not told or (by_user and (socket is VEHICLE or not is_fmu(name))):
+        if not told or (by_user and (socket is VEHICLE or not is_fmu(name))) or _is_ours(code):
             continue
         origin, folder = told[0]
         own = is_own_folder(folder)
@@ -158,6 +161,13 @@ def hashes_in(folder: Path, code: Named) -> set[str]:
         }
     except (OSError, RefusedFileError, ValueError, KeyError, TypeError, AttributeError):
         return set()
+
+
+def _is_ours(code: Named) -> bool:
+    """Return whether giveway itself declares the code by this name."""
+    if code.socket is VEHICLE or not _is_declared(code.name):
+        return False
+    return find(code.name, code.socket).distribution == OURS
 
 
 def _is_declared(name: str) -> bool:

@@ -170,3 +170,10 @@ def test_foreign_results_are_repeated_with_the_recorded_files_only(
             continue
         with pytest.raises(ConfigError, match=r"net\.xml: has another content"):
             require_recorded(theirs, config, scenario)
+
+
+def test_code_that_giveway_itself_declares_needs_nobodys_word(tmp_path: Path) -> None:
+    settings = {"time_limit": 0.2, "controller": "idm", "perception.sensor": "sight"}
+    run(settings | {"crowd.pedestrians": 1}, results=tmp_path / "r", pictures=False)
+    config, _ = load([read_toml(foreign(tmp_path / "r") / "config.toml")])
+    assert (config.controller, config.perception.sensor) == ("idm", "sight")
