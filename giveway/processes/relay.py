@@ -53,13 +53,13 @@ class Relay(SignalHandler):
         """
         if self.first is None or self._told or time.monotonic() - self._at < _PATIENCE:
             return
+        self._told = True  # before the note, whose reader may be quick
         name = signal.Signals(self.first).name
         with contextlib.suppress(OSError):
             sys.stderr.write(
                 f"note: {name} has not been heard yet {place}; a second one kills the run, whose "
                 "recorded rows are kept\n"
             )
-        self._told = True
 
     def _send(self, number: int) -> None:
         # a Windows console tells all processes itself
