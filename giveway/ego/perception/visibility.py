@@ -171,6 +171,7 @@ def _covered(intervals: Array, count: int) -> float:
     return covered
 
 
+@kernel
 def sides_of(bodies: Array, heights: Array, but: int) -> Array:
     """Return the sides (4 (m - 1), 5) of vehicles as walls.
 
@@ -179,21 +180,32 @@ def sides_of(bodies: Array, heights: Array, but: int) -> Array:
         heights: Heights (m,) [m].
         but: Row that is left out.
     """
-    others = np.arange(len(bodies)) != but
-    x, y, heading, _, front, rear, width = bodies[others].T
-    cos, sin = np.cos(heading), np.sin(heading)
-    along = np.stack([front, -rear, -rear, front], axis=1)
-    aside = 0.5 * np.stack([width, width, -width, -width], axis=1)
-    corners = np.stack(
-        [
-            x[:, None] + along * cos[:, None] - aside * sin[:, None],
-            y[:, None] + along * sin[:, None] + aside * cos[:, None],
-        ],
-        axis=2,
-    )
-    ends = np.roll(corners, -1, axis=1)
-    tops = np.broadcast_to(heights[others, None, None], (*along.shape, 1))
-    return np.concatenate([corners, ends, tops], axis=2).reshape(-1, 5)
+    sides = np.empty((4 * bodies.shape[0], 5))
+    count = 0
+    for row in range(bodies.shape[0]):
+        if row == but:
+            continue
+        x, y, cos, sin = (
+            bodies[row, 0],
+            bodies[row, 1],
+            np.cos(bodies[row, 2]),
+            np.sin(bodies[row, 2]),
+        )
+        front, rear, half = bodies[row, 4], -bodies[row, 5], 0.5 * bodies[row, 6]
+        for side in range(4):
+            along = front if side in (0, 3) else rear
+            aside = half if side < 2 else -half
+            onwards = front if side in (2, 3) else rear
+            across = half if side in (0, 3) else -half
+            sides[count, 0], sides[count, 1] = (
+                x + along * cos - aside * sin,
+                y + along * sin + aside * cos,
+            )
+            sides[count, 2] = x + onwards * cos - across * sin
+            sides[count, 3] = y + onwards * sin + across * cos
+            sides[count, 4] = heights[row]
+            count += 1
+    return sides[:count]
 
 
 def chords_of(position: Array, heights: Array, eye: Eye, radius: float) -> Array:
