@@ -107,7 +107,7 @@ class Plant:
         self._state[0], self._state[1], self._state[10] = position, speed, speed
         self.position, self.speed, self.acceleration = position, speed, 0.0
 
-    def step(self, force: float) -> None:
+    def step(self, force: float, _grade: float = 0.0) -> None:
         """Advance by one step of the controller."""
         inputs, truth = self._profile.inputs, self._truth
         if inputs.acceleration is not None:

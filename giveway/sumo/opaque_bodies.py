@@ -1,4 +1,4 @@
-"""What hides people: the heights of SUMO's vehicles and persons, and the walls of its polygons."""
+"""Heights of vehicles and persons in SUMO, and walls of its polygons: all that hides people."""
 
 from collections.abc import Iterable, Mapping
 from functools import cache

@@ -1,4 +1,4 @@
-"""When each person comes in sight of an ego and is lost from sight again."""
+"""Notes on when each person comes in sight of an ego, and is lost from sight again."""
 
 import numpy as np
 
