@@ -28,6 +28,9 @@ from giveway.plug_ins.sockets import CONTROLLER, Socket
 
 _REFERENCE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
 
+OURS = "giveway"
+"""The distribution whose code is giveway's own."""
+
 
 @dataclass(frozen=True)
 class Found:

@@ -25,11 +25,8 @@ from giveway.gate import (
     is_own,
     read_json,
 )
-from giveway.plug_ins.finding import find, is_fmu, is_reference, same_name, shown
+from giveway.plug_ins.finding import OURS, find, is_fmu, is_reference, same_name, shown
 from giveway.plug_ins.sockets import VEHICLE, Socket
-
-OURS = "giveway"
-"""The distribution whose code needs nobody's word."""
 
 
 def require_trusted(

@@ -5,7 +5,7 @@ and from where nothing bars the way to the path. People who are hidden farther a
 such a place, or by a visible one.
 """
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,7 @@ class Hidden(NamedTuple):
 NOWHERE = Hidden(np.empty((0, 2)), np.empty(0), np.empty(0))
 
 
+@runtime_checkable
 class TellsUnseen(Protocol):
     """A sensor that tells where people would not be in sight."""
 

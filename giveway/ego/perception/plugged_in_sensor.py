@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig
+from giveway.ego.perception.hidden_people import TellsUnseen
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, Sensor, SensorSetup
 from giveway.ego.perception.truth import Truth
 from giveway.errors import SensorError
 from giveway.geometry.kernel import Array
 from giveway.plug_ins.faults import blamed, shown
-from giveway.plug_ins.finding import load_maker
+from giveway.plug_ins.finding import OURS, find, load_maker
 from giveway.plug_ins.sockets import SENSOR
 from pedestrian_model import Crowd
 
 
-def sensor_of(config: EgoRunConfig, time_step: float) -> PluggedInSensor | None:
-    """The sensor of another package for one ego, or None if giveway's own is configured.
+def sensor_of(config: EgoRunConfig, time_step: float) -> Sensor | None:
+    """The sensor of one ego, or None if it perceives all people.
+
+    One of another package is wrapped; giveway's own keep to the rules by themselves.
 
     Args:
         config: Configuration of the ego.
@@ -34,6 +37,8 @@ def sensor_of(config: EgoRunConfig, time_step: float) -> PluggedInSensor | None:
     if not config.perception.plugged_in_sensor:
         return None
     make, setup = maker(config), setup_of(config, time_step)
+    if find(config.perception.sensor, SENSOR).distribution == OURS:
+        return cast("Sensor", make(setup))
     name = f"'{config.perception.sensor}' of '{config.ego_id}'"
     return PluggedInSensor(name, lambda: make(setup))
 
@@ -59,6 +64,16 @@ def maker(config: EgoRunConfig) -> Callable[[SensorSetup], object]:
         ControlError: the sensor is not installed, or cannot be imported.
     """
     return load_maker(config.perception.sensor, SENSOR, config.sensor_options)
+
+
+def telling(sensor: Sensor | None) -> TellsUnseen | None:
+    """The sensor if it tells where people would not be in sight, or None.
+
+    Args:
+        sensor: Sensor as :func:`sensor_of` returns it.
+    """
+    tells = sensor.tells_unseen if isinstance(sensor, PluggedInSensor) else True
+    return sensor if tells and isinstance(sensor, TellsUnseen) else None
 
 
 class PluggedInSensor:

@@ -7,7 +7,7 @@ and metrics use the truth.
 from giveway.config import EgoRunConfig
 from giveway.crowd.motion.noise import BOUND
 from giveway.ego.perception.desired_speeds import Pace
-from giveway.ego.perception.plugged_in_sensor import sensor_of
+from giveway.ego.perception.plugged_in_sensor import sensor_of, telling
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, Refinement, Sensor
 from giveway.ego.perception.refinements import DesiredSpeeds, HeadingGoals, PositionNoise
 from giveway.ego.perception.tracking import Tracker
@@ -58,7 +58,7 @@ class Perception:
         if seen.goals != "known":
             self._chain.append(HeadingGoals())
         self.exact = own is None and not self._chain
-        self.tells_unseen = own if own is not None and own.tells_unseen else None
+        self.tells_unseen = telling(own)
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         """Return what the ego perceives; the next call overwrites it.

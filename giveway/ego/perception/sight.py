@@ -26,6 +26,7 @@ from giveway.ego.perception.visibility import (
     sides_of,
 )
 from giveway.geometry.kernel import Array
+from pedestrian_model import Crowd
 
 _ENOUGH = 0.5  # share of a body's width from which on it is seen; rounding aside
 _ROUNDING = 1e-9
@@ -150,6 +151,7 @@ class Sight:
         self._late = round(options.latency / setup.time_step)
         self._past: list[tuple[Ids, Array, Array, NDArray[np.bool_], Array]] = []
         self._known = np.zeros((0, _COLUMNS))
+        self._room: Crowd | None = None
         self.delay = self._late * setup.time_step
         self._views: list[tuple[tuple[Eye, ...], Array]] = []
 
@@ -247,7 +249,8 @@ class Sight:
         o, known = self._options, self._rows(person_ids)[person_ids]
         late = self.delay
         kept = (known[:, 4] >= 0.0) & (now - known[:, 4] <= late + o.memory + _ROUNDING)
-        known, people = known[kept], truth.people.select(kept)
+        known, people = known[kept], truth.people.select(kept, self._room)
+        self._room = people
         age = now - known[:, 4]
         people.velocity[:] = known[:, 2:4]
         people.position[:] = known[:, 0:2] + age[:, None] * known[:, 2:4]
@@ -260,9 +263,10 @@ def _in_sight(
     eyes: tuple[Eye, ...], walls: Array, points: Array, heights: Array
 ) -> NDArray[np.bool_]:
     """Return which bodies (k,) at ``points`` are in sight of a camera."""
-    seen = np.zeros(len(points), dtype=np.bool_)
-    for eye in eyes:
-        seen |= _sees(eye, walls, points, heights)
+    seen = _sees(eyes[0], walls, points, heights)
+    for eye in eyes[1:]:
+        rest = np.flatnonzero(~seen)
+        seen[rest] = _sees(eye, walls, points[rest], heights[rest])
     return seen
 
 

@@ -26,10 +26,12 @@ class Sights:
             place where the person is perceived; NaN for who is lost.
         """
         ids = percept.person_ids
+        if np.array_equal(ids, self._known):
+            return NO_CHANGES
         new, lost = ~np.isin(ids, self._known), np.setdiff1d(self._known, ids)
+        self._known = ids.copy()
         if not new.any() and not len(lost):
             return NO_CHANGES
-        self._known = ids.copy()
         off = percept.people.position[new] - own.pose[:2]
         rows = np.full((int(new.sum()) + len(lost), 3), np.nan)
         rows[:, 0] = np.concatenate([ids[new], lost])
