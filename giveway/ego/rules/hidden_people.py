@@ -43,6 +43,7 @@ class HiddenPeople:
     ) -> None:
         self._speed, self._acceleration, self._braking = speed, acceleration, braking
         self._inside, self._times = half_width + RADIUS + _SPARE, times[:, None]
+        self._slowing = COMFORTABLE * np.concatenate([[0.0], times])
 
     @classmethod
     def on(cls, route: RouteContext) -> HiddenPeople | None:
@@ -77,5 +78,6 @@ class HiddenPeople:
         left = np.concatenate([ahead[None], ahead - situation.speed * self._times])
         caps = np.sqrt(there * there + 2.0 * COMFORTABLE * np.maximum(left - _KEPT, 0.0))
         caps[left < 0.0] = inf
-        speeds = caps.min(axis=1)
+        # where a place comes in sight at once, the ego slows down no harder for it
+        speeds = np.maximum(caps.min(axis=1), situation.speed - self._slowing)
         return Demand(inf, "", inf, float(speeds[0]), inf, NO_LEADER, speeds[1:])

@@ -102,7 +102,7 @@ def place(ahead: float, gap: float) -> Hidden:
 def test_before_a_place_the_speed_is_one_from_which_a_stop_is_in_time(
     gap: float, slowest: float
 ) -> None:
-    situation = Situation(station=0.0, speed=3.0, hidden=place(2.0, gap))
+    situation = Situation(station=0.0, speed=1.0, hidden=place(2.0, gap))
     assert rule().demand(situation).speed == pytest.approx(slowest, abs=0.15)
 
 
@@ -115,6 +115,12 @@ def test_the_speeds_ahead_are_those_of_the_places_that_are_still_ahead() -> None
     speeds = rule().demand(Situation(station=0.0, speed=4.0, hidden=place(2.0, 1.0))).lane_speeds
     assert (np.diff(speeds[:9]) <= 1e-9).all()
     assert (speeds[10:] == inf).all()  # 2 m are driven within 0.5 s
+
+
+def test_a_place_that_comes_in_sight_at_once_is_slowed_down_for_comfortably() -> None:
+    demand = rule().demand(Situation(station=0.0, speed=8.0, hidden=place(6.0, 0.5)))
+    assert demand.speed == 8.0
+    assert demand.lane_speeds[:9] == pytest.approx(8.0 - 2.0 * STEP * np.arange(1.0, 10.0))
 
 
 def test_without_places_nothing_is_demanded() -> None:
