@@ -284,14 +284,14 @@ def dump_toml(config: RunConfig) -> str:
     untold = set(IDENTIFIED) - set(config.vehicle.told) if foreign else set()
     for entry in options():
         *tables, key = entry.location
-        node: Any = document
         value: Any = config
-        for table in tables:
-            node = node.setdefault(table, tomlkit.table())
-            value = getattr(value, table)
-        value = getattr(value, key)
+        for name in entry.location:
+            value = getattr(value, name)
         if value is None or (tables == ["vehicle"] and key in untold):
             continue  # TOML has no null: an absent key means the default
+        node: Any = document
+        for table in tables:
+            node = node.setdefault(table, tomlkit.table())
         item = tomlkit.item(list(value) if isinstance(value, tuple) else value)
         unit = f"[{entry.unit}] " if entry.unit else ""
         node.add(key, item.comment(f"{unit}{entry.field.description}"))
