@@ -100,6 +100,7 @@ SPEED = (
     ),
     _shell("bench_start.py", "bench_start.py --cold", "--rounds 1"),
     _shell("bench_metrics.py", "bench_metrics.py", "--repetitions 1"),
+    _shell("bench_sight.py", "bench_sight.py"),
     _told("machine", "speed/performance.py --machine", "", "--machine"),
 )
 
