@@ -7,12 +7,12 @@
 The command line is ``giveway``; ``giveway --help`` lists what it does.
 """
 
-from giveway import _early_signals  # noqa: F401 - the first import: signals are caught from here on
+from giveway._start import early_signals  # noqa: F401 - the first import: signals are caught from here
 
 # isort: split
 from typing import TYPE_CHECKING, Any
 
-from giveway._environment import check_rooms, keep_kernels
+from giveway._start.environment import check_rooms, keep_kernels
 from giveway._version import __version__
 from giveway.errors import GivewayError
 

@@ -5,7 +5,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from giveway._environment import out_of_memory
+from giveway._start.environment import out_of_memory
 from giveway.cli.exit import fail
 from giveway.errors import GivewayError
 from giveway.processes.interrupts import RaisedSignals, exit_code_of, who_ended

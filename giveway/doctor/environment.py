@@ -16,7 +16,7 @@ from packaging.requirements import InvalidRequirement, Requirement
 
 from controller import ControllerError, LongitudinalModel, Mpc, MpcParameters
 from fmus import FmuError, VehicleFmu, bundled_fmu
-from giveway._environment import check_rooms
+from giveway._start.environment import check_rooms
 from giveway.doctor.finding import Finding, error, note, ok, warning
 from giveway.errors import InstallationError
 

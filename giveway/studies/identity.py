@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus.text import printable
-from giveway._environment import ROOMS
+from giveway._start.environment import ROOMS
 from giveway.config import RunConfig
 from giveway.config.files.foreign_code import code_hashes
 from giveway.errors import ConfigError, GivewayError

@@ -3,7 +3,7 @@
 import sys
 from typing import Any, Final
 
-from giveway._environment import out_of_memory
+from giveway._start.environment import out_of_memory
 from giveway.errors import InstallationError
 
 _SPARED: Final = ("numpy", "pyproj", "lxml")  # Optional imports of libsumo's Python modules

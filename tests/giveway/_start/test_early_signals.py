@@ -37,7 +37,7 @@ def giveway(tmp_path, module, what, *words):
     ("name", "code", "line"),
     [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "ended by SIGTERM")],
 )
-@pytest.mark.parametrize("module", ["giveway._environment", "giveway.cli.program"])
+@pytest.mark.parametrize("module", ["giveway._start.environment", "giveway.cli.program"])
 def test_one_line_and_the_code_of_the_signal(tmp_path, module, name, code, line):
     done = giveway(tmp_path, module, KILL.format(name=name), "-m", "giveway", "scenarios")
     assert (done.returncode, done.stderr, done.stdout) == (code, f"error: {line}\n", "")
@@ -45,7 +45,7 @@ def test_one_line_and_the_code_of_the_signal(tmp_path, module, name, code, line)
 
 def test_a_program_of_somebody_else_ends_as_it_would(tmp_path):
     what = KILL.format(name="SIGTERM")
-    done = giveway(tmp_path, "giveway._environment", what, "-c", "import giveway")
+    done = giveway(tmp_path, "giveway._start.environment", what, "-c", "import giveway")
     assert (done.returncode, done.stderr) == (-15, "")
 
 

@@ -22,7 +22,7 @@ def check_rooms() -> None:
     Raises:
         InstallationError: a package is missing, or another package of that name comes first.
     """
-    house = Path(__file__).resolve().parent.parent
+    house = Path(__file__).resolve().parents[2]
     for room in ROOMS:
         spec = importlib.util.find_spec(room)
         origin = None if spec is None or spec.origin is None else Path(spec.origin).resolve()

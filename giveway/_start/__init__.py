@@ -1,0 +1,1 @@
+"""All that comes before other imports: signals during the start, checks, and settings."""
