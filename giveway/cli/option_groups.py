@@ -159,7 +159,7 @@ class RiskEstimate(NamedTuple):
     ] = None
     runs: Annotated[
         int | None,
-        typer.Option("--runs", "--budget", help="Runs, or the budget (default 1000).", min=1),
+        typer.Option(help="Runs, or the budget (default 1000).", min=1),
     ] = None
     why: Annotated[
         int | None,
@@ -195,9 +195,7 @@ class StudyComputation(NamedTuple):
     ] = False
     jobs: Annotated[
         int | None,
-        typer.Option(
-            "--jobs", "--workers", help="Worker processes (default: one per processor).", min=1
-        ),
+        typer.Option(help="Worker processes (default: one per processor).", min=1),
     ] = None
     cluster: Annotated[
         str | None,

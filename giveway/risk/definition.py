@@ -40,7 +40,7 @@ class RiskDefinition(Section):
         description="Number of base vectors for the Sobol indices of the criticality. Each costs "
         "two runs, and one for each group of inputs. By default there are no indices",
         ge=0,
-        le=1_000_000,
+        le=100_000,
     )
     seed: int = Field(1, description="Seed of the vectors of all runs", ge=0, le=2**31 - 1)
     confidence: float = Field(0.95, description="of the interval", gt=0.5, lt=1.0)

@@ -60,7 +60,7 @@ class RandomInput:
             case "truncated-normal":
                 return _truncated(share, first, *rest)
             case "lognormal":
-                return first * math.exp(rest[0] * component)
+                return first * float(np.exp(rest[0] * component))
             case "uniform":
                 return first + (rest[0] - first) * share
             case "triangular":
@@ -204,7 +204,7 @@ def people_placed(config: RunConfig, wanted: Any, origin: str) -> int:
         ConfigError: ``crowd`` cannot be used.
     """
     possible = config.crowd.pedestrians > 0 and config.crowd.sampler != ENCOUNTERS
-    if wanted not in {None, True, False}:
+    if not (wanted is None or isinstance(wanted, bool)):
         raise ConfigError(f"{origin}: [inputs] crowd = {wanted!r}: expected true or false")
     if wanted and not possible:
         raise ConfigError(

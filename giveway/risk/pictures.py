@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from giveway.errors import ResultsError
+from giveway.errors import ResultsError, remedy
 from giveway.figures.studies.risk_figure import Bounds, convergence_figure, levels_figure
 from giveway.figures.style import save_figure
 from giveway.risk.estimators import clopper_pearson
@@ -36,7 +36,7 @@ def write_pictures(folder: RiskFolder) -> Path:
         save_figure(figure, path)
     except OSError as error:
         raise ResultsError(
-            f"{path}: cannot be written ({error.strerror}); free the disk"
+            f"{path}: cannot be written ({error.strerror}); {remedy(error)}"
         ) from error
     return path
 

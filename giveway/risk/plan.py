@@ -19,7 +19,7 @@ from giveway.metrics.impacts import IMPACTS
 from giveway.results.inputs import scenario_inputs
 from giveway.risk.definition import RiskDefinition
 from giveway.risk.estimators import (
-    LEAST_BUDGET,
+    LEAST_BUDGETS,
     Estimate,
     Sampler,
     SobolIndex,
@@ -193,10 +193,11 @@ def plan_risk(definition: RiskDefinition, origin: str, trusted: Collection[str] 
             f"{origin}: method = '{definition.method}' with event = '{event.name}': this event has "
             "no degrees that could guide the estimator; expected method = 'monte-carlo'"
         )
-    if definition.method == "subset" and definition.runs < LEAST_BUDGET:
+    least = LEAST_BUDGETS.get(definition.method, 0)
+    if definition.runs < least:
         raise ConfigError(
-            f"{origin}: runs = {definition.runs} with method = 'subset': expected a budget of at "
-            f"least {LEAST_BUDGET}; with fewer runs use method = 'monte-carlo'"
+            f"{origin}: runs = {definition.runs} with method = '{definition.method}': expected a "
+            f"budget of at least {least}; with fewer runs use method = 'monte-carlo'"
         )
     scalars = read_inputs(definition.inputs, origin)
     layer = Layer(origin, _shared(definition), results=results_of(Path(origin)))

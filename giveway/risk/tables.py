@@ -129,8 +129,10 @@ def per_kilometre(folder: RiskFolder, estimate: Estimate) -> PerKilometre:
 def _plain_runs(folder: RiskFolder) -> slice:
     """Return the runs that are drawn from the inputs' own distribution."""
     definition, estimate = folder.plan.definition, folder.estimate
-    if definition.method != "subset":
+    if definition.method == "monte-carlo":
         return slice(None)
+    if definition.method == "importance":
+        return slice(0)  # all are drawn from mixtures
     first = sum(stage.runs for stage in estimate.stages if stage.stage == 1)
     ahead = estimate.runs - sum(stage.runs for stage in estimate.stages)
     return slice(ahead, ahead + first)

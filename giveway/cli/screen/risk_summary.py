@@ -4,6 +4,7 @@ from rich.console import Console
 from rich.table import Table
 
 from giveway.cli.screen.printing import escape, numbers_of
+from giveway.risk.estimators import LEAST_VECTORS
 from giveway.risk.risk_folder import RiskFolder
 from giveway.risk.severity import Severity
 from giveway.risk.tables import per_kilometre, severities_of
@@ -23,7 +24,8 @@ def print_risk(console: Console, folder: RiskFolder) -> None:
         ("per km", kilometre.rate, kilometre.low, kilometre.high),
     ):
         shown = [f"{value:.3g}" if met else "-", f"{low:.3g}" if met else "0", f"{high:.3g}"]
-        table.add_row(name, *shown)
+        if high == high:  # not nan: no distance is known
+            table.add_row(name, *shown)
     console.print(
         f"Probability of the event '{escape(definition.event)}' by {definition.method}: "
         f"{estimate.events:,} of {estimate.runs:,} runs have it",
@@ -54,6 +56,13 @@ def _print_why(console: Console, folder: RiskFolder) -> None:
         table.add_row(escape(one.group), *(f"{share:.2f}" for share in (*first, *total)))
     console.print("Share of the criticality's variance (Sobol indices)", highlight=False)
     console.print(table)
+    used = folder.indices[0].used
+    if used < LEAST_VECTORS:
+        console.print(
+            f"[yellow]The indices mean little:[/] they are from {used} base vectors; expected "
+            f"{LEAST_VECTORS} or more",
+            highlight=False,
+        )
 
 
 def _print_severity(console: Console, folder: RiskFolder) -> None:

@@ -57,9 +57,8 @@ def desired_speeds(config: CrowdConfig, kinds: Sequence[str], random: np.random.
         if not outside.any():
             return speeds
         speeds[outside] = random.normal(mean[outside], deviation[outside])
-    return np.asarray(
-        np.clip(speeds, low, high)
-    )  # for bounds so narrow that hardly any draw is within
+    # for bounds so narrow that hardly any draw is within
+    return np.asarray(np.clip(speeds, low, high))
 
 
 def speeds_at(config: CrowdConfig, kinds: Sequence[str], draws: Array) -> Array:

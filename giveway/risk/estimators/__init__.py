@@ -6,14 +6,19 @@ criticality (n,), and returns an :class:`Estimate`. A criticality of nan is that
 result.
 """
 
+from giveway.risk.estimators import importance, subset
 from giveway.risk.estimators.estimate import Estimate, Sampler, Stage, run_sampler
 from giveway.risk.estimators.importance import importance_sampling
 from giveway.risk.estimators.monte_carlo import clopper_pearson, monte_carlo
-from giveway.risk.estimators.sobol import SobolIndex, sobol_indices
-from giveway.risk.estimators.subset import LEAST_BUDGET, subset_simulation
+from giveway.risk.estimators.sobol import LEAST_VECTORS, SobolIndex, sobol_indices
+from giveway.risk.estimators.subset import subset_simulation
+
+LEAST_BUDGETS = {"subset": subset.LEAST_BUDGET, "importance": importance.LEAST_BUDGET}
+"""The smallest budgets of the estimators that have one, by method."""
 
 __all__ = [
-    "LEAST_BUDGET",
+    "LEAST_BUDGETS",
+    "LEAST_VECTORS",
     "Estimate",
     "Sampler",
     "SobolIndex",

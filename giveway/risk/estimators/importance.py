@@ -17,6 +17,7 @@ from giveway.risk.estimators.estimate import Array, Estimate, Sampler, Stage
 from giveway.risk.estimators.monte_carlo import clopper_pearson
 from giveway.risk.estimators.scouts import spread
 
+LEAST_BUDGET = 200  # Smallest budget whose stages leave half of it for the estimate
 SHARE = 0.1  # Share of the runs of a stage to which the mixture is fitted
 _PREPARING = 0.5  # Share of the budget for the stages
 _STAGES = 10  # Largest number of stages

@@ -12,6 +12,7 @@ import numpy as np
 
 from giveway.risk.estimators.estimate import Array
 
+LEAST_VECTORS = 100  # Smallest number of base vectors whose indices mean something
 _RESAMPLES = 500  # Number of resamples of the bootstrap behind each interval
 
 

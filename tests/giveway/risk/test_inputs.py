@@ -85,3 +85,15 @@ def test_people_have_components_where_their_number_is_fixed():
     assert people_placed(meeting, None, "mine") == 0
     with pytest.raises(ConfigError, match="nobody can be placed"):
         people_placed(meeting, True, "mine")
+
+
+@pytest.mark.parametrize("wanted", [1, 0, "yes", [True], {}])
+def test_people_have_components_or_not_and_nothing_else_says_so(wanted):
+    with pytest.raises(ConfigError, match=r"crowd = .*: expected true or false"):
+        people_placed(RunConfig(), wanted, "mine")
+
+
+def test_a_number_that_overflows_is_infinite_and_no_error():
+    (heavy,) = read_inputs({"vehicle.mass": {"lognormal": [1000, 500]}}, "mine.toml")
+    with np.errstate(over="ignore"):
+        assert heavy.value(3.0) == np.inf

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from copy import copy
+from dataclasses import replace
+
 import pandas as pd
 import pytest
 
 from giveway.errors import GivewayError, ResultsError
 from giveway.risk.risk_folder import RiskFolder
 from giveway.risk.severity import rosen_sander
+from giveway.risk.tables import per_kilometre
 from giveway.studies.repeated_run import rerun
 from giveway.studies.study import StudyInterruptedError
 from giveway.studies.study_options import StudyOptions
@@ -29,6 +34,15 @@ def test_the_tables_hold_the_estimate_and_every_run(small_risk):
     assert list(runs["run"]) == [f"r{number}" for number in range(1, 9)]
     assert runs["vehicle.mass"].nunique() == 8
     assert 0 < estimate.events < 8
+
+
+def test_no_distance_is_known_where_all_runs_are_drawn_near_the_event(small_risk):
+    definition = small_risk.plan.definition.model_copy(update={"method": "importance"})
+    drawn = copy(small_risk)
+    drawn.plan = replace(small_risk.plan, definition=definition)
+    told = per_kilometre(drawn, small_risk.estimate)
+    assert math.isnan(told.distance)
+    assert math.isnan(told.high)
 
 
 def test_the_runs_with_the_event_are_listed_the_worst_first(small_risk):

@@ -29,12 +29,8 @@ from giveway.cli.option_groups import DryRun
 from giveway.cli.screen.printing import findings_table, print_json, print_place
 from giveway.errors import ConfigError
 
-_OF_STEPS = {
-    "step halving",
-    "starts",
-    "reproducible",
-    STANDING,
-}  # tests that an edited axis does not mend
+# tests that an edited axis does not mend
+_OF_STEPS = {"step halving", "starts", "reproducible", STANDING}
 _NOTHING = "none of the lines that were tried mends it"
 _STYLES = {
     "pass": "green", "skip": "cyan", "warn": "yellow", "ask": "bold magenta", "fail": "bold red",
