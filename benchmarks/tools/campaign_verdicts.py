@@ -7,10 +7,12 @@ import re
 import shlex
 import subprocess
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from campaign_kinds import Case
@@ -157,12 +159,12 @@ def _typed_again(case: Case) -> tuple[int, str]:
 
 
 def read_verdicts(file: Path) -> dict[int, Verdict]:
-    """The verdicts so far by number; the last line may be torn."""
-    found = {}
+    """The verdicts so far by number."""
+    return {verdict.number: verdict for verdict in read_lines(file, Verdict)}
+
+
+def read_lines(file: Path, kind: Callable[..., Any]) -> Iterator[Any]:
+    """Yield what the lines of a file of JSON hold; the last line may be torn."""
     for line in file.read_text(encoding="utf-8").splitlines() if file.exists() else []:
-        try:
-            verdict = Verdict(**json.loads(line))
-        except ValueError:
-            continue
-        found[verdict.number] = verdict
-    return found
+        with suppress(ValueError):
+            yield kind(**json.loads(line))

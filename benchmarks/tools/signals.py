@@ -35,6 +35,7 @@ from typing import TYPE_CHECKING, Final
 
 from campaign_bases import Bases
 from campaign_nursery import Nursery
+from campaign_verdicts import read_lines
 from signals_commands import COMMANDS
 from signals_verdicts import BAD, CASE, OUTCOMES, Ended, Verdict, judge, left_processes
 
@@ -251,15 +252,8 @@ def main() -> int:
 
 
 def _read(file: Path) -> dict[tuple[str, int], Verdict]:
-    """Return the verdicts so far by command and number; the last line may be torn."""
-    found = {}
-    for line in file.read_text(encoding="utf-8").splitlines() if file.exists() else []:
-        try:
-            verdict = Verdict(**json.loads(line))
-        except ValueError:
-            continue
-        found[verdict.command, verdict.number] = verdict
-    return found
+    """Return the verdicts so far by command and number."""
+    return {(verdict.command, verdict.number): verdict for verdict in read_lines(file, Verdict)}
 
 
 def _table(commands: Sequence[str], verdicts: Iterable[Verdict]) -> int:

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 from functools import cache
+from math import inf, nan
 from typing import Any
 
 import numpy as np
 
+from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.sumo.library import direct
 
@@ -39,6 +41,9 @@ class OpaqueBodies:
             heights: Height [m] of each type of polygon that hides people. A type stands for its
                 kinds, too: ``building`` for ``building.house``. A polygon's own parameter
                 ``height`` [m] comes before it.
+
+        Raises:
+            ScenarioError: a polygon's height is not one.
         """
         sides = [np.empty((0, 5))]
         for name in sorted(self._polygon.getIDList()):
@@ -46,10 +51,29 @@ class OpaqueBodies:
             if height is None:
                 continue
             own = self._polygon.getParameter(name, _HEIGHT)
-            shape = np.array(self._polygon.getShape(name), dtype=np.float64)[:, :2]
-            tops = np.full((len(shape) - 1, 1), float(own) if own else height)
+            height = _own_height(name, own) if own else height
+            shape = np.array([point[:2] for point in self._polygon.getShape(name)]).reshape(-1, 2)
+            tops = np.full((max(len(shape) - 1, 0), 1), height)
             sides.append(np.hstack([shape[:-1], shape[1:], tops]))
         return np.concatenate(sides)
+
+
+def _own_height(name: str, text: str) -> float:
+    """Return the height [m] that a polygon's parameter gives.
+
+    Raises:
+        ScenarioError: it is no height.
+    """
+    try:
+        height = float(text)
+    except ValueError:
+        height = nan
+    if not 0.0 < height < inf:
+        raise ScenarioError(
+            f"polygon '{name}': parameter {_HEIGHT} = '{text}': expected a number above 0 [m]; "
+            "correct it in the additional file"
+        )
+    return height
 
 
 def _height_of(kind: str, heights: Mapping[str, float]) -> float | None:

@@ -17,17 +17,18 @@ from giveway.ego.perception.visibility import sides_of
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath
 
-_NEAR = 6.0  # distance [m] up to which stations are as close as this [m]:
-_SPACING = 0.125
-_FAR_SPACING = 0.5  # distance [m] between the stations beyond, where there is time to look again
+# Distance [m] between stations, up to a distance [m]; the nearer, the steeper lines of sight are.
+# In the end there is time to look again.
+_SPACINGS = (0.05, 4.0), (0.125, 6.0), (0.5, np.inf)
 _ACROSS = 0.25  # distance [m] between places across the path, and
 _HALVINGS = 3  # how many times it is halved where the first hidden place is sought
 _ASIDE = 5.0  # distance [m] from the path beyond which nobody hidden matters
 _MORE = 3.0  # distance [m] beyond a comfortable stop that is looked at
 _OFFSETS = np.arange(0.0, _ASIDE, _ACROSS)
-ERROR = 0.08
-"""Largest distance [m] by which a hiding place is nearer than the found ones about it: a line of
-sight comes nearer by 0.06 m between two stations, and what is within reach of both by 0.02 m."""
+ERROR = 0.1
+"""Largest distance [m] by which a person who is hidden within 3.5 m of the path is nearer than the
+places that are found about there: that by which a line of sight comes nearer between two stations,
+and half of the last halving."""
 
 
 class Hidden(NamedTuple):
@@ -85,8 +86,7 @@ class HidingPlaces:
             speed: Speed of the ego [m/s].
         """
         reach = 0.5 * speed * speed / COMFORTABLE + _MORE
-        close = np.arange(0.0, min(reach, _NEAR), _SPACING)
-        distances = np.concatenate([close, np.arange(_NEAR, reach, _FAR_SPACING)])
+        distances = _stations(reach)
         self._view.station = front
         poses = self._view.poses(distances)
         others = np.delete(truth.vehicles, row, axis=0)
@@ -114,6 +114,15 @@ class HidingPlaces:
         places = _places(poses[at], sides[side] * nearest)
         error = ERROR + self._pace * sensor.delay
         return Hidden(places, front + distances[at], nearest, error)
+
+
+def _stations(reach: float) -> Array:
+    """Return the distances [m] ahead that are looked at."""
+    begin, parts = 0.0, []
+    for spacing, end in _SPACINGS:
+        parts.append(np.arange(begin, min(reach, end), spacing))
+        begin = end
+    return np.concatenate(parts)
 
 
 def _flat(truth: Truth) -> Array:

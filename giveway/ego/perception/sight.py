@@ -7,10 +7,12 @@ sight is remembered for a while, as walking on.
 """
 
 from dataclasses import dataclass
-from math import cos, pi, radians, sin, sqrt
+from math import cos, isfinite, pi, radians, sin, sqrt
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ConfigDict, Strict
 
 from controller.driving_constants import STANDING
 from controller.parameters import require, require_not_negative, require_positive
@@ -33,6 +35,9 @@ _ROUNDING = 1e-9
 _NEVER = -1.0
 
 
+_Number = Annotated[float, Strict()]  # true is none
+
+
 @dataclass(frozen=True)
 class Mount:
     """A camera on the body of an ego.
@@ -49,16 +54,21 @@ class Mount:
         ParameterError: a value is not finite or out of range.
     """
 
-    ahead: float = -1.5
-    aside: float = 0.0
-    height: float = 1.3
-    heading: float = 0.0
-    range: float = 60.0
-    field_of_view: float = 120.0
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid")
+
+    ahead: _Number = -1.5
+    aside: _Number = 0.0
+    height: _Number = 1.3
+    heading: _Number = 0.0
+    range: _Number = 60.0
+    field_of_view: _Number = 120.0
 
     def __post_init__(self) -> None:
         for name, unit in {"height": "m", "range": "m", "field_of_view": "degree"}.items():
             require_positive(name, getattr(self, name), unit)
+        for name, unit in {"ahead": "m", "aside": "m", "heading": "degree"}.items():
+            value = getattr(self, name)
+            require(isfinite(value), name, value, f"a finite number [{unit}]")
         require(self.field_of_view <= 360.0, "field_of_view", self.field_of_view, "at most 360")
 
     def eye(self, ego: OwnState) -> Eye:

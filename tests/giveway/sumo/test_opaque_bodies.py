@@ -4,7 +4,9 @@ from pathlib import Path
 
 import libsumo
 import numpy as np
+import pytest
 
+from giveway.errors import ScenarioError
 from giveway.sumo.opaque_bodies import OpaqueBodies
 from sumo_scenarios import find
 
@@ -38,5 +40,8 @@ def test_the_street_s_bodies_and_walls(tmp_path: Path) -> None:
             [2.0, 2.0, 3.0, 2.0, 0.8],
         ]
         assert opaque.walls({}).shape == np.empty((0, 5)).shape
+        libsumo.polygon.setParameter("low", "height", "a metre")
+        with pytest.raises(ScenarioError, match="polygon 'low': parameter height = 'a metre'"):
+            opaque.walls({"wall": 2.0})
     finally:
         libsumo.close()

@@ -10,7 +10,7 @@ from giveway.config import EgoRunConfig
 from giveway.ego.perception import OwnState, SensorSetup, Truth
 from giveway.ego.perception.hidden_people import ERROR, Hidden, HidingPlaces, fill_free
 from giveway.ego.perception.sight import Sight, SightOptions
-from giveway.ego.perception.visibility import CHILD, RADIUS
+from giveway.ego.perception.visibility import CHILD, RADIUS, sides_of
 from giveway.ego.rules.hidden_people import CRAWL, HiddenPeople
 from giveway.ego.rules.protocol import Situation
 from giveway.ego.safety_layer import RUSHES, EgoSafetyLayer
@@ -28,6 +28,9 @@ CHILD_RUNS = 1.39
 def parked(x: float, y: float = -2.8) -> tuple[float, ...]:
     """A parked car by its middle, 1 m beside the ego."""
     return x, y, 0.0, 0.0, 2.25, 2.25, 1.8
+
+
+CARS = tuple(parked(x) for x in (18.0, 23.5, 30.0))  # the gap is at x = 25.75 to 27.75 m
 
 
 def truth(
@@ -135,8 +138,6 @@ class ChildRunsOut:
         running: Speed [m/s] of the child.
     """
 
-    CARS = tuple(parked(x) for x in (18.0, 23.5, 30.0))  # the gap is at x = 25.75 to 27.75 m
-
     def __init__(self, hidden_speed: float, running: float) -> None:
         self._running = running
         self.config = EgoRunConfig.model_validate(
@@ -182,7 +183,7 @@ class ChildRunsOut:
             moves = time >= begin
             at = start + (time - begin) * velocity if moves else start
             child = Crowd.create([at], [velocity * moves], 1.4, [[at + 20.0 * velocity]])
-            world = truth(front, speed, *self.CARS, people=child)
+            world = truth(front, speed, *CARS, people=child)
             percept = sensor.observe(world, np.zeros(1, np.int64), own(front, speed))
             in_sight = len(percept.person_ids) and at[1] < 0.0
             if front > 29.0 or (in_sight and not moves):
@@ -221,5 +222,20 @@ def test_beyond_it_the_adversary_finds_a_child_that_is_hit() -> None:
     assert worst(0.0, 16, 3.0) > RUSHES
 
 
-def test_places_are_known_as_well_as_the_layer_believes() -> None:
-    assert 0.0 < ERROR < 0.1
+@pytest.mark.parametrize("front", [16.0, 19.03, 21.3, 23.71, 24.9, 25.2, 25.44, 25.6, 25.68])
+def test_nobody_who_is_hidden_is_nearer_than_the_places_say(front: float) -> None:
+    """Brute force: all points 2 cm apart at which a child could stand unseen and come out."""
+    sensor, world = Sight(SensorSetup(STEP, 1, "ego"), SightOptions()), truth(front, 6.0, *CARS)
+    sensor.observe(world, np.empty(0, np.int64), own(front, 6.0))
+    found = HidingPlaces(PATH, CHILD_RUNS).ahead(sensor, world, 0, front, 6.0)
+    stations = np.arange(front, front + 5.5, 0.02)
+    poses = np.column_stack([stations, np.zeros((len(stations), 2))])
+    free, walls = np.empty((len(poses), 2)), sides_of(world.vehicles, world.vehicle_heights, 0)
+    fill_free(poses, walls, world.vehicles[1:], free)
+    aside = np.arange(0.0, 3.5, 0.02)
+    points = np.column_stack([np.repeat(stations, len(aside)), -np.tile(aside, len(stations))])
+    hides = sensor.unseen(points).reshape(len(stations), len(aside)) & (aside < free[:, 1:])
+    for row in np.flatnonzero(hides.any(axis=1)):
+        nearest = aside[hides[row].argmax()]
+        beside = np.abs(found.station - stations[row]) <= 0.125
+        assert found.aside[beside].min(initial=inf) <= nearest + ERROR

@@ -10,9 +10,12 @@ from controller.parameters import ParameterError
 from giveway.ego.perception import OwnState, Percept, SensorSetup, Truth
 from giveway.ego.perception.conformance import check_sensor
 from giveway.ego.perception.sight import Mount, Sight, SightOptions
+from giveway.errors import ConfigError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import Pose
+from giveway.plug_ins.options import read_options
+from giveway.plug_ins.sockets import SENSOR
 from pedestrian_model import Crowd
 
 STEP = 0.05
@@ -174,3 +177,22 @@ def test_a_camera_without_extent_is_refused(name: str) -> None:
         Mount(**{name: 0.0})
     with pytest.raises(ParameterError, match="at most 360"):
         Mount(field_of_view=361.0)
+
+
+@pytest.mark.parametrize(
+    ("mount", "said"),
+    [
+        ({"height": True}, "mounts.0.height = True"),
+        ({"ahed": 1.0}, "mounts.0.ahed"),
+        ({"range": 0.0}, "range"),
+        ({"ahead": float("inf")}, "ahead"),
+    ],
+)
+def test_a_camera_that_is_not_one_is_refused_by_name(mount: dict[str, Any], said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        read_options("sight", SightOptions, {"mounts": [mount]}, SENSOR)
+
+
+def test_cameras_are_tables_of_the_options() -> None:
+    options = read_options("sight", SightOptions, {"mounts": [{"height": 2}, {}]}, SENSOR)
+    assert options.mounts == (Mount(height=2.0), Mount())
