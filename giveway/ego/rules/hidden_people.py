@@ -35,13 +35,21 @@ class HiddenPeople:
         acceleration: Their largest acceleration [m/s^2].
         half_width: Half of the width of the ego [m].
         braking: Deceleration [m/s^2] of its stop before who comes out.
+        late: Time [s] until it brakes so hard.
         times: Times (N,) [s] of the steps that the ego looks ahead.
     """
 
     def __init__(
-        self, speed: float, acceleration: float, half_width: float, braking: float, times: Array
+        self,
+        speed: float,
+        acceleration: float,
+        half_width: float,
+        braking: float,
+        late: float,
+        times: Array,
     ) -> None:
         self._speed, self._acceleration, self._braking = speed, acceleration, braking
+        self._late = _LATE + late
         self._inside, self._times = half_width + RADIUS + _SPARE, times[:, None]
         self._slowing = COMFORTABLE * np.concatenate([[0.0], times])
 
@@ -58,6 +66,7 @@ class HiddenPeople:
             min(ego.worst.setting_out, ego.worst.acceleration),
             0.5 * route.shape.width,
             _SHARE * route.hardest_braking,
+            0.0 if ego.safety is None else ego.safety.actuator.reaction_time,
             route.times_ahead,
         )
 
@@ -73,7 +82,7 @@ class HiddenPeople:
         gap = np.maximum(hidden.aside - self._inside - hidden.error, 0.0)
         v, a = self._speed, self._acceleration
         time = (np.sqrt(v * v + 2.0 * a * gap) - v) / a
-        there = np.maximum(self._braking * (time - _LATE), CRAWL)
+        there = np.maximum(self._braking * (time - self._late), CRAWL)
         ahead = hidden.station - situation.station
         left = np.concatenate([ahead[None], ahead - situation.speed * self._times])
         caps = np.sqrt(there * there + 2.0 * COMFORTABLE * np.maximum(left - _KEPT, 0.0))

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import nan
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -42,7 +43,8 @@ def convergence_figure(bounds: Sequence[Bounds], title: str) -> Figure:
         linewidth=0.0,
         label="interval",
     )
-    axes.plot(runs, [max(one.probability, floor) for one in bounds], color=BLUE, label="estimate")
+    # an estimate of 0 has no place on a logarithmic axis
+    axes.plot(runs, [one.probability or nan for one in bounds], color=BLUE, label="estimate")
     axes.set_xscale("log")
     axes.set_xlabel("runs")
     axes.set_ylabel("probability in a run")

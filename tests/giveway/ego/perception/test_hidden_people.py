@@ -92,8 +92,8 @@ def test_nothing_is_looked_for_beyond_a_vehicle_on_the_way() -> None:
     assert fill_free(poses, np.empty((0, 5)), standing, np.empty((3, 2))) == 1
 
 
-def rule(speed: float = 1.39) -> HiddenPeople:
-    return HiddenPeople(speed, 0.6, HALF, 8.0, STEP * np.arange(1.0, 21.0))
+def rule(speed: float = 1.39, late: float = 0.0) -> HiddenPeople:
+    return HiddenPeople(speed, 0.6, HALF, 8.0, late, STEP * np.arange(1.0, 21.0))
 
 
 def place(ahead: float, gap: float) -> Hidden:
@@ -107,6 +107,12 @@ def test_before_a_place_the_speed_is_one_from_which_a_stop_is_in_time(
 ) -> None:
     situation = Situation(station=0.0, speed=1.0, hidden=place(2.0, gap))
     assert rule().demand(situation).speed == pytest.approx(slowest, abs=0.15)
+
+
+def test_late_brakes_ask_for_a_lower_speed() -> None:
+    situation = Situation(station=0.0, speed=1.0, hidden=place(2.0, 1.0))
+    usual, slow = (rule(late=late).demand(situation).speed for late in (0.0, 0.2))
+    assert usual - slow == pytest.approx(8.0 * 0.2)
 
 
 def test_far_before_it_the_ego_slows_down_comfortably() -> None:
