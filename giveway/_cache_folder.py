@@ -76,8 +76,9 @@ def fresh_folder(why: str) -> Path:
 
 @functools.cache
 def _private_folder() -> Path:
-    fresh = Path(tempfile.mkdtemp(prefix=PREFIX))
+    fresh = Path(tempfile.gettempdir()) / f"{PREFIX}{os.urandom(6).hex()}"
     atexit.register(shutil.rmtree, fresh, ignore_errors=True)
+    fresh.mkdir(mode=0o700)
     os.environ[_SHARED] = str(fresh)
     return fresh
 

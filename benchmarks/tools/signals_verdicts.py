@@ -122,7 +122,7 @@ def _outcome(ended: Ended, folder: Path, command: Command, number: int) -> tuple
         return "traceback", found[0]
     if ended.left:
         return "process", ", ".join(ended.left)
-    if scratch := sorted(path.name for path in (folder / "tmp").iterdir()):
+    if scratch := sorted(path.name + "/" * path.is_dir() for path in (folder / "tmp").iterdir()):
         return "scratch", ", ".join(scratch)
     if torn := next(_torn(folder, command), ""):
         return "torn", torn

@@ -41,8 +41,11 @@ class OwnFolder:
         if (prefix, place) not in _swept:
             _swept.add((prefix, place))
             _sweep(prefix, place)
-        self.name, lock = _made(prefix, place)
-        self._gone = weakref.finalize(self, _remove, self.name, lock, os.getpid())
+        path = fresh_name(prefix, place)
+        self.name, self._lock = str(path), list[int]()
+        self._owner = os.getpid()
+        self._gone = weakref.finalize(self, _remove, self.name, self._lock, self._owner)
+        _make(path, self._lock)
 
     def __enter__(self) -> str:
         return self.name
@@ -52,18 +55,31 @@ class OwnFolder:
 
     def cleanup(self) -> None:
         """Remove the folder; a second call does nothing."""
-        self._gone()
+        if self._gone.alive:
+            _remove(self.name, self._lock, self._owner)
+            self._gone.detach()
 
 
-def _made(prefix: str, place: Path) -> tuple[str, int | None]:
-    """Return a new folder and the handle of its lock, or None without locks."""
+def fresh_name(prefix: str, place: Path) -> Path:
+    """Return a path that nobody has used.
+
+    Who names a folder before it is made can remove it, even if a signal comes in between.
+    """
+    return place / f"{prefix}{os.urandom(6).hex()}"
+
+
+def _make(folder: Path, lock: list[int]) -> None:
+    """Make a folder, and put the handle of its lock into ``lock``; nothing without locks."""
     while True:
-        name = tempfile.mkdtemp(prefix=prefix, dir=place)
-        lock = _locked(Path(name))
+        folder.mkdir(mode=0o700)
+        handle = _locked(folder)
+        if handle is None:
+            return
         # another process may have taken it for a folder that was left, just before it was locked
-        if lock is None or os.fstat(lock).st_nlink:
-            return name, lock
-        os.close(lock)
+        if os.fstat(handle).st_nlink:
+            lock.append(handle)
+            return
+        os.close(handle)
 
 
 def _locked(folder: Path, *, wait: bool = True) -> int | None:
@@ -88,7 +104,7 @@ def _sweep(prefix: str, place: Path) -> None:
     for folder in _own_folders(prefix, place):
         lock = _locked(folder, wait=False)
         if lock is not None:
-            _remove(str(folder), lock, os.getpid())
+            _remove(str(folder), [lock], os.getpid())
 
 
 def _own_folders(prefix: str, place: Path) -> Iterator[Path]:
@@ -101,7 +117,7 @@ def _own_folders(prefix: str, place: Path) -> Iterator[Path]:
                 yield folder
 
 
-def _remove(name: str, lock: int | None, owner: int) -> None:
+def _remove(name: str, lock: list[int], owner: int) -> None:
     """Remove a folder, also if a signal interrupts this, and release its lock."""
     if os.getpid() != owner:  # a fork of the process that uses it
         return
@@ -111,5 +127,5 @@ def _remove(name: str, lock: int | None, owner: int) -> None:
         shutil.rmtree(name, ignore_errors=True)
         raise
     finally:
-        if lock is not None:
-            os.close(lock)
+        while lock:
+            os.close(lock.pop())

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import tempfile
 import weakref
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from fmus import errors
+from fmus.archive.own_folder import fresh_name
 from fmus.archive.place import unpacking_place
 from fmus.errors import FmuCrashError, FmuError, FmuStartCrashError, FmuStepError
 from fmus.isolation.cleanup import remove
@@ -49,8 +49,9 @@ class FmuProcess:
         self.last_time = 0.0
         self._numbers = hosted.numbers(prepared)
         self._client: Client | None = None
-        folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-", dir=unpacking_place()))
+        folder = fresh_name("vehicle-fmu-", unpacking_place())
         try:
+            folder.mkdir(mode=0o700)
             self._host = make_process_host(Order(hosted, prepared, folder / "fmu"), folder)
         except BaseException:
             remove(folder)

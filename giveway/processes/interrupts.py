@@ -7,11 +7,12 @@ closed: temporary folders are removed, and the user reads a message.
 """
 
 import _thread
+import contextlib
 import signal
 import sys
 import threading
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from types import FrameType
 from typing import Any, ClassVar, Self
 
@@ -51,6 +52,23 @@ def ended_by(number: int) -> KeyboardInterrupt:
 def exit_code_of(error: KeyboardInterrupt) -> int:
     """Return the exit code, 128 + the signal, as shells do."""
     return 128 + (error.number if isinstance(error, TerminatedError) else signal.SIGINT)
+
+
+@contextlib.contextmanager
+def deaf_children() -> Iterator[None]:
+    """Start children in this context that hear no signal to end until they unblock it.
+
+    While Python itself starts, a Ctrl-C would end in a traceback, and other signals without a
+    message.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 class SignalHandler:

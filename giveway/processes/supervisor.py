@@ -11,7 +11,6 @@ import errno
 import math
 import os
 import shutil
-import signal
 import stat
 import subprocess
 import sys
@@ -26,7 +25,7 @@ from typing import Self
 from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, SETTING_UP, Heartbeat, Phase, Pulse, Stillness
-from giveway.processes.interrupts import ENDING, DeferredInterrupt
+from giveway.processes.interrupts import DeferredInterrupt, deaf_children
 from giveway.processes.locks import in_use, locked
 from giveway.processes.relay import Relay
 
@@ -85,8 +84,9 @@ def journal_folder() -> Iterator[Path]:
     """
     place = journal_place()
     _sweep(place)
-    folder = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=place))
+    folder = place / f"{_PREFIX}{os.urandom(6).hex()}"
     try:
+        folder.mkdir(mode=0o700)
         with locked(folder):
             yield folder
     finally:
@@ -184,7 +184,7 @@ def supervise(
     environment = os.environ | {JOURNAL_VARIABLE: str(journal), **_temporary(journal)}
     with Relay() as relay:
         # Like any program on this terminal: same process group, same files (also <(...)).
-        with _held_back():
+        with deaf_children():  # until `Supervised.listen`
             child = subprocess.Popen(
                 command,
                 env=environment,
@@ -220,23 +220,6 @@ def _temporary(journal: Path) -> dict[str, str]:
     folder = temporary_in(journal)
     folder.mkdir(exist_ok=True)
     return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
-
-
-@contextlib.contextmanager
-def _held_back() -> Iterator[None]:
-    """Start children with blocked signals in this context, until :meth:`Supervised.listen`.
-
-    While Python itself starts, a Ctrl-C would end in a traceback, and other signals without a
-    message.
-    """
-    if sys.platform == "win32":
-        yield
-        return
-    previous = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 class _Watchdog:

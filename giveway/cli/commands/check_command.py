@@ -15,6 +15,7 @@ from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.conformance.battery import Begins, Finding
 from giveway.plug_ins.sockets import CONTROLLER, METRIC, MODEL, RULE, SENSOR, TABLES, Socket
+from giveway.processes.interrupts import deaf_children
 from pedestrian_model import JUPEDSIM_MODELS
 
 LIMIT = 60.0  # Time limit [s] of a rule; most take a tenth of a second
@@ -90,7 +91,8 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
     process = spawn.Process(
         target=_battery, args=(theirs, config.model_dump_json(), socket.what), daemon=True
     )
-    process.start()
+    with deaf_children():  # this process alone says that the user has ended it
+        process.start()
     theirs.close()
     begun: list[str] = []
     try:

@@ -8,6 +8,7 @@ A worker is started by the thread that uses it, because Linux ends the worker to
 thread.
 """
 
+import itertools
 import os
 import queue
 import socket
@@ -18,9 +19,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from fmus.archive.own_folder import OwnFolder
 from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
-from giveway.studies.execution.temporary_folder import Scratch
 from giveway.studies.execution.worker_process import (
     NotBegunError,
     RunDiedError,
@@ -56,7 +57,7 @@ class Pool:
 
     def __init__(self, slots: int, limits: Limits, place: Path | None = None) -> None:
         self._limits = limits
-        self._scratch = Scratch(place)
+        self._scratch, self._numbers = OwnFolder("giveway-workers-", place), itertools.count(1)
         self._jobs: queue.SimpleQueue[tuple[Task, Delivery] | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._closed = threading.Event()
@@ -109,7 +110,7 @@ class Pool:
             self._jobs.put(None)
         for thread in self._threads:
             thread.join(_JOIN)
-        self._scratch.remove()
+        self._scratch.cleanup()
 
     # --- in a slot's thread -------------------------------------------------------------------
 
@@ -192,7 +193,9 @@ class Pool:
             try:
                 with self._lock:
                     self._raise_if_closed()
-                    worker = WorkerProcess(self._scratch.folder(), self._limits)
+                    worker = WorkerProcess(
+                        Path(self._scratch.name, str(next(self._numbers))), self._limits
+                    )
                     self._alive.add(worker)
                 worker.await_ready()
             except (NotBegunError, OSError) as error:

@@ -1,5 +1,7 @@
 """A temporary folder of a process: locked while it is in use, swept by the next process if not."""
 
+import gc
+import itertools
 import subprocess
 import sys
 from pathlib import Path
@@ -70,4 +72,47 @@ def test_a_signal_in_the_removal_leaves_nothing_and_goes_on(tmp_path, monkeypatc
     monkeypatch.setattr(own_folder.shutil, "rmtree", interrupted)
     with pytest.raises(KeyboardInterrupt):
         folder.cleanup()
+    assert list(tmp_path.iterdir()) == []
+
+
+def _interrupted_at(number, work):
+    """Do ``work`` with a signal before the line of that number; return whether it came so far."""
+    left = itertools.count(-number)
+
+    def trace(frame, event, _argument):
+        if frame.f_code.co_filename != own_folder.__file__:
+            return None
+        if event == "line" and next(left) == 0:
+            raise KeyboardInterrupt
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        work()
+    except KeyboardInterrupt:
+        return True
+    finally:
+        sys.settrace(before)
+    return False
+
+
+def test_a_signal_between_any_two_lines_leaves_nothing(tmp_path):
+    def work():
+        with OwnFolder("kind-", tmp_path) as name:
+            (Path(name) / "file").touch()
+
+    work()
+    for number in itertools.count():
+        reached = _interrupted_at(number, work)
+        gc.collect()
+        assert list(tmp_path.iterdir()) == [], number
+        if not reached:
+            break
+    assert number > 20
+
+
+def test_an_error_right_after_it_was_made_leaves_nothing(tmp_path):
+    program = HOLDS.replace("time.sleep(60)", "raise KeyboardInterrupt")
+    subprocess.run([sys.executable, "-c", program, str(tmp_path)], capture_output=True, check=False)
     assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,33 @@
+"""The check of a plug-in in a process of its own, which only the command itself may end."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+
+
+def _has_begun_a_battery(process):
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    return any(b"spawn_main" in Path(f"/proc/{c}/cmdline").read_bytes() for c in children)
+
+
+@pytest.mark.parametrize("later", [0.0, 0.05, 0.3])
+def test_control_c_from_the_terminal_gives_one_line(later):
+    words = [sys.executable, "-m", "giveway", "check", "controller", "idm"]
+    with subprocess.Popen(
+        words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        while not _has_begun_a_battery(process):
+            assert process.poll() is None
+            time.sleep(0.002)
+        time.sleep(later)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said == "error: interrupted\n"
