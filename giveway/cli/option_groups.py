@@ -47,6 +47,9 @@ class RunOutputs(NamedTuple):
     ] = "csv"
     pictures: Annotated[bool, typer.Option(help="Draw the pictures.", rich_help_panel="Run")] = True
     quiet: NoSummary = False
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Print all numbers of the summary, with meanings.")
+    ] = False
     as_json: JsonFlag = False
     trust: Trust = None
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
 from dataclasses import dataclass
 from html import escape
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from giveway.errors import ResultsError
+from giveway.results.digest import digest
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,17 +18,6 @@ if TYPE_CHECKING:
 
 Picture = Literal["top_view", "state"]
 
-_LINES = (  # label, column, unit of the table in a notebook
-    ("Time to the goal", "completion_time", "s"),
-    ("Longest wait", "longest_wait", "s"),
-    ("RMS jerk", "rms_jerk", "m/s³"),
-    ("Close passes: < 0.5 m at > 2 m/s", "close_passes", ""),
-    ("Smallest clearance", "minimum_clearance", "m"),
-    ("Serious conflicts", "conflicts", ""),
-    ("Pedestrians whom the ego moved into", "frontal_contacts", ""),
-    ("Smallest post-encroachment time", "minimum_pet", "s"),
-    ("People's delay, all together", "people_delay", "s"),
-)
 _HEIGHT = 720  # Height [px] of a replay in a notebook
 
 
@@ -81,11 +70,11 @@ def one_line(result: RunTables) -> str:
 def html_table(result: RunTables) -> str:
     """Return the most important numbers and the picture from above, for a notebook."""
     rows = []
-    for label, name, unit in _LINES:
-        values = [_number(ego.summary.get(name)) for ego in result.egos]
-        if any(values):
-            cells = "".join(f'<td style="text-align: right">{value}</td>' for value in values)
-            rows.append(f'<tr><td style="text-align: left">{label}</td>{cells}<td>{unit}</td></tr>')
+    for line in digest(result):
+        cells = "".join(f'<td style="text-align: right">{escape(v)}</td>' for v in line.values)
+        rows.append(
+            f'<tr><td style="text-align: left">{line.label}</td>{cells}<td>{line.unit}</td></tr>'
+        )
     title = escape(one_line(result)[1:-1].removeprefix("RunResult "))
     return f"<table><caption>{title}</caption>{''.join(rows)}</table>"
 
@@ -123,9 +112,3 @@ def replayed(result: RunTables) -> Replay:
         folder = Path(name)
         write_results(result, folder)
         return Replay(write_replay(folder, folder / "replay.html").read_text(encoding="utf-8"))
-
-
-def _number(value: float | None) -> str:
-    if value is None or not math.isfinite(value):
-        return ""
-    return str(value) if isinstance(value, int) else f"{value:.2f}"

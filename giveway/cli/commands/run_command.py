@@ -89,7 +89,7 @@ def run_command(
             raise
     if result.ending is Ending.INTERRUPTED:
         return interrupted(result, folder)
-    show(console, result, folder)
+    show(console, result, folder, explain=outputs.explain)
     if outputs.as_json:
         print_json(
             {
@@ -148,14 +148,19 @@ def _is_told_by_name(config: RunConfig) -> bool:
     return dump_toml(plain) == dump_toml(config)
 
 
-def show(console: Console, result: RunResult, folder: Path) -> None:
-    """Print the run's summary and the places of the files."""
-    from giveway.cli.screen.run_summary import summary_table
+def show(console: Console, result: RunResult, folder: Path, *, explain: bool = False) -> None:
+    """Print the run's summary, the places of the files, and what to look at first."""
+    from giveway.cli.screen.run_summary import explanation, summary_table
+    from giveway.results.digest import worth_watching
 
     console.print(summary_table(result))
+    if explain:
+        console.print(explanation(result))
     for remark in result.remarks:
         console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False)
+    name = escape(str(folder))
     files = ", ".join(sorted(path.name for path in folder.iterdir()))
-    console.print(
-        f"Results in [bold]{escape(str(folder))}[/bold]: {escape(files)}", highlight=False
-    )
+    console.print(f"Results in [bold]{name}[/bold]: {escape(files)}", highlight=False)
+    moment = worth_watching(result)
+    watch = f"{escape(moment)}; " if moment else ""
+    console.print(f"Look: {watch}[bold]giveway replay {name}[/bold] plays it", highlight=False)
