@@ -3,6 +3,7 @@
 import multiprocessing
 from collections.abc import Sequence
 from multiprocessing.connection import Connection
+from multiprocessing.resource_tracker import ensure_running
 from typing import Any
 
 import typer
@@ -15,7 +16,7 @@ from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.conformance.battery import Begins, Finding
 from giveway.plug_ins.sockets import CONTROLLER, METRIC, MODEL, RULE, SENSOR, TABLES, Socket
-from giveway.processes.interrupts import deaf_children
+from giveway.processes.interrupts import DeferredInterrupt, deaf_children, ended_by
 from pedestrian_model import JUPEDSIM_MODELS
 
 LIMIT = 60.0  # Time limit [s] of a rule; most take a tenth of a second
@@ -91,11 +92,15 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
     process = spawn.Process(
         target=_battery, args=(theirs, config.model_dump_json(), socket.what), daemon=True
     )
-    with deaf_children():  # this process alone says that the user has ended it
-        process.start()
-    theirs.close()
     begun: list[str] = []
     try:
+        # This process alone says that the user has ended it, and not before the other has its task.
+        ensure_running()  # else it would be started in between, and let the signals through
+        with deaf_children(), DeferredInterrupt() as interrupt:
+            process.start()
+        if interrupt.requested:
+            raise ended_by(DeferredInterrupt.latest)
+        theirs.close()
         while ours.poll(limit if begun else limit + _START):
             message = ours.recv()
             if not isinstance(message, str):
@@ -106,8 +111,9 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
         process.join(_END)
         problem = f"ends the process (exit code {process.exitcode})"
     finally:
-        process.kill()
-        process.join()
+        if process.pid is not None:
+            process.kill()
+            process.join()
     *kept, broken = begun or ["can be made"]
     return [*((rule, "") for rule in kept), (broken, problem)]
 

@@ -17,6 +17,32 @@ def _has_begun_a_battery(process):
     return any(b"spawn_main" in Path(f"/proc/{c}/cmdline").read_bytes() for c in children)
 
 
+EARLY = """
+import os, signal, sys
+from multiprocessing import popen_spawn_posix
+from giveway.cli import main
+
+launch = popen_spawn_posix.util.spawnv_passfds
+
+def signalled(*words):
+    child = launch(*words)
+    if any(b"spawn_main" in os.fsencode(word) for word in words[1]):
+        os.kill(os.getpid(), signal.SIGTERM)
+    return child
+
+popen_spawn_posix.util.spawnv_passfds = signalled
+sys.argv = ["giveway", "check", "controller", "idm"]
+main()
+"""
+
+
+def test_a_signal_while_the_battery_gets_its_task_gives_one_line():
+    done = subprocess.run(
+        [sys.executable, "-c", EARLY], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stderr) == (143, "error: ended by SIGTERM\n")
+
+
 @pytest.mark.parametrize("later", [0.0, 0.05, 0.3])
 def test_control_c_from_the_terminal_gives_one_line(later):
     words = [sys.executable, "-m", "giveway", "check", "controller", "idm"]
