@@ -142,7 +142,7 @@ def _of_egos(egos: tuple[EgoResult, ...]) -> Iterator[Line]:
 
 def _of_people(result: RunTables) -> Iterator[Line]:
     """Yield the lines of a run without an ego."""
-    for label, name, unit in _OF_WALKS:
+    for label, name, unit in _OF_WALKS if result.walks is not None else ():
         yield Line("people", label, (formatted(result.summary[name], unit),), unit)
     ledger: dict[str, Any] = result.manifest["pedestrians"]
     for label, name in _COUNTED:

@@ -83,9 +83,10 @@ def test_a_position_that_stands_at_a_positive_speed_ends_the_run(zoo, giveway, t
 
 def test_ten_megabytes_of_talk_change_nothing(zoo, giveway, tmp_path):
     """5 MB a step to stdout, and messages."""
-    car = zoo.car(behaviour=["flood_stdout", "message_control"], at=AT)
+    at = 8.0  # [s] the checks before a run drive for longer than AT
+    car = zoo.car(behaviour=["flood_stdout", "message_control"], at=at)
     done = giveway(
-        *WORDS, "--time-limit", AT + 0.1, "--vehicle", car, "--profile", car.with_suffix(".toml")
+        *WORDS, "--time-limit", at + 0.1, "--vehicle", car, "--profile", car.with_suffix(".toml")
     )
     assert done.returncode == 0, done.stderr
     assert len(done.stdout) < 20_000

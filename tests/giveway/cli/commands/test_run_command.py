@@ -56,6 +56,13 @@ def test_the_readmes_run(type_outside: Type, tmp_path: Path) -> None:
     assert not done.stderr
 
 
+def test_a_run_in_which_nobody_is_has_a_summary(type_here: Type) -> None:
+    words = ("--pedestrians", 0, "--no-ego", "--time-limit", 1, "--no-pictures", "--explain")
+    done = type_here("run", "shared_space", *words)
+    assert done.returncode == 0, done.stderr
+    assert "Real-time factor" in done.stdout
+
+
 def test_runs_that_differ_have_folders_that_differ(type_here: Type, tmp_path: Path) -> None:
     short = ("--time-limit", 1, "--no-pictures", "--quiet")
     wanted = ([*short], [*short, "--ego-initial-speed", 2], [*short, "--two-sided"])
