@@ -1,14 +1,22 @@
 """The program ``giveway``: it builds and runs one command, whose end becomes an exit code."""
 
+import contextlib
 import io
 import os
 import sys
+import tempfile
 from collections.abc import Sequence
 
 from giveway._start.environment import out_of_memory
 from giveway.cli.exit import fail
 from giveway.errors import GivewayError
-from giveway.processes.interrupts import RaisedSignals, exit_code_of, who_ended
+from giveway.processes.interrupts import (
+    DeferredInterrupt,
+    RaisedSignals,
+    ended_by,
+    exit_code_of,
+    who_ended,
+)
 
 _SIGNALLED = 128  # Exit codes from here on tell of a signal
 _NO_THREAD = "can't start new thread"  # Python's message, which has no exception class of its own
@@ -97,8 +105,23 @@ def _named(error: OSError) -> str:
     return f"{where}: {error.strerror or error}"
 
 
+def _find_temporary_folder() -> None:
+    """Let Python find its folder for temporary files.
+
+    It tries it by a file, which a signal between two of its lines would leave there.
+
+    Raises:
+        KeyboardInterrupt: a signal has come.
+    """
+    with DeferredInterrupt() as interrupt, contextlib.suppress(OSError):
+        tempfile.gettempdir()
+    if interrupt.requested:
+        raise ended_by(interrupt.latest)
+
+
 def _run(words: Sequence[str]) -> int:
     """Run the command and return its exit code."""
+    _find_temporary_folder()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal may lack some characters

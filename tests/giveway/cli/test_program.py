@@ -56,6 +56,33 @@ def test_what_ends_a_command_is_one_line(type_here, monkeypatch, raised, code, l
     assert (done.returncode, done.stderr) == (code, f"error: {line}\n")
 
 
+WHILE_PYTHON_TRIES_A_FOLDER = """
+import os, signal, sys
+from giveway.cli import main
+
+opened = os.open
+
+def interrupted(path, *rest, **options):
+    made = opened(path, *rest, **options)
+    if os.path.dirname(os.fsdecode(path)) == os.environ["TMPDIR"]:
+        os.kill(os.getpid(), signal.SIGTERM)
+    return made
+
+os.open = interrupted
+sys.argv = ["giveway", "scenarios"]
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_a_signal_while_python_tries_the_temporary_folder_leaves_no_file(tmp_path):
+    program = [sys.executable, "-c", WHILE_PYTHON_TRIES_A_FOLDER]
+    environment = os.environ | {"TMPDIR": str(tmp_path)}
+    done = subprocess.run(program, capture_output=True, text=True, check=False, env=environment)
+    assert (done.returncode, done.stderr) == (143, "error: ended by SIGTERM\n")
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 @pytest.mark.parametrize(
     ("number", "code", "line"),
