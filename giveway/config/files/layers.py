@@ -28,7 +28,7 @@ Location = tuple[str, ...]
 PLUGGED = {socket.options: socket for socket in SOCKETS}
 """The tables whose keys are the options of plug-ins (--set)."""
 
-NO_FLAGS = frozenset({"draws", "egos", "measure", "flow", "recorded", *PLUGGED})
+NO_FLAGS = frozenset({"draws", "egos", "measure", "flow", "recorded", "scripted", *PLUGGED})
 """Keys without flags: lists of numbers or tables, and the tables of plug-ins' options."""
 
 
@@ -308,6 +308,7 @@ def dump_toml(config: RunConfig) -> str:
     for where, key, entries in (
         (crowd, "flow", [flow.settings() for flow in config.crowd.flow]),
         (crowd, "recorded", [entry.settings() for entry in config.crowd.recorded]),
+        (crowd, "scripted", [entry.settings() for entry in config.crowd.scripted]),
         (document, "egos", list(config.egos)),
         (document, "measure", [measure.settings() for measure in config.measure]),
     ):

@@ -25,6 +25,7 @@ from giveway.config.reasons import GAP, MILLIMETRE
 from giveway.config.tables.flows import FlowConfig, read_flows
 from giveway.config.tables.people import DISTRACTED, SHARE, PeopleConfig
 from giveway.config.tables.recorded import RECORDED, RecordedConfig, read_recorded
+from giveway.config.tables.scripted import ScriptedConfig, read_scripted
 
 DESIRED_SPEEDS: Final = (0.5, 2.2)
 """Bounds [m/s] of desired speeds by default (reading of Yang & Özgüner 2019; reproduction.md)."""
@@ -188,6 +189,10 @@ class CrowdConfig(Section):
         default=(), description="Recordings whose people enter as they were recorded"
     )
 
+    scripted: Annotated[tuple[ScriptedConfig, ...], BeforeValidator(read_scripted)] = Field(
+        default=(), description="People who walk straight on by a script, whatever vehicles do"
+    )
+
     draws: tuple[Annotated[float, Field(ge=-_UNLIKELY, le=_UNLIKELY)], ...] = Field(
         default=(),
         description="Standard normal numbers, three for each added person, that place people and "
@@ -202,7 +207,7 @@ class CrowdConfig(Section):
     @property
     def expects_people(self) -> bool:
         """True if people come in during the run."""
-        return bool(self.flow and self.flow_scale) or bool(self.recorded)
+        return bool(self.flow and self.flow_scale) or bool(self.recorded or self.scripted)
 
     @property
     def has_distracted(self) -> bool:
@@ -238,8 +243,7 @@ class CrowdConfig(Section):
                 f"walk = {self.walk}: expected at least {_NEAREST:g} m, or 0,0 for people who "
                 "stand: a shorter way is not a walk"
             )
-        if self.model == RECORDED:
-            self._require_recorded()
+        self._require_recorded()
         if self.draws:
             self._require_draws()
         return self
@@ -270,8 +274,13 @@ class CrowdConfig(Section):
             )
 
     def _require_recorded(self) -> None:
-        if not self.recorded:
+        if self.model == RECORDED and not (self.recorded or self.scripted):
             raise ValueError(
                 f"model = '{RECORDED}': nobody is recorded; name a recording in "
                 "[[crowd.recorded]] (path, dataset), or another model"
+            )
+        if self.scripted and self.model != RECORDED:
+            raise ValueError(
+                f"scripted '{self.scripted[0].name}': model = '{self.model}' does not know "
+                f"scripts; expected model = '{RECORDED}'"
             )

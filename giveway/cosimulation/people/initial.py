@@ -11,6 +11,7 @@ from giveway.cosimulation.people.arrivals import Arrivals, require_end
 from giveway.cosimulation.people.free_drive import free_drive
 from giveway.crowd.generation.encounters import FreeDrive
 from giveway.crowd.generation.flows import Flows
+from giveway.crowd.generation.scripted import ScriptedPeople
 from giveway.crowd.generation.sources import Source, Sources
 from giveway.crowd.generation.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.roster import Roster
@@ -107,6 +108,10 @@ def people_to_come(
         recorded = recorded_people(config, roster, time_step, files, network)
         sources += recorded
         places += [source.middle for source in recorded]
+    if crowd.scripted:
+        scripted = ScriptedPeople(crowd.scripted, roster)
+        sources.append(scripted)
+        places.append(scripted.middle)
     hosts = [crowd.host_edge] * len(places)
     if not crowd.host_edge:
         assert network is not None

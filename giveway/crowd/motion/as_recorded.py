@@ -1,4 +1,7 @@
-"""The model ``recorded``: people walk as they were recorded until a vehicle comes near."""
+"""The model ``recorded``: people walk as they were recorded until a vehicle comes near.
+
+People who walk by a script do so whatever comes.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -7,6 +10,7 @@ import numpy as np
 
 from giveway.crowd.motion.attention import distances
 from giveway.crowd.motion.neighbours import AroundModel
+from giveway.crowd.motion.scripted import ScriptedWalk
 from giveway.geometry.kernel import Array
 from pedestrian_model import OPEN_GROUND, Crowd, PedestrianModel, Surroundings, Vehicles
 
@@ -32,10 +36,12 @@ class WrittenWalks:
     Attributes:
         changes: Ids of people, each with True from when they react and False before, in the order
             in which it became known.
+        scripts: Walks of the people who never react, by their ids.
     """
 
     def __init__(self) -> None:
         self.changes: list[tuple[str, bool]] = []
+        self.scripts: dict[str, ScriptedWalk] = {}
         self._walks: dict[str, WrittenWalk] = {}
         self._reached: dict[str, int] = {}
 
@@ -118,3 +124,8 @@ class AsRecorded(AroundModel):
         for row, name in written:
             if name in self._walks:
                 crowd.position[row], crowd.velocity[row] = self._walks.go_on(name)
+        scripts = self._walks.scripts
+        for row, name in enumerate(self._names() if scripts else ()):
+            if name in scripts:
+                walk = scripts[name].go_on(vehicles, self.time_step)
+                crowd.position[row], crowd.velocity[row] = walk
