@@ -11,6 +11,7 @@ import numpy as np
 from giveway.config import RunConfig
 from giveway.config.tables.recorded import RECORDED
 from giveway.errors import MetricError
+from giveway.metrics.dummies import DUMMY, DummyMetric, DummyOptions
 from giveway.metrics.ego_fields import EGO_FIELDS
 from giveway.metrics.impacts import IMPACTS, ImpactMetric
 from giveway.metrics.pedestrians import WALK_SUMMARY_FIELDS
@@ -145,7 +146,7 @@ def measured(config: RunConfig, drive: Any) -> Measured:
 def declared(config: RunConfig) -> list[DeclaredMetric]:
     """Return the metrics of a run, each with its columns, in the order of the configuration.
 
-    The first of them are giveway's own, of people who walk as recorded and of impacts.
+    The first of them are giveway's own, of people who walk as recorded, impacts and dummies.
 
     Args:
         config: Configuration of the run.
@@ -157,14 +158,17 @@ def declared(config: RunConfig) -> list[DeclaredMetric]:
     """
     found: list[DeclaredMetric] = []
     owners = dict(_TAKEN)
-    for name, kind, wanted in (
-        (RECORDED, RecordedPeopleMetric, config.crowd.model == RECORDED),
-        (IMPACTS, ImpactMetric, config.metrics.impacts),
+    dummy = config.metrics.dummy
+    size = None if dummy is None else DummyOptions(dummy)
+    for name, kind, wanted, own in (
+        (RECORDED, RecordedPeopleMetric, config.crowd.model == RECORDED, None),
+        (IMPACTS, ImpactMetric, config.metrics.impacts, None),
+        (DUMMY, DummyMetric, dummy is not None, size),
     ):
         if wanted:
             ours = columns_of(kind.Columns)
             owners |= {column.name: "giveway" for column in ours}
-            found.append(DeclaredMetric(name, kind, None, ours))
+            found.append(DeclaredMetric(name, kind, own, ours))
     for name, settings in config.metrics.plugged_in.items():
         kind, options = load_class(name, METRIC, settings)
         if not callable(getattr(kind, METRIC.method, None)):

@@ -35,7 +35,14 @@ from giveway.results.effect import Effect
 from giveway.results.law import LawRows, others_of, people_from
 from giveway.run_data.outputs import Output
 from giveway.run_data.progress import Ending
-from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
+from giveway.run_data.tracks import (
+    NO_SIGHTS,
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PredictionTrack,
+    SightTrack,
+)
 from giveway.sumo.plain_drive import PlainDrives
 
 if TYPE_CHECKING:
@@ -62,6 +69,7 @@ class EgoResult:
         effect: Comparison of the people with those of the counterfactual run, or None without one.
         measured: Columns that metrics of other packages measured; empty if the run was recovered.
         hasty: Indices of people whose sudden start broke its safety layer's assumption.
+        sights: Changes of who is in sight of an ego of the run.
         plain: Drives of plain SUMO for the same trip, or None if there was to be none.
     """
 
@@ -80,6 +88,7 @@ class EgoResult:
     effect: Effect | None = None
     measured: Measured = NOTHING_MEASURED
     hasty: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    sights: SightTrack = NO_SIGHTS
     plain: PlainDrives | None = None
 
     @property
@@ -239,6 +248,7 @@ def results_of_egos(
         endings: Reason of each ego whose drive ended before the run.
     """
     crowd, background = rows.crowd_track(), rows.background_track()
+    sights = rows.sight_track()
     ways, signals, people = rows.ways(), rows.signal_track(), rows.people_track()
     recorded = list(rows.egos())
 
@@ -263,6 +273,7 @@ def results_of_egos(
             outputs=ego.outputs,
             road=road_of(ego),
             hasty=ego.hasty,
+            sights=sights,
         )
         for ego in recorded
     )

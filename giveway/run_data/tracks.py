@@ -256,6 +256,12 @@ class SightTrack:
     distance: NDArray[np.float64]  # (S,) [m] from the front bumper; NaN for who is lost
 
 
+NO_SIGHTS = SightTrack(
+    np.empty(0), np.empty(0, np.str_), np.empty(0, np.int64), np.empty(0, np.bool_), np.empty(0)
+)
+"""The track of a run whose egos perceive everybody."""
+
+
 @dataclass(frozen=True)
 class PeopleTrack:
     """The planned routes and desired speeds of pedestrians, as flat records in time order.
