@@ -174,6 +174,32 @@ class RiskEstimate(NamedTuple):
     ] = None
 
 
+class NcapChoice(NamedTuple):
+    """The car and the tests that the user wants to see."""
+
+    car: Annotated[
+        str, typer.Argument(metavar="CAR.FMU", help="Vehicle FMU, or a bundled one, like fmi2.")
+    ]
+    profile: Annotated[Path | None, typer.Option(help="Vehicle profile (TOML) of the FMU.")] = None
+    protocol: Annotated[str, typer.Option(help="euroncap, or r152 (UN R152).")] = "euroncap"
+    year: Annotated[str, typer.Option(help="Euro NCAP's protocol: 2026 or 2023.")] = "2026"
+    controller: Annotated[
+        str | None,
+        typer.Option(help="Add a table in which this controller drives. It is no rating."),
+    ] = None
+    config: Annotated[
+        Path | None,
+        typer.Option(help="A run's TOML file with the car's width, its sensors and its layer."),
+    ] = None
+    tests: Annotated[
+        list[str] | None, typer.Option("--only", metavar="TEST", help="A test; repeatable.")
+    ] = None
+    speeds: Annotated[
+        list[int] | None, typer.Option("--speed", help="A speed [km/h]; repeatable.")
+    ] = None
+    seed: Annotated[int, typer.Option(help="Seed of all runs.", min=0)] = 1
+
+
 class StudySeeds(NamedTuple):
     """The seeds of a study's runs."""
 

@@ -8,6 +8,7 @@ import typer
 from giveway.cli.help import Commands, JsonFlag
 from giveway.cli.option_groups import (
     BenchmarkChoice,
+    NcapChoice,
     NoTables,
     Pictures,
     RerunOutputs,
@@ -31,6 +32,7 @@ def add_studies(app: Commands) -> None:
     app.add("studies", _studies)
     app.add("benchmark", ungrouped(_benchmark))
     app.add("risk", ungrouped(_risk))
+    app.add("ncap", ungrouped(_ncap))
     app.add("rerun", ungrouped(_rerun))
     app.add("report", _report)
     app.add("replay", _replay)
@@ -137,6 +139,30 @@ def _risk(
         as_json,
     )
     raise typer.Exit(risk_command(request, StudyOptions(**computation._asdict())))
+
+
+def _ncap(
+    *,
+    choice: NcapChoice,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder (default results/ncap_CAR_PROTOCOL).")
+    ] = None,
+    computation: StudyComputation,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show the plan and the time it will take.")
+    ] = False,
+    quiet: NoTables = False,
+    as_json: JsonFlag = False,
+) -> None:
+    """Test a car's FMU as Euro NCAP or UN R152 do with pedestrians; resumable."""
+    from giveway.cli.commands.ncap_command import ncap_command
+    from giveway.ncap.request import NcapRequest
+    from giveway.studies.study_options import StudyOptions
+
+    values = choice._asdict() | {"tests": choice.tests or (), "speeds": choice.speeds or ()}
+    request = NcapRequest(**values, out=out)
+    shown = {"dry_run": dry_run, "quiet": quiet, "as_json": as_json}
+    raise typer.Exit(ncap_command(request, StudyOptions(**computation._asdict()), **shown))
 
 
 def _studies() -> None:

@@ -12,6 +12,7 @@ from fmus import VehicleProfile, make_profile
 from giveway.config.files.layers import options
 from giveway.config.option import declared
 from giveway.config.tables.recorded import RecordedConfig, RecordedOptions
+from giveway.config.tables.scripted import ScriptedConfig
 from giveway.metrics import (
     DELAY_FIELDS,
     DELAY_SUMMARY_FIELDS,
@@ -102,16 +103,22 @@ def test_every_option_is_documented_with_flag_unit_and_meaning() -> None:
         assert description in text
 
 
-def test_every_key_of_recorded_people_is_documented() -> None:
-    text = (DOCS / "options.md").read_text(encoding="utf-8")
-    for name, field in RecordedConfig.model_fields.items():
-        meaning = re.escape(str(field.description))
-        (row,) = re.findall(rf"^\| `{name}` \| .* \| {meaning} \|$", text, re.MULTILINE)
-        assert row.startswith(f"| `{name}` | {declared(field).get('unit') or ''} |")
+def test_every_key_of_recorded_and_scripted_people_is_documented() -> None:
+    whole = (DOCS / "options.md").read_text(encoding="utf-8")
+    for heading, config in (("recorded", RecordedConfig), ("scripted", ScriptedConfig)):
+        text = whole.partition(f"[[crowd.{heading}]]\n")[2].partition("\n#")[0]
+        require_keys(text, config)
     page = (DOCS / "recordings.md").read_text(encoding="utf-8")
     for name, field in RecordedOptions.model_fields.items():
         value = f'"{field.default}"' if isinstance(field.default, str) else field.default
         assert f"\n{name} = {value} " in page
+
+
+def require_keys(text: str, config: type) -> None:
+    for name, field in config.model_fields.items():
+        meaning = re.escape(str(field.description))
+        (row,) = re.findall(rf"^\| `{name}` \| .* \| {meaning} \|$", text, re.MULTILINE)
+        assert row.startswith(f"| `{name}` | {declared(field).get('unit') or ''} |")
 
 
 def toml_blocks(page: str) -> list[str]:

@@ -19,9 +19,18 @@ from giveway.studies.study_options import StudyOptions
 LOCK = ".lock"
 REPORT = "report.html"
 BENCHMARK = "benchmark.csv"
+COURSE = "course"
+"""Name of the folder with the road of tests, which is there before their study."""
+NCAP_FILES = ("ncap.csv", "ncap.html")
 RISK_TABLES = ("runs", "risk", "events", "stages", "severity", "why", "failures")
 _DERIVED_FILES = frozenset(
-    {*(f"{name}.csv" for name in (*TABLES, *RISK_TABLES)), PACKAGE, REPORT, BENCHMARK}
+    {
+        *(f"{name}.csv" for name in (*TABLES, *RISK_TABLES)),
+        *NCAP_FILES,
+        PACKAGE,
+        REPORT,
+        BENCHMARK,
+    }
 )
 _STUDY_FILES = (
     frozenset({*DEFINITIONS.values(), MANIFEST, RECORDS, ASIDE, "figures", "replays", "reruns"})
@@ -72,7 +81,7 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
         raise ResultsError(
             f"{out}: is a file; expected a folder for the study, name another with --out"
         )
-    present = {path.name for path in out.iterdir()} - {LOCK}
+    present = {path.name for path in out.iterdir()} - {LOCK, COURSE}
     foreign = sorted(name for name in present if finished_name(name) not in _STUDY_FILES)
     beginning = not (options.resume and present & _STUDY_FILES)
     if foreign and beginning:  # other files do no harm to a study that is resumed

@@ -1,0 +1,47 @@
+"""The tables of consumer tests in a terminal: a letter of the colour and the impact speed."""
+
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from giveway.cli.screen.printing import escape, numbers_of
+from giveway.ncap.table import DriverTable
+from giveway.reports.ncap_page import Square, lead_of, matrices_of
+
+_STYLES = {
+    "green": "green",
+    "yellow": "yellow",
+    "orange": "dark_orange",
+    "brown": "orange4",
+    "red": "red",
+    "failed": "bold red",
+}
+
+
+def print_ncap(console: Console, tables: Sequence[DriverTable]) -> None:
+    """Print the matrices of each driver, and the result in a sentence."""
+    for number, table in enumerate(tables):
+        if number:
+            heading = f"Not a Euro NCAP rating: {escape(table.driver)} drives"
+            console.print(heading, style="bold", highlight=False)
+        else:
+            console.print(table.protocol.title, style="bold", highlight=False)
+        for matrix in matrices_of(table):
+            lines = Table(*numbers_of(*(f"{speed}" for speed in matrix.speeds)), box=None)
+            for name, squares in matrix.rows:
+                lines.add_row(escape(name), *map(_shown, squares))
+            points = f" ({matrix.points})" if matrix.points else ""
+            console.print(f"{matrix.name}: {matrix.title}{points}", highlight=False)
+            console.print(lines)
+        console.print(lead_of(table), highlight=False)
+        if any(one.reacts_to_nobody for one in table.nobody):
+            console.print("[yellow]It brakes though nobody is there:[/] see the last matrix")
+
+
+def _shown(square: Square) -> str:
+    if not square.text:
+        return ""
+    style = _STYLES.get(square.colour, "")
+    text = escape(f"{square.letter} {square.text.removesuffix(' m/s²')}")
+    return f"[{style}]{text}[/]" if style else text

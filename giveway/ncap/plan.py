@@ -1,0 +1,190 @@
+"""The runs of a table: for each cell the car, the dummy and its script, as a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from giveway.config.files.layers import Layer, merge
+from giveway.geometry.bodies import BODY
+from giveway.metrics.dummies import DUMMY
+from giveway.ncap.course import DRIVE, GATE, LINE
+from giveway.ncap.protocol import KMH, Cell, Protocol, Test
+from giveway.studies.definition import StudyDefinition, make_definition
+
+HOLDER = "speed-holder"
+"""The driver of the tests: holds the speed, so that only the safety layer brakes."""
+OPEN, OBSTRUCTED = "open road", "parked cars"
+"""Names of the two roads."""
+FACTOR = "test"
+OF_CONTROLLER = ("controller_options", "controller_profile")
+"""Settings of the controller of the second table."""
+
+_LEAD = 4.0  # Time [s] of driving before the person sets out
+_BEYOND = 10.0  # Distance [m] that the car drives on behind the dummy's line
+_ALONE = 2.0  # Time [s] before the line, besides, of a run without a person
+_WALKS_ON = 12.0  # Distance [m] that the person walks on behind the meeting
+_DEPARTS = 1.0  # Time [s] of the departure, when the parked cars are there
+_LATENCY = 0.3  # Latency [s] of the sensor, as in docs/sight.md
+_FASTEST = 27.0  # Highest speed [m/s] of the car; the tests go up to 80 km/h
+
+
+@dataclass(frozen=True)
+class Planned:
+    """One run of a table.
+
+    Attributes:
+        label: Name of the run's cell in the study.
+        driver: Controller that drives.
+        road: Name of the road.
+        speed: Speed [km/h].
+        cell: Cell of the table, or None for a run without a person.
+    """
+
+    label: str
+    driver: str
+    road: str
+    speed: int
+    cell: Cell | None
+
+
+def runs_of(cells: tuple[Cell, ...], drivers: tuple[str, ...]) -> list[Planned]:
+    """Return all runs: driver by driver the cells, and each road and speed without a person."""
+    found: list[Planned] = []
+    for number, driver in enumerate(drivers):
+        own = "" if number == 0 else f" {driver}"
+        found += [
+            Planned(f"{cell.label}{own}", driver, road_of(cell.test), cell.speed, cell)
+            for cell in cells
+        ]
+        alone = {(road_of(cell.test), cell.speed) for cell in cells}
+        found += [
+            Planned(f"nobody, {road}, {speed} km/h{own}", driver, road, speed, None)
+            for road, speed in sorted(alone)
+        ]
+    return found
+
+
+def road_of(test: Test) -> str:
+    """Return the road of a test."""
+    return OBSTRUCTED if test.parked else OPEN
+
+
+def study_of(
+    name: str,
+    protocol: Protocol,
+    runs: list[Planned],
+    car: Mapping[str, Any],
+    courses: Mapping[str, Path],
+    seed: int,
+) -> StudyDefinition:
+    """Return the study whose cells are the runs of a table.
+
+    Args:
+        name: Name of the study.
+        protocol: Protocol.
+        runs: Runs.
+        car: Settings of the car, as in a run's TOML file.
+        courses: Scenario of each road.
+        seed: Seed of the runs.
+    """
+    width = width_of(car)
+    own = {key: car[key] for key in OF_CONTROLLER if key in car}
+    shared = {key: value for key, value in car.items() if key not in own}
+    levels = {}
+    for run in runs:
+        layers = [Layer("cell", _settings(protocol, run, width, courses))]
+        if run.driver != HOLDER:
+            layers.append(Layer("config", own))
+        elif "hidden_speed" not in car.get("safety", {}):
+            layers.append(Layer("holder", {"safety": {"hidden_speed": 0.0}}))
+        levels[run.label] = merge(layers)
+    common = Layer("ncap", _common())
+    values = {
+        "name": name,
+        "description": f"{protocol.title}: pedestrians by day",
+        "replications": 1,
+        "first_seed": seed,
+        "run": merge([common, Layer("car", shared)]),
+        "factors": {FACTOR: levels},
+    }
+    return make_definition(values, "giveway ncap")
+
+
+def width_of(car: Mapping[str, Any]) -> float:
+    """Return the width [m] of a car by its settings."""
+    return float(car.get("vehicle", {}).get("width") or BODY.width)
+
+
+def _common() -> dict[str, Any]:
+    """Return the settings that all runs share, and that the user may change."""
+    return {
+        "time_limit": 30.0,
+        "vehicle": {"speed_max": _FASTEST},
+        "ego": {"route": [DRIVE], "depart_time": _DEPARTS},
+        "crowd": {"host_edge": GATE, "zone": "none"},
+        "perception": {"sensor": "sight"},
+        "sensor_options": {"latency": _LATENCY},
+        "metrics": {DUMMY: [1.0, 1.0]},
+    }
+
+
+def _settings(
+    protocol: Protocol, run: Planned, width: float, courses: Mapping[str, Path]
+) -> dict[str, Any]:
+    """Return the settings of one run."""
+    speed, before = run.speed / KMH, _ALONE
+    values: dict[str, Any] = {
+        "scenario": str(courses[run.road]),
+        "controller": run.driver,
+        "regulation": {"reference_speed": round(speed, 6)},
+    }
+    if run.cell is not None:
+        dummy = protocol.dummy(run.cell.test)
+        person, before = script_of(protocol, run.cell, width)
+        values["crowd"] = {"model": "recorded", "scripted": [person]}
+        values["metrics"] = {DUMMY: [dummy.length, dummy.width]}
+    start = LINE - speed * (before + _LEAD)
+    values["ego"] = {
+        "depart_position": round(start, 3),
+        "initial_speed": round(speed, 6),
+        "travel_distance": round(LINE + _BEYOND - start, 3),
+    }
+    return values
+
+
+def script_of(protocol: Protocol, cell: Cell, width: float) -> tuple[dict[str, Any], float]:
+    """Return the script of a cell's dummy, and the time [s] of its walk to the meeting.
+
+    The dummy's box is met by the front when its reference point is at the hit point.
+
+    Args:
+        protocol: Protocol.
+        cell: Cell.
+        width: Width [m] of the car.
+    """
+    test, dummy = cell.test, protocol.dummy(cell.test)
+    pace, along = test.pace / KMH, test.walks == "along"
+    offset = width * (cell.hit / 100.0 - 0.5)
+    if along:  # the hit point counts from the right
+        walked = test.acceleration + cell.start
+        place = {"x": LINE - walked, "y": offset, "heading": 0.0}
+        front = LINE - dummy.length / 2.0
+    else:
+        walked = cell.start + offset + dummy.reference
+        side = -1.0 if test.walks == "from the right" else 1.0
+        place = {"x": LINE, "y": side * cell.start, "heading": -90.0 * side}
+        front = LINE - dummy.width / 2.0
+    person = {
+        "name": "dummy",
+        **{key: round(value, 6) for key, value in place.items()},
+        "speed": round(pace, 6),
+        "acceleration_distance": test.acceleration,
+        "distance": round(walked + _WALKS_ON, 6),
+        "meet_after": round(walked, 6),
+        "meet_x": round(front, 6),
+        "kind": dummy.kind,
+    }
+    return person, (walked + test.acceleration) / pace
