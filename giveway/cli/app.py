@@ -219,12 +219,12 @@ def _recover(
     recover_command(journal, out, force=force)
 
 
-def _scenarios() -> None:
+def _scenarios(as_json: JsonFlag = False) -> None:
     """List the bundled scenarios."""
+    from giveway.cli.screen.printing import print_list
     from sumo_scenarios import available, find
 
-    for name in available():
-        typer.echo(f"{name:14} {find(name).description}")
+    print_list({name: find(name).description for name in available()}, as_json=as_json)
 
 
 def _build_plot() -> Commands:

@@ -80,7 +80,6 @@ _EVERYDAY = frozenset(
         ("vehicle", "fmu"),
         ("vehicle", "profile"),
         ("crowd", "pedestrians"),
-        ("crowd", "two_sided"),
         ("regulation", "reference_speed"),
     }
 )

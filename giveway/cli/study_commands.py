@@ -165,13 +165,14 @@ def _ncap(
     raise typer.Exit(ncap_command(request, StudyOptions(**computation._asdict()), **shown))
 
 
-def _studies() -> None:
+def _studies(as_json: JsonFlag = False) -> None:
     """List the bundled studies."""
+    from giveway.cli.screen.printing import print_list
     from giveway.studies.definition import read_definition
     from giveway.studies.study_files import bundled_studies, find_study
 
-    for name in bundled_studies():
-        typer.echo(f"{name:14} {read_definition(find_study(name)).description}")
+    found = {name: read_definition(find_study(name)).description for name in bundled_studies()}
+    print_list(found, as_json=as_json)
 
 
 def _rerun(

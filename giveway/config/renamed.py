@@ -117,6 +117,7 @@ GONE_FLAGS: Final[Mapping[str, str]] = {
     "aim": "leave it out: a fit is for behaviour; [perception] model = 'drift' predicts better than"
     " a fit for displacement did",
     "held-out": "leave it out: judge a fit on another site (giveway data behave)",
+    "regulation-reference-speed": "write --desired-speed",
     "own-pace": "leave it out: people's desired speeds are those that they show",
 }
 """Removed flags that were never keys, each with what to do instead."""

@@ -30,7 +30,7 @@ from giveway.results.folder import Destination
 
 MANY = 600
 LONG = ["--pedestrians", str(MANY), "--spawn-area", "20,-200,120,-10", "--no-pictures"]
-LONG += ["--regulation-reference-speed", "0.1", "--time-limit", "120"]
+LONG += ["--desired-speed", "0.1", "--time-limit", "120"]
 
 
 def start(folder: Path, *words: str) -> subprocess.Popen[str]:

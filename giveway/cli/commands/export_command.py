@@ -74,7 +74,7 @@ def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
     """Return the parameters of one ego's controller."""
     if config.reference_speed == LANE:
         msg = f"[regulation] reference_speed = {LANE}: an exported controller has no lanes"
-        raise ConfigError(f"{msg}; give a speed, like --regulation-reference-speed 8 [m/s]")
+        raise ConfigError(f"{msg}; give a speed, like --desired-speed 8 [m/s]")
     own = make_controller(config, time_step)
     if not isinstance(own, SpeedController) or not isinstance(own.pid, Pid):
         msg = f"controller = {config.controller}: only the paper's controllers can be exported"

@@ -71,6 +71,15 @@ def print_json(content: dict[str, Any]) -> None:
     sys.stdout.write(json_text(content))
 
 
+def print_list(names: dict[str, str], *, as_json: bool) -> None:
+    """Print names with their descriptions, one line each, or as JSON."""
+    if as_json:
+        print_json(names)
+        return
+    for name, description in names.items():
+        sys.stdout.write(f"{name:14} {description}\n")
+
+
 @contextmanager
 def writing(file: Path, remedy: str) -> Iterator[None]:
     """Make the folder of a file that is about to be written.

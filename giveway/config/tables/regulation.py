@@ -16,6 +16,7 @@ class RegulationConfig(Section):
         "m/s",
         "Desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends. "
         f"By default it is lane, but {DEFAULT_SPEED:g} m/s for the paper's controllers",
+        flag="--desired-speed",
         least=0.1,
         because="a slower vehicle hardly moves, and no car is faster",
     )

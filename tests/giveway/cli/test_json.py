@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+import pytest
+
 from fmus import bundled_fmu
 
 if TYPE_CHECKING:
@@ -55,6 +57,13 @@ def test_findings(type_here: Type) -> None:
         found = json.loads(done.stdout)
         assert found["findings"]
         assert all(finding[key] and finding["text"] for finding in found["findings"])
+
+
+@pytest.mark.parametrize("listed", ["scenarios", "studies"])
+def test_a_list_has_the_same_names_and_descriptions(type_here: Type, listed: str) -> None:
+    found = json.loads(type_here(listed, "--json").stdout)
+    lines = type_here(listed).stdout.splitlines()
+    assert [line.split(maxsplit=1) for line in lines] == [list(item) for item in found.items()]
 
 
 def test_an_error_stays_one_line_on_standard_error(type_here: Type) -> None:

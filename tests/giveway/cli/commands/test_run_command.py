@@ -183,7 +183,7 @@ def step_of(journal: Path) -> int:
 def test_ctrl_c_keeps_the_rows_and_exits_130(tmp_path: Path) -> None:
     words = ["--pedestrians", "1000", "--spawn-area", "20,-200,120,-10", "--out", "r"]
     words += ["--ego-travel-distance", "70", "--no-pictures"]
-    words += ["--regulation-reference-speed", "0.2"]  # it takes its time
+    words += ["--desired-speed", "0.2"]  # it takes its time
     process = subprocess.Popen(
         [sys.executable, "-u", "-m", "giveway", "run", *words],
         cwd=tmp_path,
