@@ -64,7 +64,7 @@ def code(command: str) -> Maker:
 
 
 def drives_told(folder: Path) -> list[str]:
-    """The README's sentence about drives that succeed and drives that do not."""
+    """The cookbook's sentence about drives that succeed and drives that do not."""
     runs = Tables(folder).runs
     calm, free = runs[runs.people_below_ttc == 0], runs[runs.stops == 0]
     worst = runs.loc[runs.people_below_ttc.idxmax()]

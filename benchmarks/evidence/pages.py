@@ -107,7 +107,9 @@ SPEED = (
 PAGES: dict[str, Page] = {
     page.name: page
     for page in (
-        Page("readme", "README.md", (Block("encounter", samples.FIRST_DRIVES, drives_told),)),
+        Page(
+            "cookbook", "docs/cookbook.md", (Block("encounter", samples.FIRST_DRIVES, drives_told),)
+        ),
         Page(
             "controllers",
             "docs/controllers.md",
@@ -285,7 +287,7 @@ PAGES: dict[str, Page] = {
         ),
         Page(
             "front",
-            "README.md",
+            "docs/cookbook.md",
             (
                 _told(
                     "front",

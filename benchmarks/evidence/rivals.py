@@ -47,7 +47,7 @@ RIVALS = {
 its driving style if it has one."""
 KEPT = HOUSE / "giveway" / "studies" / "benchmark" / "rivals.csv"
 PAGE, BLOCK = HOUSE / "docs" / "benchmark.md", "rivals"
-FRONT = HOUSE / "README.md", "front"
+FRONT = HOUSE / "docs" / "cookbook.md", "front"
 OF_PAGE = Notation(", ", " of ", "-")
 
 
@@ -124,7 +124,9 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--runs", type=int, help="drives of each scene; then nothing is written")
     parser.add_argument("--page", action="store_true", help="write docs/benchmark.md, too")
-    parser.add_argument("--front", action="store_true", help="print README's table of kept rows")
+    parser.add_argument(
+        "--front", action="store_true", help="print the cookbook's table of kept rows"
+    )
     asked = parser.parse_args()
     if asked.front:
         print("\n".join(front(kept_rivals())))

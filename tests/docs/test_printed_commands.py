@@ -175,3 +175,24 @@ def test_a_printed_study_is_one(block: str, tmp_path: Path) -> None:
     file = tmp_path / "study.toml"
     file.write_text(block, encoding="utf-8")
     assert read_definition(file).factors
+
+
+def test_the_readmes_screen_is_that_of_its_first_drive(
+    type_here: Callable[..., CompletedProcess[str]],
+) -> None:
+    text = runner.README.read_text(encoding="utf-8")
+    first = next(words for words in commands_in(text) if words[:1] == ["run"])
+    shown = re.search(r"```text\n(.*?)```", text, re.DOTALL)
+    assert shown is not None
+    printed = [line.rstrip() for line in type_here(*first, "--no-pictures").stdout.splitlines()]
+    told = [line for line in shown[1].splitlines() if "Real-time" not in line]
+    assert [line for line in printed if line in told] == told
+    assert len(told) > 15
+
+
+def test_the_readme_is_short() -> None:
+    text = runner.README.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 110
+    assert len(text.split()) <= 750
+    assert len(commands_in(text)) <= 10
+    assert text.count("![") == 3

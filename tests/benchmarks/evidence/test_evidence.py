@@ -147,4 +147,4 @@ def test_stale_pages_are_listed_and_a_strange_page_is_refused(monkeypatch, capsy
     assert run("--check") == bool(expected)
     assert capsys.readouterr().out.split() == expected
     assert run("no-such-page") == 2
-    assert "expected one of readme" in capsys.readouterr().err
+    assert "expected one of cookbook" in capsys.readouterr().err
