@@ -216,11 +216,11 @@ def _estimate(
     else:
         probability, low, high = interval_of_repeats(each, confidence)
         if high > _SPAN * low:
+            high = min(high, plain)
             doubts.append(
                 f"the repeats disagree: the upper bound is {high / low:.0f} times the lower one; "
                 "raise the budget"
             )
-            high = min(high, plain)
     if scouted.low > high:
         doubts.append(
             f"scouts far from the usual inputs find {scouted.probability:.2g}: the chains missed "

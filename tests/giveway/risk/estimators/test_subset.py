@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 from giveway.risk.estimators import run_sampler, subset_simulation
+from giveway.risk.estimators.scouts import Scouted, scouts
 from giveway.risk.estimators.subset import interval_of_repeats
 
 
@@ -103,3 +104,18 @@ def test_the_interval_of_lognormal_estimates_covers_their_mean():
         _, low, high = interval_of_repeats(each, 0.95)
         covered += low <= 1.0 <= high
     assert covered >= 0.92 * 400
+
+
+def test_scouts_with_degenerate_weights_see_nothing():
+    """In ten dimensions a few of 600 scouts have nearly all the weight: they contradict nobody."""
+    beta = 2.9
+    vectors = scouts(10, 600, np.random.default_rng(2))
+    found = Scouted.of(vectors, vectors[:, 0] - beta)
+    assert found.events > 20
+    assert (found.probability, found.low, found.high) == (0.0, 0.0, 0.0)
+
+
+def test_scouts_in_the_plane_see_the_probability():
+    vectors = scouts(2, 2000, np.random.default_rng(2))
+    found = Scouted.of(vectors, vectors[:, 0] - 2.9)
+    assert found.low <= stats.norm.sf(2.9) <= found.high
