@@ -151,7 +151,9 @@ class RiskEstimate(NamedTuple):
 
     event: Annotated[
         str | None,
-        typer.Option(help="frontal (default), side, contact, impact>SPEED in km/h, or red-light."),
+        typer.Option(
+            help="frontal (default), side, contact, impact>SPEED in km/h, mais3 or red-light."
+        ),
     ] = None
     method: Annotated[
         str | None, typer.Option(help="monte-carlo (default), subset or importance.")

@@ -20,6 +20,7 @@ from giveway.metrics.conflicts import (
 from giveway.metrics.contacts import FRONTAL, MOVING, SIDE, impacts
 from giveway.run_data.columns import Quantity
 
+CHILD = "child"  # Kind of a person
 IMPACTS = "impacts"  # Key of [metrics] that adds these columns
 
 
@@ -40,6 +41,13 @@ class ImpactMetric:
             float,
             Quantity("m/s", "largest relative speed at a contact at a side; empty: none"),
         ]
+        adult_impact_speed: Annotated[
+            float,
+            Quantity("m/s", "the same, of people who are no children; empty: none", better="lower"),
+        ]
+        child_impact_speed: Annotated[
+            float, Quantity("m/s", "the same, of children; empty: none", better="lower")
+        ]
         clearance_ahead: Annotated[
             float,
             Quantity(
@@ -53,12 +61,14 @@ class ImpactMetric:
         Args:
             drive: :class:`~giveway.results.ego_result.EgoResult` of the ego.
         """
-        frontal, side, ahead = nan, nan, inf
+        adult, child, side, ahead = nan, nan, nan, inf
         body = drive.shape, drive.body_radius
         for people in drive.crowd.by_people():
             near = proximity(drive.track, people, *body)
             kinds, speeds = impacts(drive.track, people, *body, near.clearance)
-            frontal = float(np.fmax(frontal, _largest(speeds[kinds == FRONTAL])))
+            is_child = np.array([kind == CHILD for kind in people.kinds] or [False] * len(speeds))
+            adult = float(np.fmax(adult, _largest(speeds[(kinds == FRONTAL) & ~is_child])))
+            child = float(np.fmax(child, _largest(speeds[(kinds == FRONTAL) & is_child])))
             side = float(np.fmax(side, _largest(speeds[kinds == SIDE])))
             ahead = _clearance_ahead(
                 centre_poses(drive.track, drive.shape),
@@ -67,7 +77,8 @@ class ImpactMetric:
                 contact_body(*body),
                 ahead,
             )
-        return self.Columns(frontal, side, ahead if ahead < inf else nan)
+        frontal = float(np.fmax(adult, child))
+        return self.Columns(frontal, side, adult, child, ahead if ahead < inf else nan)
 
 
 def _largest(speeds: NDArray[np.float64]) -> float:

@@ -25,8 +25,8 @@ class RiskDefinition(Section):
     name: Name = Field(description="Name of the folder results/risk_NAME")
     event: str = Field(
         "frontal",
-        description="The event: frontal, side, contact, impact>SPEED with a speed in km/h, or "
-        "red-light",
+        description="The event: frontal, side, contact, impact>SPEED with a speed in km/h, "
+        "mais3 or red-light",
     )
     method: Method = Field("monte-carlo", description="The estimator of the probability")
     criticality: Measure = Field(

@@ -10,12 +10,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from giveway.errors import ConfigError
+from giveway.risk.severity import injury_at_contact
 from giveway.studies.record import RunRecord
 
 Measure = Literal["deceleration", "clearance", "ttc"]
 MEASURES: tuple[Measure, ...] = ("deceleration", "clearance", "ttc")
-EVENTS = ("frontal", "side", "contact", "impact>SPEED", "red-light")
+MAIS3 = "mais3"
+EVENTS = ("frontal", "side", "contact", "impact>SPEED", MAIS3, "red-light")
 _IMPACT = re.compile(r"impact\s*>\s*([0-9]+(?:\.[0-9]+)?)")
 _KMH = 3.6  # km/h in a m/s
 _NEVER = -1e3  # Criticality of a run in which nobody came near
@@ -45,16 +49,23 @@ class Event:
         """True if runs without the event have different criticality."""
         return self.name != "red-light"
 
-    def criticality(self, record: RunRecord, measure: Measure) -> float:
+    def criticality(
+        self, record: RunRecord, measure: Measure, injury_draw: float = math.nan
+    ) -> float:
         """Return the criticality of a run: the largest of its egos, or nan without a result.
 
         Args:
             record: Record of the run.
             measure: Measure of how close a run without the event came to it.
+            injury_draw: Uniform number that draws whether the contact injures.
         """
         if record.failed:
             return math.nan
-        return max((self._of_ego(row, measure) for row in record.rows), default=_NEVER)
+        if self.name == MAIS3:
+            each = [_of_injury(row, measure, injury_draw) for row in record.rows]
+        else:
+            each = [self._of_ego(row, measure) for row in record.rows]
+        return float(np.max(each)) if each else _NEVER  # nan if that of one ego is
 
     def _of_ego(self, row: Mapping[str, Any], measure: Measure) -> float:
         if self.name == "red-light":
@@ -70,6 +81,16 @@ class Event:
         if not math.isnan(speed):
             return speed - self.speed
         return min(_NEARLY, _distance_from(row, measure)) - self.speed
+
+
+def _of_injury(row: Mapping[str, Any], measure: Measure, draw: float) -> float:
+    """Return by how much the probability of an injury exceeds its draw, or nan if not known.
+
+    It is in (-1, 1) with a frontal contact, and less than -1 without one.
+    """
+    if math.isnan(_number(row, "frontal_impact_speed")):
+        return min(_NEARLY, _distance_from(row, measure)) - 1.0
+    return injury_at_contact(row) - draw
 
 
 def _distance_from(row: Mapping[str, Any], measure: Measure) -> float:

@@ -20,6 +20,7 @@ from giveway.errors import ConfigError, suggestion
 
 CROWD = "crowd"  # Name of the input that places people by components of their own
 SEED = 0  # Component of the seed
+INJURY = "injury"  # Name of the draw whether a contact injures
 NOISE = "noise"  # Name of what the seed draws
 _SEEDS = 2**31 - 1  # Number of seeds
 _NUMBERS = {
@@ -90,29 +91,41 @@ class RandomInputs:
     Attributes:
         scalars: Options that are random.
         people: Number of people who are placed by components of their own; 0: the seed does.
+        draws_injury: Whether the last component draws whether a contact injures.
     """
 
     scalars: tuple[RandomInput, ...]
     people: int
+    draws_injury: bool = False
 
     @property
     def dimension(self) -> int:
         """The number of components of the vector."""
+        return self._end_of_people + self.draws_injury
+
+    @property
+    def _end_of_people(self) -> int:
         return 1 + len(self.scalars) + DRAWS_PER_PERSON * self.people
 
     @property
     def groups(self) -> dict[str, list[int]]:
         """The components of each purpose: the noise by the seed, each input, the people."""
         scalars = {one.name: [1 + number] for number, one in enumerate(self.scalars)}
-        people = list(range(1 + len(self.scalars), self.dimension))
-        return {NOISE: [SEED], **scalars, **({CROWD: people} if people else {})}
+        people = list(range(1 + len(self.scalars), self._end_of_people))
+        injury = list(range(self._end_of_people, self.dimension))
+        placed = {name: found for name, found in ((CROWD, people), (INJURY, injury)) if found}
+        return {NOISE: [SEED], **scalars, **placed}
+
+    def injury_draw(self, vector: NDArray[np.float64]) -> float:
+        """Return the uniform number that draws the injury of a vector (dimension,), or nan."""
+        return float(ndtr(vector[-1])) if self.draws_injury else math.nan
 
     def settings(self, vector: NDArray[np.float64]) -> dict[str, Any]:
         """Return the settings of the run that a vector (dimension,) makes."""
         seed = 1 + min(int(float(ndtr(vector[SEED])) * _SEEDS), _SEEDS - 1)
         values = {"seed": seed, **self.values(vector)}
         if self.people:
-            values["crowd.draws"] = vector[1 + len(self.scalars) :].tolist()
+            values["crowd.draws"] = vector[1 + len(self.scalars) : self._end_of_people].tolist()
         return undotted(values)
 
     def values(self, vector: NDArray[np.float64]) -> dict[str, Any]:

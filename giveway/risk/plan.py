@@ -28,7 +28,7 @@ from giveway.risk.estimators import (
     sobol_indices,
     subset_simulation,
 )
-from giveway.risk.events import Event, read_event
+from giveway.risk.events import MAIS3, Event, read_event
 from giveway.risk.inputs import CROWD, SEED, RandomInputs, people_placed, read_inputs
 from giveway.scenario_files.declared_ids import declares_people, declares_traffic
 from giveway.studies.identity import (
@@ -116,9 +116,11 @@ class RiskPlan:
         made_by = software_identity(), relevant_versions()
         return Task(run.id, run.key, text, self.hashes, *made_by)
 
-    def criticality(self, record: RunRecord) -> float:
+    def criticality(self, run: RiskRun, record: RunRecord) -> float:
         """Return the criticality of a run."""
-        return self.event.criticality(record, self.definition.criticality)
+        return self.event.criticality(
+            record, self.definition.criticality, self.inputs.injury_draw(run.vector)
+        )
 
     def sampler(self) -> Sampler:
         """Return the estimator at its beginning."""
@@ -169,9 +171,10 @@ def _asked(
     try:
         batch = next(vectors)
         while True:
-            records = yield plan.runs(batch, first)
+            runs = plan.runs(batch, first)
+            records = yield runs
             first += len(batch)
-            batch = vectors.send(np.array([plan.criticality(record) for record in records]))
+            batch = vectors.send(np.array(list(map(plan.criticality, runs, records))))
     except StopIteration as end:
         return end.value
 
@@ -202,7 +205,8 @@ def plan_risk(definition: RiskDefinition, origin: str, trusted: Collection[str] 
     scalars = read_inputs(definition.inputs, origin)
     layer = Layer(origin, _shared(definition), results=results_of(Path(origin)))
     config, scenario = load([layer], trusted)
-    inputs = RandomInputs(scalars, people_placed(config, definition.inputs.get(CROWD), origin))
+    people = people_placed(config, definition.inputs.get(CROWD), origin)
+    inputs = RandomInputs(scalars, people, event.name == MAIS3)
     _require_randomness(inputs, config, scenario, origin)
     hashes = input_hashes(config, scenario)
     common = cell_digest(config, hashes, software_identity())

@@ -11,8 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from giveway.config.tables.crowd import CrowdConfig
-
 _KMH = 3.6  # km/h in a m/s
 _MPH = 1.609344  # km/h in a mile per hour
 # Tefft 2013: impact speeds [mph] at which the average risk of death reaches these shares
@@ -122,20 +120,22 @@ CURVES = (
 """The curves; the first one is the default for deaths."""
 
 
-def may_be_children(crowd: CrowdConfig) -> bool:
-    """Return whether an added person may be a child, for whom no curve holds."""
-    each = (crowd.people, *(flow.people for flow in crowd.flow if flow.people is not None))
-    return any(people.child > 0.0 for people in each)
+def injury_at_contact(row: Mapping[str, Any]) -> float:
+    """Return the probability of MAIS3+ at an ego's frontal contact; nan outside validity."""
+    curve = next(one for one in CURVES if one.outcome == _MAIS3)
+    is_child = not math.isnan(_speed(row, "child_impact_speed"))
+    return math.nan if is_child else curve.at(_speed(row, "adult_impact_speed"))
 
 
 @dataclass(frozen=True)
 class Severity:
-    """The injuries in the runs with a frontal contact, by one curve.
+    """The injuries at the frontal contacts of all runs, by one curve.
 
     Attributes:
         curve: Name of the curve.
         outcome: Injury: death or MAIS3+.
-        impacts: Number of runs with a frontal contact.
+        impacts: Number of frontal contacts; of an ego the fastest with an adult, and with a child.
+        children: Number of these with a child, for whom no curve holds.
         valid: Number of these for which the curve holds.
         mean: Mean probability of the injury in these; nan if there is none.
     """
@@ -143,23 +143,35 @@ class Severity:
     curve: str
     outcome: str
     impacts: int
+    children: int
     valid: int
     mean: float
 
+    @property
+    def holds_for_adults(self) -> bool:
+        """True if the curve holds for every contact with an adult."""
+        return self.impacts - self.children == self.valid > 0
 
-def severities(rows: Sequence[Mapping[str, Any]], *, children: bool) -> list[Severity]:
+
+def severities(rows: Sequence[Mapping[str, Any]]) -> list[Severity]:
     """Return the injuries by each curve.
 
     Args:
         rows: Summaries of the egos of all runs.
-        children: Whether the people hit may be children.
     """
-    speeds = [float(row.get("frontal_impact_speed") or math.nan) for row in rows]
-    impacts = [speed for speed in speeds if not math.isnan(speed)]
+    adults, children = (
+        [speed for row in rows if not math.isnan(speed := _speed(row, name))]
+        for name in ("adult_impact_speed", "child_impact_speed")
+    )
     found = []
     for curve in CURVES:
-        risks = [] if children else [curve.at(speed) for speed in impacts]
-        valid = [risk for risk in risks if not math.isnan(risk)]
+        valid = [risk for speed in adults if not math.isnan(risk := curve.at(speed))]
         mean = float(np.mean(valid)) if valid else math.nan
-        found.append(Severity(curve.name, curve.outcome, len(impacts), len(valid), mean))
+        impacts = len(adults) + len(children), len(children)
+        found.append(Severity(curve.name, curve.outcome, *impacts, len(valid), mean))
     return found
+
+
+def _speed(row: Mapping[str, Any], name: str) -> float:
+    speed = row.get(name)
+    return math.nan if speed is None else float(speed)

@@ -10,9 +10,15 @@ import numpy as np
 import pandas as pd
 
 from giveway.metrics.ego_fields import EGO_FIELDS
+from giveway.risk.cause_tables import (
+    GIVEN_EVENT_COLUMNS,
+    LIKELIEST_COLUMNS,
+    given_event_frame,
+    likeliest_frame,
+)
 from giveway.risk.estimators import Estimate, SobolIndex, Stage, clopper_pearson
 from giveway.risk.risk_folder import RiskFolder
-from giveway.risk.severity import Severity, may_be_children, severities
+from giveway.risk.severity import Severity, severities
 from giveway.run_data.columns import Column
 from giveway.studies.folder.frames import FAILURE_COLUMNS, measured_columns
 from giveway.studies.folder.table_files import write_described
@@ -21,6 +27,7 @@ from giveway.studies.record import CRASHED
 _KM = 1000.0  # m in a km
 _PROBABILITIES = frozenset(
     {"probability", "low", "high", "mean", "in_a_run", "per_km", "per_km_low", "per_km_high"}
+    | {"index", "index_low", "index_high"}
 )
 _STAGE_MEANINGS = {
     "repeat": (None, "number of the repeat"),
@@ -49,7 +56,12 @@ RISK_COLUMNS = (
     Column("per_km_high", "number", "1/km", "upper bound"),
     Column("runs", "integer", None, "runs that were used"),
     Column("events", "integer", None, "of these, runs with the event"),
-    Column("failed", "integer", None, "of these, runs without a result"),
+    Column(
+        "failed",
+        "integer",
+        None,
+        "of these, runs without a result, or with an injury that is not known",
+    ),
     Column(
         "doubts", "string", None, "reasons for which the interval may not hold; empty: none known"
     ),
@@ -57,10 +69,21 @@ RISK_COLUMNS = (
 SEVERITY_COLUMNS = (
     Column("curve", "string", None, "authors and year of the curve"),
     Column("outcome", "string", None, "injury: death or MAIS3+"),
-    Column("impacts", "integer", None, "egos with a frontal contact in all runs"),
+    Column(
+        "impacts",
+        "integer",
+        None,
+        "frontal contacts in all runs: of an ego one adult and one child",
+    ),
+    Column("children", "integer", None, "of these, those with a child: outside validity"),
     Column("valid", "integer", None, "of these, those for which the curve holds"),
     Column("mean", "number", None, "mean probability of the injury in these; empty: outside"),
-    Column("in_a_run", "number", None, "probability of the injury in a run; empty: not known"),
+    Column(
+        "in_a_run",
+        "number",
+        None,
+        "probability of the injury of an adult in a run; empty: not known",
+    ),
     Column("low", "number", None, "lower bound, for the number of impacts"),
     Column("high", "number", None, "upper bound, for the number of impacts"),
 )
@@ -113,7 +136,7 @@ def per_kilometre(folder: RiskFolder, estimate: Estimate) -> PerKilometre:
 
     The estimators' other runs are drawn near the event, and their distances are not usual ones.
     """
-    plain = _plain_runs(folder)
+    plain = plain_runs(folder)
     distances = [
         sum(float(row.get("travelled_distance") or 0.0) for row in record.rows)
         for _, record in folder.runs[plain]
@@ -126,7 +149,7 @@ def per_kilometre(folder: RiskFolder, estimate: Estimate) -> PerKilometre:
     return PerKilometre(distance, *(number / distance for number in numbers))
 
 
-def _plain_runs(folder: RiskFolder) -> slice:
+def plain_runs(folder: RiskFolder) -> slice:
     """Return the runs that are drawn from the inputs' own distribution."""
     definition, estimate = folder.plan.definition, folder.estimate
     if definition.method == "monte-carlo":
@@ -152,6 +175,8 @@ def write_risk_tables(folder: RiskFolder) -> None:
         "events": (events_frame(folder), _EVENT_COLUMNS),
         "severity": (severity_frame(folder), SEVERITY_COLUMNS),
         "why": (why_frame(folder.indices), WHY_COLUMNS),
+        "given_event": (given_event_frame(folder), GIVEN_EVENT_COLUMNS),
+        "likeliest": (likeliest_frame(folder), LIKELIEST_COLUMNS),
         "failures": (failures_frame(folder), FAILURE_COLUMNS),
     }
     title = f"giveway risk {name}"
@@ -184,23 +209,22 @@ def stages_frame(stages: Sequence[Stage]) -> pd.DataFrame:
 
 def severities_of(folder: RiskFolder) -> list[Severity]:
     """Return the injuries at the frontal contacts of all runs, by each curve."""
-    rows = [row for _, record in folder.runs for row in record.rows]
-    children = may_be_children(folder.plan.config(folder.runs[0][0].vector).crowd)
-    return severities(rows, children=children)
+    return severities([row for _, record in folder.runs for row in record.rows])
 
 
 def severity_frame(folder: RiskFolder) -> pd.DataFrame:
     """Return ``severity.csv``: a row per curve.
 
-    The probability in a run is known from plain runs alone, and if the curve holds for all impacts.
+    The probability in a run is known from plain runs alone, and if the curve holds for all
+    contacts with adults.
     """
     plain, runs = folder.plan.definition.method == "monte-carlo", len(folder.runs)
     rows = []
     for one in severities_of(folder):
-        known = plain and one.impacts == one.valid > 0
-        low, high = clopper_pearson(one.impacts, runs, folder.plan.definition.confidence)
+        known = plain and one.holds_for_adults
+        low, high = clopper_pearson(one.valid, runs, folder.plan.definition.confidence)
         scale = one.mean if known else math.nan
-        shares = {"in_a_run": one.impacts / runs, "low": low, "high": high}
+        shares = {"in_a_run": one.valid / runs, "low": low, "high": high}
         rows.append({**asdict(one), **{name: share * scale for name, share in shares.items()}})
     return pd.DataFrame(rows, columns=[column.name for column in SEVERITY_COLUMNS])
 
@@ -241,7 +265,7 @@ def runs_frame(folder: RiskFolder) -> pd.DataFrame:
         inputs = folder.plan.inputs
         head = {
             "run": run.id,
-            "criticality": folder.plan.criticality(record),
+            "criticality": folder.plan.criticality(run, record),
             "seed": inputs.settings(run.vector)["seed"],
             **inputs.values(run.vector),
         }

@@ -18,6 +18,8 @@ from giveway.risk.session import run_risk
 from giveway.risk.tables import per_kilometre
 from giveway.studies.study_options import StudyOptions
 
+_UNPRINTED = {"stages", "sample"}  # Attributes of an estimate that are no part of the JSON
+
 
 @dataclass(frozen=True)
 class RiskRequest:
@@ -53,7 +55,9 @@ def risk_command(request: RiskRequest, options: StudyOptions) -> int:
         write_pictures(folder)
     print_place(console, "Tables and picture", out)
     if request.as_json:
-        estimate = {key: value for key, value in asdict(folder.estimate).items() if key != "stages"}
+        estimate = {
+            key: value for key, value in asdict(folder.estimate).items() if key not in _UNPRINTED
+        }
         kilometre = asdict(per_kilometre(folder, folder.estimate))
         print_json({"risk": str(out), "event": definition.event, **estimate, "per_km": kilometre})
-    return 1 if folder.estimate.failed else 0
+    return 1 if any(record.failed for _, record in folder.runs) else 0

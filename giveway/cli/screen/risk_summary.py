@@ -1,10 +1,15 @@
 """The summary of a risk in a terminal."""
 
+from dataclasses import astuple
+
 from rich.console import Console
 from rich.table import Table
 
 from giveway.cli.screen.printing import escape, numbers_of
-from giveway.risk.estimators import LEAST_VECTORS
+from giveway.risk.cause_tables import given_event_row
+from giveway.risk.causes import components_of, conditions, events_known
+from giveway.risk.estimators import LEAST_EVENTS, LEAST_VECTORS
+from giveway.risk.events import MAIS3
 from giveway.risk.risk_folder import RiskFolder
 from giveway.risk.severity import Severity
 from giveway.risk.tables import per_kilometre, severities_of
@@ -38,9 +43,18 @@ def print_risk(console: Console, folder: RiskFolder) -> None:
             "of n plain runs).",
             highlight=False,
         )
+    if definition.event == MAIS3 and estimate.failed:
+        console.print(
+            f"In {estimate.failed:,} runs it is not known whether there was an injury: a child was "
+            "hit, or a speed was outside the curve's validity, or there was no result. They count "
+            "in the upper bound.",
+            highlight=False,
+        )
     for doubt in estimate.doubts:
         console.print(f"[yellow]The interval may not hold:[/] {escape(doubt)}", highlight=False)
     _print_why(console, folder)
+    if definition.why:
+        _print_given_event(console, folder)
     _print_severity(console, folder)
     _print_runs(console, folder)
 
@@ -65,12 +79,38 @@ def _print_why(console: Console, folder: RiskFolder) -> None:
         )
 
 
+def _print_given_event(console: Console, folder: RiskFolder) -> None:
+    """Print the inputs that differ most given the event, or that they are not known."""
+    found = conditions(folder)[:_LISTED]
+    known = events_known(folder)
+    if not found and components_of(folder):
+        console.print(
+            f"The inputs given the event are not known: {known:,} different vectors have it; "
+            f"expected {LEAST_EVENTS} or more: raise the budget",
+            highlight=False,
+        )
+    if not found:
+        return
+    table = Table(*numbers_of("index", "from", "to", "median", "given the event"), box=None)
+    for one in found:
+        index = (f"{value:.2g}" for value in astuple(one.index))
+        medians = (f"{values[1]:.4g}" for values in (one.own, one.given))
+        shown = medians if one.component.is_number else ("", given_event_row(one)["shares"])
+        table.add_row(escape(one.component.name), *index, *map(escape, shown))
+    console.print(
+        f"Inputs given the event, from {known:,} vectors: the share of its variance that each "
+        "explains alone",
+        highlight=False,
+    )
+    console.print(table)
+
+
 def _print_severity(console: Console, folder: RiskFolder) -> None:
     """Print the probability of each injury at a frontal contact by each curve."""
     found = [one for one in severities_of(folder) if one.impacts]
     for outcome in dict.fromkeys(one.outcome for one in found):
         mine = [one for one in found if one.outcome == outcome]
-        means = [one.mean for one in mine if one.valid == one.impacts]
+        means = [one.mean for one in mine if one.holds_for_adults]
         spread = ""
         if len(means) > 1:
             spread = f"; the curves differ by a factor of {max(means) / min(means):.1f}"
@@ -82,15 +122,16 @@ def _print_severity(console: Console, folder: RiskFolder) -> None:
 
 
 def _by_curve(one: Severity) -> str:
-    if one.valid == one.impacts:
-        return f"{100.0 * one.mean:.2g} % ({one.curve})"
     outside = one.impacts - one.valid
-    return f"outside validity ({one.curve}; {outside} of {one.impacts} contacts)"
+    told = f"{outside} of {one.impacts} contacts outside validity"
+    if not one.valid:
+        return f"outside validity ({one.curve}; {outside} of {one.impacts} contacts)"
+    return f"{100.0 * one.mean:.2g} % ({one.curve}{f'; {told}' if outside else ''})"
 
 
 def _print_runs(console: Console, folder: RiskFolder) -> None:
     """Print the worst runs with the event, and how to make one again."""
-    found = [(folder.plan.criticality(record), run.id) for run, record in folder.runs]
+    found = [(folder.plan.criticality(run, record), run.id) for run, record in folder.runs]
     worst = sorted(((c, run) for c, run in found if c >= 0.0), reverse=True)
     if worst:
         names = ", ".join(run for _, run in worst[:_LISTED])

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import nan
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from giveway.figures.style import BLACK, BLUE, GREY, SKY_BLUE, quiet_grid, styled
+from giveway.figures.style import BLACK, BLUE, GREY, SKY_BLUE, VERMILION, quiet_grid, styled
 
 _SIZE = 5.5, 3.4  # Width and height [inch]
 _LOWEST = 0.3  # Smallest drawn probability, as a share of the smallest one above 0
@@ -75,6 +77,38 @@ def levels_figure(
     )
     axes.set_xlabel("criticality")
     axes.set_ylabel("probability in a run to exceed it")
+    return figure
+
+
+@styled
+def region_figure(
+    others: NDArray[np.float64], events: NDArray[np.float64], names: tuple[str, str], title: str
+) -> Figure:
+    """Draw the runs with the event among the others in the plane of two inputs.
+
+    Args:
+        others: Values (n, 2) of runs without the event.
+        events: Values (m, 2) of runs with it.
+        names: Names of the inputs.
+        title: Title of the figure.
+    """
+    figure, axes = _panel(title)
+    axes.set_yscale("linear")
+    axes.scatter(
+        others[:, 0], others[:, 1], s=6.0, color=GREY, alpha=0.5, linewidth=0.0, label="no event"
+    )
+    axes.scatter(
+        events[:, 0],
+        events[:, 1],
+        s=14.0,
+        color=VERMILION,
+        marker="x",
+        linewidth=0.9,
+        label="event",
+    )
+    axes.set_xlabel(names[0])
+    axes.set_ylabel(names[1])
+    axes.legend(loc="upper right")
     return figure
 
 

@@ -7,7 +7,13 @@ result.
 """
 
 from giveway.risk.estimators import importance, subset
-from giveway.risk.estimators.estimate import Estimate, Sampler, Stage, run_sampler
+from giveway.risk.estimators.estimate import Estimate, EventSample, Sampler, Stage, run_sampler
+from giveway.risk.estimators.given_event import (
+    LEAST_EVENTS,
+    EventIndex,
+    event_index,
+    weighted_quantiles,
+)
 from giveway.risk.estimators.importance import importance_sampling
 from giveway.risk.estimators.monte_carlo import clopper_pearson, monte_carlo
 from giveway.risk.estimators.sobol import LEAST_VECTORS, SobolIndex, sobol_indices
@@ -18,15 +24,20 @@ LEAST_BUDGETS = {"subset": subset.LEAST_BUDGET, "importance": importance.LEAST_B
 
 __all__ = [
     "LEAST_BUDGETS",
+    "LEAST_EVENTS",
     "LEAST_VECTORS",
     "Estimate",
+    "EventIndex",
+    "EventSample",
     "Sampler",
     "SobolIndex",
     "Stage",
     "clopper_pearson",
+    "event_index",
     "importance_sampling",
     "monte_carlo",
     "run_sampler",
     "sobol_indices",
     "subset_simulation",
+    "weighted_quantiles",
 ]

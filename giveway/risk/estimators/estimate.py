@@ -1,7 +1,7 @@
 """An estimated probability, its interval, and the reasons to doubt it."""
 
 from collections.abc import Callable, Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,21 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class EventSample:
+    """Vectors that are distributed as the inputs given the event.
+
+    Attributes:
+        vectors: Vectors (n, d); those of a chain may repeat.
+        weights: Weight (n,) of each, in any unit.
+        sources: Number (n,) of the independent source of each: a run, or a repeat with its chains.
+    """
+
+    vectors: Array
+    weights: Array
+    sources: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
 class Estimate:
     """The probability of the event in one run.
 
@@ -48,6 +63,7 @@ class Estimate:
         doubts: Reasons for which the interval may not hold, each a sentence; empty if none is
             known.
         stages: Stages of the estimate in their order.
+        sample: Vectors given the event, or None without one.
     """
 
     probability: float
@@ -58,6 +74,7 @@ class Estimate:
     failed: int
     doubts: tuple[str, ...] = ()
     stages: tuple[Stage, ...] = ()
+    sample: EventSample | None = field(default=None, compare=False, repr=False)
 
 
 Sampler = Generator[Array, Array, Estimate]

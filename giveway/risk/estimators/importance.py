@@ -13,7 +13,7 @@ import numpy as np
 from scipy import stats
 from scipy.special import logsumexp
 
-from giveway.risk.estimators.estimate import Array, Estimate, Sampler, Stage
+from giveway.risk.estimators.estimate import Array, Estimate, EventSample, Sampler, Stage
 from giveway.risk.estimators.monte_carlo import clopper_pearson
 from giveway.risk.estimators.scouts import spread
 
@@ -137,8 +137,9 @@ def importance_sampling(
         doubts.append(f"{failed} runs have no result, and count as runs without the event")
     probability, low, high, more = _weighted(weights, confidence)
     stages.append(Stage(1, len(stages) + 1, rest, 0.0, float(met.mean()), 0.0, 1.0, probability))
-    found = (*doubts, *more)
-    return Estimate(probability, low, high, budget, int(met.sum()), failed, found, tuple(stages))
+    found, events = (*doubts, *more), int(met.sum())
+    sample = EventSample(vectors[met], weights[met], np.arange(events)) if events else None
+    return Estimate(probability, low, high, budget, events, failed, found, tuple(stages), sample)
 
 
 def _weighted(weights: Array, confidence: float) -> tuple[float, float, float, list[str]]:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import stats
 
-from giveway.risk.estimators.estimate import Estimate, Sampler
+from giveway.risk.estimators.estimate import Array, Estimate, EventSample, Sampler
 
 BATCH = 10_000  # Largest number of vectors in memory
 
@@ -23,14 +23,19 @@ def monte_carlo(
         confidence: Confidence of the interval.
     """
     events = failed = 0
+    met: list[Array] = []
     for first in range(0, runs, BATCH):
         size = min(BATCH, runs - first)
-        criticality = yield random.standard_normal((size, dimension))
+        vectors = random.standard_normal((size, dimension))
+        criticality = yield vectors
+        met.append(vectors[criticality >= 0.0])
         events += int(np.count_nonzero(criticality >= 0.0))
         failed += int(np.count_nonzero(np.isnan(criticality)))
     low, _ = clopper_pearson(events, runs, confidence)
     _, high = clopper_pearson(events + failed, runs, confidence)
-    return Estimate(events / runs, low, high, runs, events, failed)
+    sample = EventSample(np.concatenate(met), np.ones(events), np.arange(events))
+    found = sample if events else None
+    return Estimate(events / runs, low, high, runs, events, failed, sample=found)
 
 
 def clopper_pearson(events: int, runs: int, confidence: float = 0.95) -> tuple[float, float]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from giveway.risk.estimators.estimate import Array, Estimate, Sampler, Stage
+from giveway.risk.estimators.estimate import Array, Estimate, EventSample, Sampler, Stage
 from giveway.risk.estimators.monte_carlo import clopper_pearson
 from giveway.risk.estimators.scouts import Scouted, scouts
 
@@ -44,6 +44,7 @@ class _Repeat:
     failed: int = 0
     first: tuple[int, int] = (0, 0)  # events and runs of the first level, which is Monte Carlo
     stages: list[Stage] = field(default_factory=list)
+    met: Array | None = None  # states with the event (n, d)
 
 
 def subset_simulation(
@@ -113,6 +114,7 @@ def _simulate(
             Stage(repeat.number, stage, made, level, share, moved, accepted, repeat.probability)
         )
         if level >= 0.0:
+            repeat.met = vectors[beyond]
             return
         if share > _FLAT or not np.isfinite(level):
             break
@@ -236,7 +238,20 @@ def _estimate(
         failed,
         tuple(doubts),
         tuple(stage for repeat in repeats for stage in repeat.stages),
+        _sample(repeats),
     )
+
+
+def _sample(repeats: Sequence[_Repeat]) -> EventSample | None:
+    """Return the states with the event: a repeat's have its probability as weight in all."""
+    reached = [(repeat, repeat.met) for repeat in repeats if repeat.met is not None]
+    if not reached:
+        return None
+    counts = [len(met) for _, met in reached]
+    weights = [repeat.probability / len(met) for repeat, met in reached]
+    numbers = [repeat.number for repeat, _ in reached]
+    vectors = np.concatenate([met for _, met in reached])
+    return EventSample(vectors, np.repeat(weights, counts), np.repeat(numbers, counts))
 
 
 def interval_of_repeats(each: Array, confidence: float) -> tuple[float, float, float]:

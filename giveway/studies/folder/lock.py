@@ -22,7 +22,17 @@ BENCHMARK = "benchmark.csv"
 COURSE = "course"
 """Name of the folder with the road of tests, which is there before their study."""
 NCAP_FILES = ("ncap.csv", "ncap.html")
-RISK_TABLES = ("runs", "risk", "events", "stages", "severity", "why", "failures")
+RISK_TABLES = (
+    "runs",
+    "risk",
+    "events",
+    "stages",
+    "severity",
+    "why",
+    "given_event",
+    "likeliest",
+    "failures",
+)
 _DERIVED_FILES = frozenset(
     {
         *(f"{name}.csv" for name in (*TABLES, *RISK_TABLES)),

@@ -5,6 +5,7 @@ The car is 5 m x 2 m; its front bumper is at x = 0 at time 0, and it heads along
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -38,6 +39,15 @@ def test_an_impact_at_the_side_has_the_relative_speed(driving, crowd, walking):
     assert found.side_impact_speed == pytest.approx(np.hypot(4.0, 1.4))
 
 
+def test_adults_and_children_who_are_hit_have_speeds_of_their_own(driving, crowd, walking):
+    people = crowd(walking(TIME, (8.0, 0.0), (0.0, 0.0)), walking(TIME, (12.0, 0.0), (0.0, 0.0)))
+    for kinds, ends in (((), "adult"), (("elderly", "child"), "both"), (("child",) * 2, "child")):
+        found = measured(driving(TIME, 4.0), replace(people, kinds=kinds))
+        assert found.frontal_impact_speed == pytest.approx(4.0)
+        assert np.isnan(found.adult_impact_speed) == (ends == "child")
+        assert np.isnan(found.child_impact_speed) == (ends == "adult")
+
+
 def test_nobody_ahead_is_no_distance(driving, crowd, walking):
     found = measured(driving(TIME, 4.0), crowd(walking(TIME, (8.0, 5.0), (0.0, 0.0))))
     assert np.isnan(found.clearance_ahead)
@@ -58,5 +68,7 @@ def test_the_summary_of_a_run_has_them_if_they_are_asked_for():
     assert set(asked) - set(usual) == {
         "frontal_impact_speed",
         "side_impact_speed",
+        "adult_impact_speed",
+        "child_impact_speed",
         "clearance_ahead",
     }

@@ -57,6 +57,18 @@ def test_a_run_without_a_result_has_no_criticality():
     assert math.isnan(read_event("frontal", "x").criticality(failed, "ttc"))
 
 
+def test_an_injury_is_drawn_by_its_probability_and_graded_by_it():
+    event = read_event("mais3", "x")
+    hit = HIT | {"frontal_impact_speed": 12.0, "adult_impact_speed": 12.0}
+    near, spared, injured = (
+        event.criticality(record(**row), "ttc", draw)
+        for row, draw in ((NEARER, 0.01), (hit, 0.9), (hit, 0.1))
+    )
+    assert near < -1.0 < spared < 0.0 <= injured < 1.0
+    child = HIT | {"child_impact_speed": 3.0}
+    assert math.isnan(event.criticality(record(**child), "ttc", 0.1))
+
+
 def test_red_lights_are_counted_and_not_graded():
     event = read_event("red-light", "x")
     assert not event.is_graded

@@ -28,6 +28,16 @@ def test_the_median_vector_makes_the_medians():
     assert values["crowd.preset"] == "SIM"
 
 
+def test_the_draw_of_an_injury_is_a_component_that_no_setting_has():
+    inputs = RandomInputs(read_inputs(MANY, "mine"), people=2, draws_injury=True)
+    without = RandomInputs(inputs.scalars, people=2)
+    vector = np.append(np.full(without.dimension, 0.3), 1.0)
+    assert inputs.groups == without.groups | {"injury": [inputs.dimension - 1]}
+    assert inputs.settings(vector) == without.settings(vector[:-1])
+    assert inputs.injury_draw(vector) == pytest.approx(0.8413, abs=1e-4)
+    assert np.isnan(without.injury_draw(vector))
+
+
 def test_many_vectors_have_the_declared_distribution():
     inputs = RandomInputs(read_inputs(MANY, "mine"), people=0)
     vectors = np.random.default_rng(1).standard_normal((1000, inputs.dimension))

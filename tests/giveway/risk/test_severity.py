@@ -6,10 +6,9 @@ import math
 
 import pytest
 
-from giveway.config.tables.crowd import CrowdConfig
 from giveway.risk.severity import (
     CURVES,
-    may_be_children,
+    injury_at_contact,
     monfort_mueller,
     rosen_sander,
     severities,
@@ -50,12 +49,20 @@ def test_outside_of_its_speeds_a_curve_gives_no_number():
     assert all(math.isnan(risk) for risk in at_20_kmh.values())
 
 
-def test_no_curve_holds_for_children():
-    rows = [{"frontal_impact_speed": 12.0}, {"frontal_impact_speed": None}, {}]
-    adults = severities(rows, children=False)
-    assert {(one.impacts, one.valid) for one in adults} == {(1, 1)}
-    children = severities(rows, children=True)
-    assert {(one.impacts, one.valid) for one in children} == {(1, 0)}
-    assert all(math.isnan(one.mean) for one in children)
-    assert may_be_children(CrowdConfig(pedestrians=1, people={"child": 0.1}))
-    assert not may_be_children(CrowdConfig(pedestrians=1))
+ADULT, CHILD = {"adult_impact_speed": 12.0}, {"child_impact_speed": 12.0}
+
+
+def test_no_curve_holds_for_children_and_adults_get_their_number_beside_them():
+    found = severities([ADULT, CHILD, {"adult_impact_speed": None}, {}, ADULT])
+    alone = severities([ADULT])
+    assert {(one.impacts, one.children, one.valid) for one in found} == {(3, 1, 2)}
+    assert [one.mean for one in found] == [one.mean for one in alone]
+    assert all(one.holds_for_adults for one in found)
+    children = severities([CHILD])
+    assert all(math.isnan(one.mean) and not one.holds_for_adults for one in children)
+
+
+def test_an_injury_is_known_for_adults_within_the_curves_speeds():
+    assert injury_at_contact(ADULT) == pytest.approx(monfort_mueller(12.0 * 3.6, "MAIS3+"))
+    assert math.isnan(injury_at_contact(ADULT | CHILD))
+    assert math.isnan(injury_at_contact({"adult_impact_speed": 5.0}))
