@@ -28,6 +28,11 @@ check_rooms()
 keep_kernels()
 
 
+def __dir__() -> list[str]:
+    """Return the public names."""
+    return __all__
+
+
 def __getattr__(name: str) -> Any:
     """Import the API at its first use: numba, pandas and SUMO take seconds to load."""
     if name in {"run", "RunResult"}:

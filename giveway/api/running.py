@@ -42,6 +42,7 @@ class Outputs(TypedDict):
 def run(
     config: RunConfig | dict[str, Any] | str | Path,
     *,
+    out: str | Path | None = None,
     results: str | Path | None = None,
     force: bool = False,
     parquet: bool = False,
@@ -58,7 +59,8 @@ def run(
         config: Options that differ from the scenario's settings and the defaults, as a
             ``RunConfig`` or as a dictionary with the keys of the TOML file, by tables or dotted
             (``{"crowd.pedestrians": 30}``); or the name of a scenario, or of a .toml file.
-        results: Folder for tables, summary, manifest and pictures, or None to write nothing.
+        out: Folder for tables, summary, manifest and pictures, or None to write nothing.
+        results: Former name of ``out``.
         force: True to replace existing results.
         parquet: True to write the tables also as Parquet.
         trajectories: Form of the longest table.
@@ -72,6 +74,7 @@ def run(
         GivewayError: one line that says what to do. If the run had begun, its rows are written
             anyway, and the partial result is the error's attribute ``result``.
     """
+    folder = results if out is None else out
     layer = as_layer(config)
     loaded = load([layer])
     if layer.results is not None:
@@ -79,7 +82,7 @@ def run(
     return run_checked(
         preflight(*loaded),
         Destination(
-            None if results is None else Path(results),
+            None if folder is None else Path(folder),
             force,
             parquet,
             trajectories,

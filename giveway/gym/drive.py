@@ -22,6 +22,7 @@ from giveway.config.files.presets import parameters_of
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, ControlError, InstallationError
 from giveway.geometry.kernel import Array
+from giveway.gym.picture import picture
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.results.run_result import RunResult
 from giveway.run_data.progress import Ending
@@ -39,6 +40,7 @@ ID = "giveway/Drive-v0"
 FAR = 100.0  # Largest distance ahead [m] in observations
 FAST = 40.0  # Largest speed [m/s] in observations
 LATERAL = 30.0  # Largest lateral distance [m] of people in observations
+_AHEAD = np.linspace(0.0, 32.0, 33)  # Distances [m] of the way in pictures
 _REAR = -10.0  # Farthest place [m] behind the front bumper of people in observations
 _HARD = 10.0  # Largest acceleration [m/s^2] in observations
 _DISCOMFORT = 0.02  # [s^3/m^2] per (m/s^2)^2 in a second: 4 m/s^2 cost as much as standing a third
@@ -115,10 +117,13 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         config: Configuration as for ``giveway.run``; its controller is the action.
         action: Meaning of actions.
         people: Number n of people in the observation.
+        render_mode: ``"rgb_array"`` for :meth:`render`, or None.
 
     Raises:
         GivewayError: the configuration cannot be used, or has not exactly one ego.
     """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 20}  # noqa: RUF012 - as in Env
 
     def __init__(
         self,
@@ -126,7 +131,11 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         *,
         action: Literal["force", "acceleration"] = "acceleration",
         people: int = 8,
+        render_mode: Literal["rgb_array"] | None = None,
     ) -> None:
+        if render_mode not in {None, *self.metadata["render_modes"]}:
+            raise ConfigError(f"render_mode = '{render_mode}': expected 'rgb_array' or None")
+        self.render_mode = render_mode
         if action not in {"force", "acceleration"}:
             raise ConfigError(f"action = '{action}': expected 'force' or 'acceleration'")
         if people < 1:
@@ -222,6 +231,15 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         told["hit"] = hit
         return observation, reward, completed or hit, truncated, told
 
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return the present instant from above, (320, 640, 3), or None without a render mode."""
+        exchange = self._exchange
+        if self.render_mode is None or exchange is None or exchange.seen is None:
+            return None
+        path = exchange.seen.path
+        way = np.zeros((1, 2)) if path is None else _in_frame(path.poses(_AHEAD))
+        return picture(self._body, self._radius, way, exchange.around)
+
     def close(self) -> None:
         """End the run if there is one; its rows so far are in ``result``."""
         exchange = self._exchange
@@ -251,7 +269,8 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
             raise ConfigError(f"DriveEnv: {len(egos)} egos; expected exactly one")
         (own,) = egos
         self._radius = parameters_of(config.crowd.preset).body_radius
-        self._half = (own.vehicle.width or 2.0) / 2.0
+        self._body = own.vehicle.length or 5.0, own.vehicle.width or 2.0
+        self._half = self._body[1] / 2.0
         return config, scenario
 
     # --- observations -------------------------------------------------------------------------
@@ -304,6 +323,14 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         touched = np.hypot(around[:, 0], beside) <= self._radius
         touched &= (around[:, 0] >= 0.0) | (beside == 0.0) & (around[:, 0] > -self._radius)
         return bool(speed > _MOVES and touched.any())
+
+
+def _in_frame(poses: Any) -> Array:
+    """Return the places of poses [m] as ahead and left of the first one."""
+    x, y, heading = poses[0]
+    c, s = cos(heading), sin(heading)
+    place: Array = (np.asarray(poses)[:, :2] - [x, y]) @ np.array([[c, -s], [s, c]])
+    return place
 
 
 def _box(low: Any, high: Any) -> spaces.Box:

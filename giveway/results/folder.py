@@ -41,7 +41,7 @@ class Wording(NamedTuple):
 
 
 FLAGS = Wording("--force", "--out")
-ARGUMENTS = Wording("force=True", "results=")
+ARGUMENTS = Wording("force=True", "out=")
 
 
 class Destination(NamedTuple):

@@ -13,7 +13,7 @@ def longest_wait(seed: int) -> float:
 
 def main() -> None:
     """Run, look, keep."""
-    result = giveway.run(RunConfig(seed=4, controller="pid-tuned"), results="mine", force=True)
+    result = giveway.run(RunConfig(seed=4, controller="pid-tuned"), out="mine", force=True)
     result.plot("state").savefig("state.png")
     result.replay().save("replay.html")
     print(result, result.ego["time"].max(), longest_wait(3))  # noqa: T201

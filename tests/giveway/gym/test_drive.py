@@ -91,6 +91,20 @@ def test_who_does_not_brake_hits_somebody_and_pays_for_it():
     env.close()
 
 
+def test_a_picture_shows_ego_and_people():
+    env = DriveEnv({"scenario": "encounter"}, render_mode="rgb_array")
+    assert env.render() is None
+    env.reset(seed=4)
+    picture = env.render()
+    people = env.step(np.zeros(1))[0]["people"][:, 4].sum()
+    env.close()
+    assert (picture.shape, picture.dtype) == ((320, 640, 3), np.uint8)
+    red, _, blue = picture.astype(int).transpose(2, 0, 1)
+    assert people > 0
+    assert (blue - red > 80).sum() > 1000
+    assert (red - blue > 80).sum() > 50
+
+
 def test_a_free_drive_reaches_the_goal_and_loses_nothing():
     env = DriveEnv({"crowd": {"pedestrians": 0}})
     observed, rewards, terminated, told = drive(env, 1, keep_pace)

@@ -101,7 +101,7 @@ def test_existing_results_are_kept_unless_forced(folder: Path) -> None:
 
 
 def test_python_is_told_its_own_words(folder: Path) -> None:
-    with pytest.raises(ResultsError, match="replace them with force=True or name another with res"):
+    with pytest.raises(ResultsError, match="with force=True or name another with out="):
         giveway.run(CONFIG, results=folder)
 
 
@@ -122,7 +122,7 @@ def test_a_folder_with_somebody_elses_files_is_never_emptied(tmp_path: Path) -> 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX device files")
 def test_an_unwritable_place_is_refused_before_the_run() -> None:
-    with pytest.raises(ResultsError, match="results="):
+    with pytest.raises(ResultsError, match="out="):
         giveway.run(CONFIG, results="/proc/giveway")
 
 
