@@ -226,6 +226,7 @@ def _first_line(folder: Path, began: float) -> float:
 def main() -> int:
     """Go on with a campaign, or repeat one case."""
     options = _parser().parse_args()
+    hear_signals()
     out: Path = options.out.absolute()
     with Nursery(out / "cache") as nursery:
         campaign = Campaign(out, nursery)
@@ -249,6 +250,13 @@ def main() -> int:
             print(f"{command}: first line after {first:.3f} s, end after {duration:.2f} s")
     wanted = [v for (c, n), v in known.items() if c in options.commands and n < options.count]
     return _table(options.commands, wanted)
+
+
+def hear_signals() -> None:
+    """Let the commands hear all signals: a job behind ``&`` or ``nohup`` ignores some for them."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    for number in SIGNALS[1:]:
+        signal.signal(number, signal.SIG_DFL)
 
 
 def _read(file: Path) -> dict[tuple[str, int], Verdict]:

@@ -49,6 +49,16 @@ def test_a_command_that_a_signal_ends_says_one_line(
     assert not verdict.bad, verdict
 
 
+def test_commands_hear_what_a_job_in_the_background_ignores() -> None:
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in signals.SIGNALS}
+    try:
+        signals.hear_signals()
+        assert all(signal.getsignal(number) != signal.SIG_IGN for number in signals.SIGNALS)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 def test_a_case_is_determined_by_seed_command_and_number() -> None:
     assert signals.draw(1, "run", 3) == signals.draw(1, "run", 3)
     shots = [signals.draw(1, "run", number) for number in range(200)]
