@@ -55,7 +55,7 @@ def outcome(
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]
     touched += [loop.meetings.touches.remark] if len(loop.meetings.touches) else []
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
-    crowd_track = rows.crowd_track()
+    crowd_track, background = rows.crowd_track(), rows.background_track()
     remarks = (*remarks, *unreached(parts.config.measure, crowd_track))
     if crowd_track.is_long:
         remarks = (*remarks, NO_VIEW)
@@ -69,7 +69,7 @@ def outcome(
         time=rows.time,
         egos=egos,
         crowd_track=crowd_track,
-        background_track=rows.background_track(),
+        background_track=background,
         signal_track=rows.signal_track(),
         sight_track=rows.sight_track(),
         people_track=rows.people_track(),
@@ -98,6 +98,7 @@ def outcome(
         marks=road_marks(parts.sumo.lanes),
         footways=NO_FOOTWAYS if parts.exchange is None else parts.exchange.footways,
         remarks=remarks,
+        opaque=loop.world.opaque([*background.id, *(ego.id for ego in egos)]),
     )
 
 

@@ -77,7 +77,7 @@ class Loop:
         self.meetings = Meetings(parts.sumo, parts.yielding, parts.gaps)
         self._instants = Instants(recorder, parts.config.record, parts.time_step)
         self._fronts = np.empty((0, 2))
-        self._world = World(parts, self._mirror)
+        self.world = World(parts, self._mirror)
         self.followed = Followed(parts) if follow else None
         walks = None if self.followed is None else self.followed.walks
         self._walking = Walking(parts.config, parts.crowd_model, parts.roster, walks)
@@ -261,7 +261,7 @@ class Loop:
         recorder, mirror = self._recorder, self._mirror
         recorder.instant(time)
         mirror.place(self._egos)
-        truth, surroundings = self._world.at(time, self._egos), self._parts.surroundings
+        truth, surroundings = self.world.at(time, self._egos), self._parts.surroundings
         predicting = controlling = 0.0
         acting = ""
         for row, ego in enumerate(self._egos):

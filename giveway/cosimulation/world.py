@@ -1,6 +1,6 @@
 """The world as it is at a control step, which the egos' sensors are shown."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.mirror import Mirror
@@ -8,6 +8,7 @@ from giveway.ego.ego import Ego
 from giveway.ego.perception.truth import Truth
 from giveway.ego.perception.visibility import CHILD
 from giveway.geometry.kernel import Array
+from giveway.run_data.scene import Opaque
 from giveway.sumo.opaque_bodies import OpaqueBodies
 
 
@@ -43,6 +44,18 @@ class World:
             truth.vehicle_heights = opaque.vehicle_heights(vehicles)
             truth.person_heights = self._person_heights(opaque)
         return truth
+
+    def opaque(self, names: Iterable[str]) -> Opaque | None:
+        """The walls, and the heights of vehicles that have been on the road; None without sensors.
+
+        Args:
+            names: Ids of the vehicles.
+        """
+        if self._opaque is None:
+            return None
+        known = sorted(map(str, set(names)))
+        heights = self._opaque.vehicle_heights(known).tolist()
+        return Opaque(self._truth.outlines, dict(zip(known, heights, strict=True)))
 
     def _person_heights(self, opaque: OpaqueBodies) -> Array:
         """The heights (n,) [m] of the people: SUMO's, but children's of giveway's own."""

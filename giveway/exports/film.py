@@ -14,15 +14,17 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from giveway.errors import InstallationError, ResultsError
-from giveway.exports.sampling import PEDESTRIAN, Sampled
+from giveway.exports.sampling import PEDESTRIAN, Sampled, Track
 from giveway.figures.road import LIGHTS, UNPAINTED, bands
+from giveway.figures.sight_view import SightView, polygons_of
 from giveway.figures.style import BLUE, GREY, LIGHT_GREY, VERMILION
 from giveway.figures.view import Box, nose_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
-from giveway.geometry.path import angle_to_heading
+from giveway.geometry.path import Pose, angle_to_heading
 from giveway.replays.run_folder import RunFolder
 from giveway.run_data.road_marks import shown
+from giveway.run_data.scene import Opaque
 
 MP4_SIZE, GIF_SIZE = (1280, 720), (640, 360)  # Sizes [pixels]
 _FINER = 2  # factor between the painted and the final size of a frame
@@ -35,6 +37,7 @@ _CAR = (4.3, 1.8)  # [m] size of a vehicle whose size is not on record
 _TICK = 1.0  # [s] length of the walking direction's mark, as a time
 _TRAIL = 4.0  # [s] length of the ego's trail
 _SKIN = "#8A3C00"
+_SHADE = 64  # opacity of shadows, of 255
 
 
 class Painter:
@@ -56,6 +59,11 @@ class Painter:
         self._large, self._small = (_font(_FINER * size[1] // parts) for parts in (24, 36))
         self._outlines = [np.array(outline) for outline in run.scene.road if len(outline) > 2]
         self._present = sampled.present
+        self._sights = {
+            name: view
+            for name, config in run.egos.items()
+            if (view := SightView.of(config, run.sights_of(name), run.scene.opaque or Opaque()))
+        }
 
     def frames(self) -> Iterator[Image.Image]:
         """Yield all frames of the run, one after the other."""
@@ -105,12 +113,11 @@ class Painter:
         self._paint_lights(draw, self._sampled.time(index), view, scale)
         self._paint_trail(draw, index, view, scale)
         here = [self._sampled.tracks[number] for number in self._present[index]]
-        for track in (track for track in here if track.type != PEDESTRIAN):
-            k = index - track.first
-            shape = VehicleShape(*self._run.scene.body(track.object, _CAR))
-            corners = shape.corners(
-                np.array([track.x[k], track.y[k]]), angle_to_heading(float(track.angle[k]))
-            )
+        bodies = [
+            (track, self._corners(track, index)) for track in here if track.type != PEDESTRIAN
+        ]
+        self._paint_shadows(canvas, index, view, bodies)
+        for track, corners in bodies:
             ego = track.type == "ego"
             fill = BLUE if ego else "#B0B0B0"
             draw.polygon(self._pixels(corners, view), fill=fill, outline="#1A1A1A" if ego else GREY)
@@ -125,8 +132,37 @@ class Painter:
             radius = max(_BODY * scale, 3.0)
             draw.line([(x, y), ahead], fill=_SKIN, width=max(2, round(0.06 * scale)))
             bounds = (x - radius, y - radius, x + radius, y + radius)
-            draw.ellipse(bounds, fill=VERMILION, outline=_SKIN, width=2)
+            seen = not self._sights or any(
+                sight.perceives(track.object, self._sampled.time(index))
+                for sight in self._sights.values()
+            )
+            draw.ellipse(bounds, fill=VERMILION if seen else None, outline=_SKIN, width=2)
         self._paint_words(draw, canvas, index, scale)
+
+    def _corners(self, track: Track, index: int) -> Array:
+        """Return the corners (4, 2) [m] of a vehicle in a frame."""
+        k = index - track.first
+        shape = VehicleShape(*self._run.scene.body(track.object, _CAR))
+        front = np.array([track.x[k], track.y[k]])
+        return shape.corners(front, angle_to_heading(float(track.angle[k])))
+
+    def _paint_shadows(
+        self, canvas: Image.Image, index: int, view: Box, bodies: list[tuple[Track, Array]]
+    ) -> None:
+        """Darken what the first ego's cameras do not see within their fields of view."""
+        own = next((track for track, _ in bodies if track.object in self._sights), None)
+        if own is None:
+            return
+        k = index - own.first
+        pose = Pose(own.x[k], own.y[k], angle_to_heading(float(own.angle[k])))
+        others = [(track.object, corners) for track, corners in bodies if track is not own]
+        shade = Image.new("L", canvas.size)
+        draw = ImageDraw.Draw(shade)
+        for polygon in polygons_of(self._sights[own.object].hidden(pose, others)):
+            draw.polygon(self._pixels(np.array(polygon.exterior.coords), view), fill=_SHADE)
+            for hole in polygon.interiors:
+                draw.polygon(self._pixels(np.array(hole.coords), view), fill=0)
+        canvas.paste("black", mask=shade)
 
     def _paint_lights(
         self, draw: ImageDraw.ImageDraw, time: float, view: Box, scale: float

@@ -16,10 +16,11 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from giveway.figures.conflict_points import Conflict, mark_conflicts
+from giveway.figures.other_vehicles import draw_vehicles, vehicles_at
 from giveway.figures.road import Road, draw_marks, draw_road, states_at
+from giveway.figures.sight_view import SightView, draw_area
 from giveway.figures.style import (
     BLACK,
-    GREY,
     VERMILION,
     NotebookFigure,
     keep_panels,
@@ -27,6 +28,8 @@ from giveway.figures.style import (
 )
 from giveway.figures.view import Box, nose_of
 from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import Pose
 from giveway.metrics.groups import PedestrianGroups
 from giveway.run_data.road_marks import UNMARKED, RoadMarks
 from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, SignalTrack
@@ -57,6 +60,8 @@ class Backdrop(NamedTuple):
         background: Other vehicles, drawn in the snapshots. After their latest instant they are
             assumed to drive straight on.
         conflicts: Conflicts to mark among the trajectories.
+        sight: Sight of the ego; its shadows are drawn in the snapshots, people whom it does not
+            perceive hollow. None: it perceives everybody.
     """
 
     road: Road = ()
@@ -64,6 +69,7 @@ class Backdrop(NamedTuple):
     signals: SignalTrack | None = None
     background: BackgroundTrack | None = None
     conflicts: Sequence[Conflict] = ()
+    sight: SightView | None = None
 
 
 NOTHING = Backdrop()
@@ -131,9 +137,16 @@ def top_view_figure(
     for axes, k, part in zip(panels, steps, parts, strict=True):
         draw_road(axes, [line for line in road if part.touches(line)])
         draw_marks(axes, backdrop.marks, states_at(backdrop.signals, float(ego.time[k])), part)
+        time, others = float(ego.time[k]), []
         if backdrop.background is not None:
-            _draw_background(axes, float(ego.time[k]), backdrop.background)
-        _draw_scene(axes, k, corners[k], crowd, body_radius)
+            others = vehicles_at(time, backdrop.background)
+            draw_vehicles(axes, others)
+        perceived = np.ones(crowd.step.size, dtype=np.bool_)
+        if backdrop.sight is not None:
+            pose = Pose(float(ego.front_x[k]), float(ego.front_y[k]), float(ego.heading[k]))
+            draw_area(axes, backdrop.sight.hidden(pose, others))
+            perceived &= [backdrop.sight.perceives(crowd.ids[p], time) for p in crowd.pedestrian]
+        _draw_scene(axes, k, corners[k], crowd, body_radius, perceived)
         part.apply(axes)
         told = ", closest approach" if k == closest else ""
         axes.set_title(f"t = {ego.time[k]:.2f} s{told}", fontsize=9)
@@ -252,28 +265,6 @@ def _arrange(
     return figure, overview, keep_panels(grid, count)
 
 
-def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> None:
-    """Draw the other vehicles at ``time`` [s], as light rectangles."""
-    known = background.time[background.time <= time + 1e-9]
-    if not known.size:
-        return
-    for b in np.flatnonzero(background.time == known[-1]):
-        heading = float(background.heading[b])
-        driven = background.speed[b] * (time - known[-1])
-        front = np.array((background.x[b], background.y[b]))
-        front += driven * np.array((np.cos(heading), np.sin(heading)))
-        shape = VehicleShape(float(background.length[b]), float(background.width[b]))
-        axes.add_patch(
-            Polygon(
-                shape.corners(front, heading),
-                facecolor="#B0B0B0",
-                edgecolor=GREY,
-                zorder=1.5,
-                label="background",
-            )
-        )
-
-
 def _draw_pedestrian_trajectories(
     axes: Axes, time: NDArray[np.float64], crowd: CrowdTrack, colours: Normalize
 ) -> LineCollection:
@@ -321,7 +312,12 @@ def _thinned(first: int, last: int) -> NDArray[np.int64]:
 
 
 def _draw_scene(
-    axes: Axes, k: int, corners: NDArray[np.float64], crowd: CrowdTrack, body_radius: float
+    axes: Axes,
+    k: int,
+    corners: Array,
+    crowd: CrowdTrack,
+    body_radius: float,
+    perceived: NDArray[np.bool_],
 ) -> None:
     """Draw the ego as a rectangle with a nose, and pedestrians as circles with ticks."""
     axes.add_patch(Polygon(corners, facecolor="#404040", edgecolor=BLACK, zorder=2, label="ego"))
@@ -333,7 +329,8 @@ def _draw_scene(
     axes.add_collection(
         EllipseCollection(
             size, size, np.zeros(len(centre)), units="xy", offsets=centre,
-            offset_transform=axes.transData, facecolors=VERMILION, edgecolors="#8A3C00",
+            offset_transform=axes.transData, edgecolors="#8A3C00",
+            facecolors=np.where(perceived[here], VERMILION, "none"),
             linewidths=0.5, zorder=4, label="pedestrians",
         ),
         autolim=False,

@@ -27,6 +27,7 @@ _MANOEUVRES = {
     "drive on": "driving on costs least, for all that people may answer to it",
     "as planned": "it keeps to its plan: no other one costs less",
 }
+_MOST_SIGHTS = 30  # first sights on the time line
 _NUMBER = r"\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 _AIMED = re.compile(rf"(?P<rate>[-+]{_NUMBER} m/s\^2) to (?P<speed>-?{_NUMBER} m/s)")
 _SAFETY = {
@@ -64,13 +65,16 @@ def _manoeuvre(name: str) -> str | None:
     return f"slowing down to {aimed['speed']} at {aimed['rate'].lstrip('-')} costs least"
 
 
-def events(rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig) -> list[dict[str, Any]]:
+def events(
+    rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig, sights: pd.DataFrame
+) -> list[dict[str, Any]]:
     """Return the events on the time line, in the order of time.
 
     Args:
         rows: Rows of this ego in ``ego.csv``.
         met: Rows of this ego in ``pedestrians.csv``.
         config: Configuration of this ego.
+        sights: Rows of this ego in ``sights.csv``.
 
     Returns:
         For each event its ``kind``, ``from`` and ``to`` [s], a ``text``, and ``who``: the people
@@ -85,7 +89,7 @@ def events(rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig) -> list[
             at = int(np.searchsorted(time, start))
             told = why(str(rows["reason"].iloc[at]), str(rows["solver_status"].iloc[at]))
             found.append(_event(acting, start, end, told["text"]))
-    found += _encounters(met)
+    found += [*_encounters(met), *_first_sights(sights, float(time[0]))]
     return sorted(found, key=lambda event: (event["from"], event["to"], event["kind"]))
 
 
@@ -105,6 +109,16 @@ def _encounters(met: pd.DataFrame) -> Iterator[dict[str, Any]]:
         elif index == closest:
             text = f"closest approach: {clearance:.2f} m to {row['id']}"
             yield _event("closest", at, at, text, str(row["id"]))
+
+
+def _first_sights(sights: pd.DataFrame, departure: float) -> Iterator[dict[str, Any]]:
+    """Yield the first sight of the people who come in sight during the drive, the nearest ones."""
+    if not len(sights):
+        return
+    first = sights.drop_duplicates("id")
+    nearest = first[first["time"] > departure].nsmallest(_MOST_SIGHTS, "distance")
+    for who, at, distance in nearest[["id", "time", "distance"]].to_numpy():
+        yield _event("sight", at, at, f"in sight, {distance:.1f} m from the front: {who}", str(who))
 
 
 def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dict[str, Any]:

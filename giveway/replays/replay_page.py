@@ -22,6 +22,7 @@ from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
 from giveway.replays.events import events, why
 from giveway.replays.marks import pack_marks
+from giveway.replays.packed_sight import heights_of, pack_sight, walls_of
 from giveway.replays.packed_tracks import (
     Frame,
     longest_gap,
@@ -33,7 +34,10 @@ from giveway.replays.packed_tracks import (
 from giveway.replays.run_folder import PREDICTIONS, RunFolder, read_predictions
 from giveway.run_data.writing import pretty_unit
 
-_SCRIPTS = ("data.js", "motion.js", "view.js", "scene.js", "charts.js", "panels.js", "player.js")
+_SCRIPTS = (
+    "data.js", "motion.js", "view.js", "sight.js",
+    "scene.js", "charts.js", "panels.js", "player.js",
+)  # fmt: skip
 _NUMBERS = ("speed", "reference_speed", "force", "gap", "vehicle_gap", "stop_gap")
 _SHOWN = (
     "completion_time", "mean_speed", "stops", "longest_wait", "mpc_feasibility_rate",
@@ -156,15 +160,16 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
     frame = Frame.of(run)
     rows = run.trajectories
     walking = (rows["type"] == "pedestrian").to_numpy()
-    driven = rows["id"].isin(list(run.egos)).to_numpy() & ~walking
+    driven = rows["id"].isin(list(run.egos)).to_numpy()
     pedestrians, vehicles = rows[walking], rows[~walking & ~driven]
     thin, gap = thinning(pedestrians, run.step), longest_gap(run)
     tracks = {
         "people": pack_tracks(pedestrians, frame, hold=run.step, gap=max(gap, 2 * thin), thin=thin),
         "vehicles": pack_tracks(vehicles, frame, hold=run.sumo_step, gap=gap, thin=0.0),
     }
-    vehicle_names = tracks["vehicles"]["names"]
-    tracks["vehicles"]["bodies"] = [run.scene.body(name, _PASSENGER_CAR) for name in vehicle_names]
+    others = tracks["vehicles"]
+    others["bodies"] = [run.scene.body(name, _PASSENGER_CAR) for name in others["names"]]
+    others["heights"] = heights_of(run, others["names"])
     names = {name: index for index, name in enumerate(tracks["people"]["names"])}
     contours, egos = _egos(run, frame, predictions, names)
     return {
@@ -177,6 +182,7 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
         "radius": float(parameters_of(run.config.crowd.preset).body_radius),
         "road": _road(run, frame),
         "marks": pack_marks(run, frame),
+        "walls": walls_of(run),
         "tracks": tracks,
         "egos": egos,
         "contours": contours,
@@ -193,10 +199,8 @@ def _title(run: RunFolder) -> str:
 
 def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: float) -> list[str]:
     """Return the remarks on the page and the run for its viewers."""
-    notes = []
     error = run.manifest.get("error")
-    if error:
-        notes.append(f"The run did not end well: {error}")
+    notes = [f"The run did not end well: {error}"] if error else []
     if thin:
         notes.append(
             f"A crowd of this size is thinned: one position in {thin:g} s, a straight line between."
@@ -280,11 +284,12 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
         "id": name,
         "controller": config.controller_name,
         "body": [length, width],
+        **pack_sight(run, name, names),
         "corridor": gap.corridor(width),
         "safe": config.regulation.safe_distance,
         "fromCentre": gap.gap_from == "centre",
         "summary": _summary(run.rows_of(name)),
-        "events": events(rows, met, config),
+        "events": events(rows, met, config, run.sights_of(name)),
         "met": _met(met, names),
         "kinds": [{"acting": acting, **why(*told)} for acting, *told in kinds],
         "kind": packed([kinds.index(one) for one in acted], np.uint16),
@@ -327,8 +332,7 @@ def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
 
 def _label(name: str) -> str:
     """Return a column's name in words, with abbreviations written out."""
-    words = (word.upper() if word in _SPELT else word for word in name.split("_"))
-    return " ".join(words)
+    return " ".join(word.upper() if word in _SPELT else word for word in name.split("_"))
 
 
 def _is_number(value: object) -> bool:

@@ -18,6 +18,7 @@ from giveway.geometry.kernel import Array
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
 from giveway.run_data.columns import (
     PREDICTION_COLUMNS,
+    SIGHT_COLUMNS,
     SIGNAL_COLUMNS,
     TRAJECTORY_COLUMNS,
     Column,
@@ -45,6 +46,7 @@ class RunFolder:
         manifest: Content of ``manifest.json``.
         scene: Road and bodies.
         signals: Recorded states of the lights with their times; empty if none is recorded.
+        sights: Recorded stretches of time in sight; empty without a sensor.
         time: Instants (T,) [s] that have a row.
     """
 
@@ -58,6 +60,7 @@ class RunFolder:
     manifest: dict[str, Any]
     scene: Scene
     signals: pd.DataFrame
+    sights: pd.DataFrame
     time: Array
 
     @property
@@ -87,6 +90,10 @@ class RunFolder:
         rows = self.summary.get("egos", [self.summary])
         rows = [row for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
         return next((row for row in rows if row.get("ego") == ego), {})
+
+    def sights_of(self, ego: str) -> pd.DataFrame:
+        """Return the rows of one ego in ``sights.csv``."""
+        return self.sights[self.sights["ego"] == ego] if len(self.sights) else self.sights
 
     @classmethod
     def read(cls, folder: Path, *, unsealed: bool = False) -> RunFolder:
@@ -126,6 +133,7 @@ class RunFolder:
             manifest=manifest,
             scene=Scene.read(folder),
             signals=_table(folder / "signals.csv", SIGNAL_COLUMNS),
+            sights=_table(folder / "sights.csv", SIGHT_COLUMNS),
             time=time,
         )
 

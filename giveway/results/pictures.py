@@ -16,6 +16,7 @@ from giveway.figures import (
 )
 from giveway.figures.conflict_points import Conflict
 from giveway.figures.density import density_figure
+from giveway.figures.sight_view import SightView
 from giveway.figures.state import FARTHEST_SHOWN
 from giveway.figures.top_view import Backdrop
 from giveway.geometry.bodies import VehicleShape
@@ -90,9 +91,18 @@ def top_view_picture(result: RunTables, ego: EgoResult) -> Figure:
             result.signal_track,
             result.background_track,
             _conflicts(ego),
+            _sight(result, ego),
         ),
         title=_title(result, ego),
     )
+
+
+def _sight(result: RunTables, ego: EgoResult) -> SightView | None:
+    """Return the sight of an ego with cameras."""
+    if result.opaque is None:
+        return None
+    sights = result.sights
+    return SightView.of(ego.config, sights[sights["ego"] == ego.id], result.opaque)
 
 
 def _conflicts(ego: EgoResult) -> list[Conflict]:

@@ -38,6 +38,7 @@ from giveway.run_data.columns import (
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
     PREDICTION_COLUMNS,
+    SEEN,
     SIGHT_COLUMNS,
     SIGNAL_COLUMNS,
     SUMMARY_HEAD,
@@ -48,6 +49,7 @@ from giveway.run_data.columns import (
 from giveway.run_data.footways import NO_FOOTWAYS, Footways
 from giveway.run_data.progress import Ending
 from giveway.run_data.road_marks import UNMARKED, RoadMarks
+from giveway.run_data.scene import Opaque
 from giveway.run_data.tracks import (
     EGO_COLUMNS,
     BackgroundTrack,
@@ -87,6 +89,7 @@ class RunTables:
         effect: Comparison of the people with those of the counterfactual run, or None without one.
         marks: Crossings and stop lines of the network.
         footways: Crossings and edges on which people walk, if any of SUMO's people were moved.
+        opaque: Things that hide people, or None if no ego has cameras.
     """
 
     config: RunConfig
@@ -109,6 +112,7 @@ class RunTables:
     effect: Effect | None = None
     marks: RoadMarks = UNMARKED
     footways: Footways = NO_FOOTWAYS
+    opaque: Opaque | None = None
 
     @property
     def completed(self) -> bool:
@@ -167,7 +171,8 @@ class RunTables:
     def trajectory_pieces(self) -> "Iterator[pd.DataFrame]":
         """Yield the rows of :attr:`trajectories`, as many at a time as fit into the memory."""
         egos = [(ego.id, ego.track) for ego in self.egos]
-        return trajectory_pieces(self.time, egos, self.crowd_track, self.background_track)
+        sights = self.sight_track if "sights" in self.schemas else None
+        return trajectory_pieces(self.time, egos, self.crowd_track, self.background_track, sights)
 
     @cached_property
     def pedestrians(self) -> "pd.DataFrame":
@@ -318,8 +323,10 @@ class RunTables:
         outputs = {output.name: output.column for ego in self.egos for output in ego.outputs}
         if len(self.signal_track.time):
             optional |= {"signals": SIGNAL_COLUMNS}
+        trajectories: tuple[Column, ...] = TRAJECTORY_COLUMNS
         if any(ego.config.perception.plugged_in_sensor for ego in self.egos):
             optional |= {"sights": SIGHT_COLUMNS}
+            trajectories = (*trajectories, SEEN)
         if any(ego.signal_delays for ego in self.egos):
             optional |= {"signal_delays": SIGNAL_DELAY_COLUMNS}
         if self.footways.edges:
@@ -328,7 +335,7 @@ class RunTables:
             optional |= {"measures": MEASURE_COLUMNS}
         return {
             "ego": (*EGO_COLUMNS, *outputs.values()),
-            "trajectories": TRAJECTORY_COLUMNS,
+            "trajectories": trajectories,
             "pedestrians": pedestrians,
             "summary": summary,
             "timing": TIMING_COLUMNS,

@@ -29,7 +29,8 @@ def scene_of(result: RunTables) -> Scene:
     ]
     ways = tuple(ego.law.way for ego in result.egos if ego.law is not None)
     road = tuple(tuple((x, y) for x, y in _rounded(outline)) for outline in near)
-    return Scene(road, bodies, ways, result.marks.within((low[0], low[1]), (high[0], high[1])))
+    marks = result.marks.within((low[0], low[1]), (high[0], high[1]))
+    return Scene(road, bodies, ways, marks, result.opaque)
 
 
 def _rounded(outline: Array) -> list[list[float]]:

@@ -7,8 +7,10 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import directions, headings_to_angles
+from giveway.results.sights import perceived
 from giveway.run_data.columns import (
     PREDICTION_COLUMNS,
+    SEEN,
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
     quantities_of,
@@ -20,6 +22,7 @@ from giveway.run_data.tracks import (
     CrowdTrack,
     EgoTrack,
     PredictionTrack,
+    SightTrack,
     Timings,
 )
 
@@ -63,6 +66,7 @@ def trajectory_pieces(
     egos: Sequence[tuple[str, EgoTrack]],
     crowd: CrowdTrack,
     background: BackgroundTrack,
+    sights: SightTrack | None = None,
 ) -> "Iterator[pd.DataFrame]":
     """Yield ``trajectories.csv``: all egos, SUMO's vehicles and pedestrians by instant.
 
@@ -86,12 +90,17 @@ def trajectory_pieces(
         )
     )
     names = [column.name for column in TRAJECTORY_COLUMNS]
+    names += [] if sights is None else [SEEN.name]
     angles = np.zeros(len(crowd.ids))  # the latest ones
     parts = crowd.pieces()
     part: CrowdTrack | None = next(parts)
     while part is not None:
         following = next(parts, None)
-        frames = [*waiting, _walking(time, part, angles)]
+        walking = _walking(time, part, angles)
+        if sights is not None:
+            seen = perceived(sights, part.pedestrian, time[part.step])
+            walking[SEEN.name] = seen.astype(object)
+        frames = [*waiting, walking]
         if following is not None:
             until = _rounded(time[following.step[0]])
             waiting = [frame[frame["time"] >= until] for frame in waiting]

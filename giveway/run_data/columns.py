@@ -112,6 +112,8 @@ TRAJECTORY_COLUMNS = (
     Column("vy", "number", "m/s", "velocity's y component"),
 )
 
+SEEN = Column("seen", "boolean", None, "of a person: whether an ego's sensor perceives it")
+
 SIGNAL_COLUMNS = (
     Column("time", "number", "s", "simulation time from which on it holds"),
     Column("system", "string", None, "SUMO id of the traffic light"),

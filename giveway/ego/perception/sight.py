@@ -71,6 +71,11 @@ class Mount:
             require(isfinite(value), name, value, f"a finite number [{unit}]")
         require(self.field_of_view <= 360.0, "field_of_view", self.field_of_view, "at most 360")
 
+    @property
+    def half_angle(self) -> float:
+        """Half of the field of view [rad]."""
+        return min(radians(self.field_of_view) / 2.0, pi)
+
     def eye(self, ego: OwnState) -> Eye:
         """Return the camera where it is now."""
         x, y, heading = ego.pose
@@ -80,7 +85,7 @@ class Mount:
             self.height,
             heading + radians(self.heading),
             self.range,
-            min(radians(self.field_of_view) / 2.0, pi),
+            self.half_angle,
         )
 
 

@@ -250,7 +250,7 @@ function drawTimeAxis(g, y) {
 }
 
 const EVENT_COLOURS = {
-  stop: "stop", pid: "pid", safety: "safety", overlap: "overlap", closest: "inside",
+  stop: "stop", pid: "pid", safety: "safety", overlap: "overlap", closest: "inside", sight: "quiet",
 };
 
 function drawEvents(g, ego) {

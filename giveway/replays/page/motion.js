@@ -5,6 +5,7 @@ class Tracks {
   constructor(packed) {
     this.names = packed.names;
     this.bodies = packed.bodies;
+    this.heights = packed.heights;
     this.who = unpack(packed.who, Uint32Array);
     this.start = unpack(packed.start, Uint32Array);
     this.until = unpack(packed.until, Float64Array);

@@ -55,7 +55,7 @@ function writePerson(person, states) {
 }
 
 const EVENT_NAMES = {
-  stop: "Stop", pid: "PID", safety: "Safety", overlap: "Overlap", closest: "Closest",
+  stop: "Stop", pid: "PID", safety: "Safety", overlap: "Overlap", closest: "Closest", sight: "In sight",
 };
 
 /** What changes only with the ego that is looked at. */
@@ -127,6 +127,7 @@ function writeOnce() {
       player.redraw();
     });
   }
+  for (const box of document.querySelectorAll(".sight-only")) box.hidden = !CAMERAS;
   $("lights-box").hidden = LIGHTS.length === 0;
   const predicted = EGOS.some((ego) => ego.predicted);
   if (!predicted) {

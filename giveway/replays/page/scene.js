@@ -72,7 +72,7 @@ const CONTOURS = RUN.contours.map((kind) => {
   return { speeds: kind.speeds, levels: kind.levels, paths };
 });
 
-const layers = { corridor: true, influence: true, predictions: true, people: true, road: true, lights: true, trails: false };
+const layers = { corridor: true, sight: true, influence: true, predictions: true, people: true, road: true, lights: true, trails: false };
 const selected = { person: -1, ego: 0 };
 const FADED = [1, 0.3]; // opacity of the nearest and the farthest prediction
 const CORRIDOR_BEYOND = 12; // [m] of corridor drawn beyond the safe distance
@@ -101,6 +101,9 @@ function drawScene(t) {
   pen.fillRect(0, 0, stage.width, stage.height);
   if (layers.road) drawRoad();
   const present = EGOS.map((ego, e) => [ego, states[e]]).filter(([, state]) => state);
+  if (layers.sight && states[selected.ego] && EGOS[selected.ego].sight) {
+    drawSight(EGOS[selected.ego], states[selected.ego], present, t);
+  }
   if (layers.corridor) for (const [ego, state] of present) drawCorridor(ego, state);
   if (layers.influence) for (const [ego, state] of present) drawInfluence(ego, state);
   if (layers.predictions) for (const [ego] of present) drawPredictions(ego, t);
@@ -288,6 +291,7 @@ function drawPeople(t, present) {
     ahead: ego.path.piece(state.station, state.station + SIGHT),
   }));
   const bodies = kindOf.map(() => new Path2D());
+  const hollow = new Path2D(); // people whom no camera sees
   const ticks = new Path2D();
   const radius = Math.max(RUN.radius * view.scale, 2);
   let found = null;
@@ -300,8 +304,9 @@ function drawPeople(t, present) {
       if (inCorridor(ahead, ego.corridor, at.x, at.y)) kind = 2;
       else if (kind < 1 && clearance(ego, state, at.x, at.y) < ego.safe / 2) kind = 1;
     }
-    bodies[kind].moveTo(px + radius, py);
-    bodies[kind].arc(px, py, radius, 0, 2 * Math.PI);
+    const body = unseen(at.who, t) ? hollow : bodies[kind];
+    body.moveTo(px + radius, py);
+    body.arc(px, py, radius, 0, 2 * Math.PI);
     if (radius > 3.5) { // smaller ones would be hidden by them
       ticks.moveTo(px, py);
       ticks.lineTo(px + 1.7 * radius * Math.cos(at.heading), py - 1.7 * radius * Math.sin(at.heading));
@@ -312,6 +317,7 @@ function drawPeople(t, present) {
   pen.lineWidth = 1.4;
   pen.strokeStyle = colours.ink;
   pen.stroke(ticks);
+  pen.stroke(hollow);
   kindOf.forEach((name, kind) => {
     pen.lineWidth = Math.min(0.6 * radius, 2); // half of it is under the body
     if (kind && radius > 2.5) pen.stroke(bodies[kind]);

@@ -120,7 +120,7 @@ function readColours() {
   const names = [
     "ground", "road", "kerb", "ink", "quiet", "line", "mpc", "pid", "safety", "person", "close",
     "inside", "prediction", "influence", "car", "corridor", "safe", "speed", "gap", "stop", "overlap",
-    "panel", "paint", "unpainted", "green", "yellow", "red", "dark",
+    "panel", "shadow", "paint", "unpainted", "green", "yellow", "red", "dark",
   ];
   colours = Object.fromEntries(
     names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),

@@ -9,9 +9,13 @@ import pandas as pd
 import pytest
 
 from giveway.replays.events import events, why
+from giveway.run_data.columns import SIGHT_COLUMNS
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+
+NO_SIGHTS = pd.DataFrame(columns=[column.name for column in SIGHT_COLUMNS])
 
 
 @pytest.mark.parametrize(
@@ -51,7 +55,9 @@ def test_events_are_stops_fallbacks_and_encounters(recorded: Path) -> None:
             "time_of_minimum_clearance": [1.0, 2.0],
         }
     )
-    told = [(e["kind"], e["from"], e["to"]) for e in events(rows, people, EgoRunConfig())]
+    told = [
+        (e["kind"], e["from"], e["to"]) for e in events(rows, people, EgoRunConfig(), NO_SIGHTS)
+    ]
     assert told == [
         ("pid", 0.5, 1.5),
         ("stop", 0.5, 1.5),
@@ -74,8 +80,22 @@ def test_the_safety_layers_braking_is_an_event_whoever_drives(controller: str) -
             "solver_status": "infeasible: too close",
         }
     )
-    found = events(rows, pd.DataFrame(), EgoRunConfig(controller=controller))
+    found = events(rows, pd.DataFrame(), EgoRunConfig(controller=controller), NO_SIGHTS)
     assert [(e["from"], e["to"], e["text"]) for e in found if e["kind"] == "safety"] == [
         (0.5, 1.5, "the safety layer brakes: a stop must stay possible"),
         (2.0, 2.5, "the safety layer brakes: no braking is surely enough"),
     ]
+
+
+def test_who_comes_in_sight_during_the_drive_is_an_event_once() -> None:
+    from giveway.config import EgoRunConfig
+
+    same = {"speed": 1.0, "controller": "mpc", "reason": "optimal", "solver_status": "solved"}
+    rows = pd.DataFrame({"time": np.arange(6) * 0.5} | same)
+    sights = pd.DataFrame(
+        [("ego", "p", 0.0, 9.0, 8.0), ("ego", "q", 1.0, 1.5, 5.12), ("ego", "q", 2.0, np.nan, 4.0)],
+        columns=NO_SIGHTS.columns,
+    )
+    (found,) = events(rows, pd.DataFrame(), EgoRunConfig(), sights)
+    assert (found["kind"], found["from"], found["who"]) == ("sight", 1.0, "q")
+    assert found["text"] == "in sight, 5.1 m from the front: q"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from giveway.results.sights import sight_table
+from giveway.results.sights import perceived, sight_table
 from giveway.run_data.tracks import SightTrack
 
 
@@ -38,3 +38,18 @@ def test_nobody_in_sight_is_a_table_without_rows() -> None:
     table = sight_table(track(), ())
     assert list(table) == ["ego", "id", "time", "until", "distance"]
     assert not len(table)
+
+
+def test_a_person_is_perceived_while_a_stretch_in_sight_lasts() -> None:
+    changes = track(
+        (1.0, "ego", 0, True, 9.0),
+        (1.5, "other", 0, True, 20.0),
+        (1.5, "ego", 1, True, 20.0),
+        (2.0, "ego", 0, False, np.nan),
+        (2.5, "other", 0, False, np.nan),
+    )
+    time = np.array([0.95, 1.0, 2.0, 2.5, 1.4, 1.5, 9.0, 2.0])
+    who = np.array([0, 0, 0, 0, 1, 1, 1, 2])
+    seen = [False, True, True, False, False, True, True, False]
+    assert perceived(changes, who, time).tolist() == seen
+    assert not perceived(track(), who, time).any()
