@@ -23,7 +23,7 @@ from giveway.cli.option_groups import (
     ungrouped,
 )
 
-_Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
+_Folder = Annotated[Path, typer.Argument(help="The folder of a study or risk.")]
 
 
 def add_studies(app: Commands) -> None:
@@ -203,7 +203,7 @@ def _report(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
     trust: Trust = None,
 ) -> None:
-    """Write figures, replays of the most telling runs, and report.html into a study's folder."""
+    """Write figures, replays of the most telling runs, and report.html into the folder."""
     from giveway.cli.commands.report_command import report_command
 
     report_command(study, replays=replays, quiet=quiet, trusted=trust or ())

@@ -13,7 +13,7 @@ import pandas as pd
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.files.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
-from giveway.gate import LARGEST_TABLE, MANIFEST, opened, read_json
+from giveway.gate import DEFINITIONS, LARGEST_TABLE, MANIFEST, opened, read_json
 from giveway.geometry.kernel import Array
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
 from giveway.run_data.columns import (
@@ -152,6 +152,12 @@ def _require_run(folder: Path) -> None:
     missing = [name for name in needed if not (folder / name).is_file()]
     if not missing:
         return
+    for kind, definition in DEFINITIONS.items():
+        if (folder / definition).is_file():
+            raise ResultsError(
+                f"{folder}: a {kind} with many runs; make one again by giveway rerun {folder} RUN "
+                f"(runs.csv has their ids), and name {folder}/reruns/RUN"
+            )
     if not folder.is_dir():
         what = "a file" if folder.exists() else "no such folder"
     elif len(missing) == len(needed) - 1 and (folder / "manifest.json").exists():

@@ -29,7 +29,7 @@ from giveway.gate import (
 )
 from giveway.reports.examples import Drive
 from giveway.run_data.tracks import EgoTrack
-from giveway.studies.folder.study_folder import StudyFolder
+from giveway.studies.repeated_run import Runs
 
 REPLAYS = "replays"
 _LIST = "kept.json"
@@ -44,10 +44,10 @@ class KeptRuns:
     this user's key has not signed is none.
 
     Args:
-        study: Study that has the runs.
+        study: Study or risk that has the runs.
     """
 
-    def __init__(self, study: StudyFolder) -> None:
+    def __init__(self, study: Runs) -> None:
         self._study = study
         self._folder = study.path / REPLAYS
         self._list: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""The report of a study with replays: the runs that it shows are made again."""
+"""The report of a study or risk with replays: the runs that it shows are made again."""
 
 import time
 from collections.abc import Callable, Collection, Sequence
@@ -9,13 +9,17 @@ from giveway.errors import GivewayError
 from giveway.processes.interrupts import DeferredInterrupt, ended_by
 from giveway.replays import write_replay
 from giveway.reports.examples import Drive, drives_of
-from giveway.reports.kept_runs import KeptRuns
+from giveway.reports.kept_runs import REPLAYS, KeptRuns
 from giveway.reports.report_page import shown_runs, write_report
+from giveway.reports.risk_page import write_risk_page
 from giveway.results.folder import Destination
 from giveway.results.run_result import RunResult
+from giveway.risk.causes import likeliest
+from giveway.risk.risk_folder import RiskFolder
+from giveway.risk.tables import write_risk_tables
 from giveway.run_data.progress import Ending
 from giveway.studies.folder.study_folder import StudyFolder
-from giveway.studies.repeated_run import checked_run, rerun
+from giveway.studies.repeated_run import Runs, checked_run, rerun
 
 
 def write_report_of(
@@ -42,13 +46,7 @@ def write_report_of(
     """
     if not replays:
         return write_report(study)
-    runs, kept = shown_runs(study), KeptRuns(study)
-    kept.only(runs)
-    lost = _make([run for run in runs if not kept.has(run)], study, kept, tell, trusted)
-
-    if lost:
-        first = next(iter(lost.values()))
-        warn(f"{len(lost)} of {len(runs)} shown runs have no replay: {first}")
+    kept, lost = _made_again(shown_runs(study), study, tell, trusted, warn)
 
     def drives(run: str) -> Sequence[Drive]:
         if run in lost:
@@ -59,13 +57,59 @@ def write_report_of(
     return write_report(study, drives=drives, replay=lambda run: _page(kept, run, lost))
 
 
+def write_report_of_risk(
+    risk: RiskFolder,
+    *,
+    replays: bool = True,
+    tell: Callable[[str], None] = lambda _: None,
+    trusted: Collection[str] = (),
+    warn: Callable[[str], None] = lambda _: None,
+) -> Path:
+    """Write tables, replays and ``report.html`` into the folder of a risk.
+
+    The arguments are those of :func:`write_report_of`.
+
+    Raises:
+        GivewayError: runs are missing, or the disk is full.
+        KeyboardInterrupt: the user has ended it.
+    """
+    write_risk_tables(risk)
+    pages: dict[str, str] = {}
+    if replays:
+        runs = [one.run.id for one in likeliest(risk)]
+        kept, lost = _made_again(runs, risk, tell, trusted, warn)
+        pages = {run: f"{REPLAYS}/{kept.page(run).name}" for run in runs if run not in lost}
+    return write_risk_page(risk, pages)
+
+
+def _made_again(
+    runs: Sequence[str],
+    study: Runs,
+    tell: Callable[[str], None],
+    trusted: Collection[str],
+    warn: Callable[[str], None],
+) -> tuple[KeptRuns, dict[str, GivewayError]]:
+    """Keep the pages and drives of the runs that a report shows, and of no others.
+
+    Returns:
+        The kept runs, and the errors of those that cannot be made again, by their ids.
+    """
+    kept = KeptRuns(study)
+    kept.only(runs)
+    lost = _make([run for run in runs if not kept.has(run)], study, kept, tell, trusted)
+    if lost:
+        first = next(iter(lost.values()))
+        warn(f"{len(lost)} of {len(runs)} shown runs have no replay: {first}")
+    return kept, lost
+
+
 def _page(kept: KeptRuns, run: str, lost: dict[str, GivewayError]) -> Path | None:
     return None if run in lost else kept.page(run)
 
 
 def _make(
     runs: Sequence[str],
-    study: StudyFolder,
+    study: Runs,
     kept: KeptRuns,
     tell: Callable[[str], None],
     trusted: Collection[str],

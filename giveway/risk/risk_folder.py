@@ -118,6 +118,14 @@ class RiskFolder:
         """
         return self._run(run)[1]
 
+    def key_of(self, run: str) -> str:
+        """Return the key of a run's record.
+
+        Raises:
+            ResultsError: this risk has no such run.
+        """
+        return self._run(run)[0].key
+
     def layer_of(self, run: str) -> Layer:
         """Return the settings of a run.
 

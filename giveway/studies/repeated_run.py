@@ -38,6 +38,9 @@ class Runs(Protocol):
     def record(self, run: str) -> RunRecord | None:
         """Return the record of a run, or None if the run has not been made."""
 
+    def key_of(self, run: str) -> str:
+        """Return the key of a run's record."""
+
 
 def checked_run(
     study: Runs, run_id: str, *, predictions: bool = False, trusted: Collection[str] = ()

@@ -1,4 +1,4 @@
-"""The command ``giveway report``: figures, replays and the HTML report of a study."""
+"""The command ``giveway report``: figures, replays and the HTML report of a study or risk."""
 
 import sys
 from collections.abc import Collection
@@ -7,6 +7,7 @@ from pathlib import Path
 from rich.console import Console
 
 from giveway.cli.screen.printing import print_notes, print_place
+from giveway.risk.risk_folder import RiskFolder, is_risk
 from giveway.studies.folder.study_folder import StudyFolder
 
 
@@ -18,7 +19,7 @@ def report_command(
     Only the runs that are shown are made again.
 
     Args:
-        study: Folder of the study.
+        study: Folder of the study or risk.
         replays: True to make the shown runs again.
         quiet: True to print nothing.
         trusted: Code, as module:Class, that the study may import.
@@ -26,7 +27,23 @@ def report_command(
     Raises:
         GivewayError: there is no study, or nothing to show, or the disk is full.
     """
+    if is_risk(study):
+        _write_risk(RiskFolder(study, trusted=trusted), Console(quiet=quiet), replays, trusted)
+        return
     write_all(StudyFolder.open(study), Console(quiet=quiet), replays=replays, trusted=trusted)
+
+
+def _write_risk(
+    risk: RiskFolder, console: Console, replays: bool, trusted: Collection[str]
+) -> None:
+    """Write tables, replays and report of a risk."""
+    from giveway.reports.with_replays import write_report_of_risk
+
+    with console.status("Drawing ...") as status:
+        page = write_report_of_risk(
+            risk, replays=replays, tell=status.update, trusted=trusted, warn=print_notes
+        )
+    print_place(console, "Report", page)
 
 
 def write_all(

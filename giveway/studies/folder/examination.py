@@ -5,9 +5,10 @@ from pathlib import Path
 from giveway.config.files.trust import is_own_folder
 from giveway.doctor.finding import Finding, error, note, ok
 from giveway.errors import ResultsError
-from giveway.gate import MANIFEST, read_json
+from giveway.gate import DEFINITIONS, MANIFEST, read_json
 from giveway.run_data.seal import faults, is_sealed
-from giveway.studies.folder.folder_contents import DEFINITION, broken_files
+from giveway.studies.folder.folder_contents import DEFINITION, broken_files, read_manifest
+from giveway.studies.folder.store import RECORDS, RecordStore
 from giveway.studies.folder.study_folder import StudyFolder
 
 _SUBJECT = "files"
@@ -47,14 +48,30 @@ def _of_study(folder: Path) -> list[Finding]:
     Raises:
         ResultsError: the study cannot be read.
     """
-    remedy = "giveway study with --resume makes it again"
+    is_risk = (folder / DEFINITIONS["risk"]).exists()
+    remedy = f"giveway {'risk' if is_risk else 'study'} with --resume makes it again"
     broken = [
         error(_SUBJECT, f"{file}: is not what giveway wrote", remedy)
         for file in broken_files(folder)
     ]
-    if not broken and not (folder / DEFINITION).exists():
-        return [ok(_SUBJECT, f"{folder}: as the risk wrote them, but for records, not examined")]
+    if not broken and is_risk:
+        return [_of_risk(folder)]
     if not broken:
         runs = len(StudyFolder(folder).records)  # a broken record is an error
         return [ok(_SUBJECT, f"{folder}: as the study wrote them, {runs:,} runs")]
     return broken
+
+
+def _of_risk(folder: Path) -> Finding:
+    """Return how many runs of a risk are there, and whether they are all.
+
+    Raises:
+        ResultsError: a record is broken.
+    """
+    manifest = read_manifest(folder)
+    store = RecordStore(folder, manifest["identity"])
+    found = [store.get(file.stem) for file in sorted((folder / RECORDS).glob("*/*.json"))]
+    told = f"{folder}: as the risk wrote them, {len(found):,} runs"
+    if manifest["complete"]:
+        return ok(_SUBJECT, told)
+    return note(_SUBJECT, f"{told}; not all are there", "go on with giveway risk and --resume")

@@ -3,29 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
+from functools import partial
 from typing import Any
 
 import pytest
+from support.risks import HIT_AT_ONCE
+from support.risks import known_risk as by_formula
 from support.studies import InThisProcess
 
 from giveway.risk.definition import make_risk
-from giveway.risk.plan import batches, plan_risk
 from giveway.risk.session import run_risk
-from giveway.studies.record import RunRecord
 from giveway.studies.study_options import StudyOptions
-
-HIT_AT_ONCE = {
-    "name": "small",
-    "runs": 8,
-    "run": {
-        "time_limit": 1.0,
-        "controller": "pid-paper",
-        "ego": {"initial_speed": 8.0},
-        "crowd": {"pedestrians": 2, "spawn_area": [3.5, -2, 9, 1], "walk": [0, 5]},
-    },
-    "inputs": {"vehicle.mass": {"normal": [1000, 50]}},
-}
 
 
 class OptionsHere(StudyOptions):
@@ -59,44 +47,5 @@ def resumed():
 
 @pytest.fixture
 def known_risk(tmp_path):
-    """Returns a risk whose runs have a formula: (method, runs, **changes) -> folder.
-
-    Runs are the worse, the faster the ego and the heavier the car; nothing else matters.
-    """
-
-    def make(method="monte-carlo", runs=1500, **changes):
-        inputs = {
-            "ego.initial_speed": {"uniform": [1.0, 8.0]},
-            "vehicle.mass": {"normal": [1000, 50]},
-            "crowd.preset": {"choice": ["MIXED", "SIM"]},
-        }
-        values = HIT_AT_ONCE | {"inputs": inputs, "method": method, "runs": runs} | changes
-        plan = plan_risk(make_risk(values, "mine"), "mine")
-        asking, made = batches(plan), []
-        try:
-            batch = next(asking)
-            while True:
-                records = [_by_formula(run) for run in batch]
-                made += zip(batch, records, strict=True)
-                batch = asking.send(records)
-        except StopIteration as end:
-            found = end.value
-        used = made[: found.estimate.runs]
-        return SimpleNamespace(
-            path=tmp_path, plan=plan, runs=used, estimate=found.estimate, indices=found.indices
-        )
-
-    return make
-
-
-def _by_formula(run):
-    beyond = 0.8 * float(run.vector[1]) + 0.6 * float(run.vector[2]) - 1.3
-    row = {
-        "ego": "ego",
-        "ending": "completed",
-        "travelled_distance": 50.0,
-        "minimum_clearance": max(0.0, -beyond),
-        "frontal_impact_speed": 10.0 * beyond if beyond >= 0.0 else None,
-        "adult_impact_speed": 10.0 * beyond if beyond >= 0.0 else None,
-    }
-    return RunRecord(run.id, run.key, "completed", rows=(row,))
+    """Returns a risk whose runs have a formula: (method, runs, **changes) -> folder."""
+    return partial(by_formula, tmp_path)

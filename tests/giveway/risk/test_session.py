@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from copy import copy
 from dataclasses import replace
 
@@ -10,9 +11,12 @@ import pandas as pd
 import pytest
 
 from giveway.errors import GivewayError, ResultsError
+from giveway.replays.run_folder import RunFolder
+from giveway.reports.with_replays import write_report_of_risk
 from giveway.risk.risk_folder import RiskFolder
 from giveway.risk.severity import rosen_sander
 from giveway.risk.tables import per_kilometre
+from giveway.studies.folder.examination import examine_results
 from giveway.studies.folder.lock import RISK_TABLES
 from giveway.studies.repeated_run import rerun
 from giveway.studies.study import StudyInterruptedError
@@ -125,3 +129,33 @@ def test_another_folder_is_not_taken_for_a_risk(small_risk, risk_of, tmp_path):
         RiskFolder(tmp_path)
     with pytest.raises(GivewayError, match="go on with it by --resume"):
         risk_of(small_risk.path)
+
+
+def test_the_report_plays_the_likeliest_runs_with_the_event(small_risk):
+    page = write_report_of_risk(RiskFolder(small_risk.path)).read_text("utf-8")
+    shown = re.findall(r'href="(replays/r\d+\.html)"', page)
+    assert len(set(shown)) == min(10, small_risk.estimate.events)
+    assert all((small_risk.path / link).is_file() for link in shown)
+
+
+def test_a_finished_risk_is_told_from_one_that_is_under_way(small_risk, risk_of, tmp_path):
+    (whole,) = examine_results(small_risk.path)
+    assert (whole.level, whole.text) == (
+        "ok",
+        f"{small_risk.path}: as the risk wrote them, 8 runs",
+    )
+
+    def end(progress):
+        raise KeyboardInterrupt
+
+    with pytest.raises(StudyInterruptedError):
+        risk_of(tmp_path / "ended", watcher=end)
+    (part,) = examine_results(tmp_path / "ended")
+    assert (part.level, part.remedy) == ("note", "go on with giveway risk and --resume")
+
+
+def test_a_risk_is_not_played_as_if_it_were_a_run(small_risk):
+    with pytest.raises(
+        ResultsError, match="a risk with many runs; make one again by giveway rerun"
+    ):
+        RunFolder.read(small_risk.path)
