@@ -199,6 +199,10 @@ class NcapChoice(NamedTuple):
     speeds: Annotated[
         list[int] | None, typer.Option("--speed", help="A speed [km/h]; repeatable.")
     ] = None
+    measured: Annotated[
+        Path | None,
+        typer.Option(help="CSV file of measured impact speeds, which verify the colours."),
+    ] = None
     seed: Annotated[int, typer.Option(help="Seed of all runs.", min=0)] = 1
 
 

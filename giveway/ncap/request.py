@@ -15,8 +15,10 @@ from giveway.config.files.loading import load
 from giveway.errors import ConfigError
 from giveway.gate import MANIFEST
 from giveway.ncap.course import write_course
+from giveway.ncap.measured import read_measured
 from giveway.ncap.plan import HOLDER, OBSTRUCTED, OPEN, Planned, runs_of, study_of, width_of
 from giveway.ncap.protocol import Cell, Protocol, read_protocol
+from giveway.ncap.rating import Key
 from giveway.studies.definition import StudyDefinition
 from giveway.studies.folder.lock import COURSE
 
@@ -38,6 +40,7 @@ class NcapRequest:
         tests: Names of the only tests; empty for all.
         speeds: The only speeds [km/h]; empty for all.
         seed: Seed of all runs.
+        measured: CSV file with measured impact speeds, or None without one.
         out: Folder of the table, or None for results/ncap_CAR_PROTOCOL.
     """
 
@@ -50,6 +53,7 @@ class NcapRequest:
     tests: Sequence[str] = ()
     speeds: Sequence[int] = ()
     seed: int = 1
+    measured: Path | None = None
     out: Path | None = None
 
 
@@ -63,6 +67,7 @@ class NcapPlan:
         definition: Study that makes them.
         width: Width [m] of the car.
         out: Folder of the table.
+        measured: Measured impact speeds [km/h] by cell.
     """
 
     protocol: Protocol
@@ -70,6 +75,7 @@ class NcapPlan:
     definition: StudyDefinition
     width: float
     out: Path
+    measured: dict[Key, float]
 
 
 def requested_ncap(request: NcapRequest) -> NcapPlan:
@@ -80,6 +86,7 @@ def requested_ncap(request: NcapRequest) -> NcapPlan:
     """
     protocol = read_protocol(_protocol_name(request))
     cells = _chosen(protocol, request)
+    measured = {} if request.measured is None else read_measured(request.measured, protocol)
     if request.controller is not None:
         load([Layer("--controller", {"controller": request.controller})])
     drivers = dict.fromkeys((HOLDER, *filter(None, [request.controller])))
@@ -91,7 +98,7 @@ def requested_ncap(request: NcapRequest) -> NcapPlan:
     definition = study_of(
         slug[:_LONGEST], protocol, runs, car, courses_of(out, protocol, width), request.seed
     )
-    return NcapPlan(protocol, runs, definition, width, out)
+    return NcapPlan(protocol, runs, definition, width, out, measured)
 
 
 def _protocol_name(request: NcapRequest) -> str:

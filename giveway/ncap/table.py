@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from math import isnan, nan
 from pathlib import Path
 
 import pandas as pd
 
 from giveway.geometry.bodies import BODY
-from giveway.ncap.plan import Planned
+from giveway.ncap.plan import HOLDER, Planned
 from giveway.ncap.protocol import KMH, Cell, Colour, Protocol, Test
-from giveway.ncap.rating import Rating, colour_of, rate
+from giveway.ncap.rating import Key, Rating, Verdict, colour_of, rate, verified
 from giveway.run_data.columns import Column
 from giveway.studies.folder.atomic_files import write_atomically
 from giveway.studies.folder.lock import NCAP_FILES
@@ -41,6 +41,8 @@ COLUMNS = (
     Column("first_braking_time", "number", "s", "from departure until it brakes with 1 m/s²"),
     Column("hardest_braking", "number", "m/s^2", "largest deceleration before the impact"),
     Column("impact_point", "number", "%", "of the car's width, as the hit point; empty: no impact"),
+    Column("measured_speed", "number", "km/h", "as relative_speed, measured; empty: not measured"),
+    Column("verdict", "string", None, "correct, in tolerance, better, incorrect; empty: none"),
     Column("failure", "string", None, "why there is no result"),
     Column("repeat", "string", None, "command that makes the run again"),
 )
@@ -83,12 +85,14 @@ class DriverTable:
         driver: Controller that drove.
         cells: Outcomes of cells by their keys.
         nobody: Outcomes without a person.
+        measured: Impact speeds [km/h] that were measured elsewhere, relative to the dummy.
     """
 
     protocol: Protocol
     driver: str
-    cells: dict[tuple[str, int, int], Outcome]
+    cells: dict[Key, Outcome]
     nobody: tuple[Outcome, ...]
+    measured: Mapping[Key, float] = field(default_factory=dict)
 
     @property
     def tests(self) -> tuple[Test, ...]:
@@ -102,7 +106,18 @@ class DriverTable:
         known = {key: one.colour for key, one in self.cells.items() if one.colour}
         if not self.protocol.rates or len(known) < len(self.protocol.cells):
             return None
-        return rate(self.protocol, known)  # type: ignore[arg-type]
+        return rate(self.protocol, known, list(self.verdicts.items()))  # type: ignore[arg-type]
+
+    @property
+    def verdicts(self) -> dict[Key, Verdict]:
+        """Whether each measured impact speed confirms the colour of its cell."""
+        found: dict[Key, Verdict] = {}
+        for key, one in self.cells.items():
+            cell = one.planned.cell
+            if key in self.measured and one.colour and cell is not None:
+                value = self.measured[key]
+                found[key], _ = verified(self.protocol, cell, one.colour, value)  # type: ignore[arg-type]
+        return found
 
 
 def outcomes_of(
@@ -177,8 +192,16 @@ def _hit_by(protocol: Protocol, cell: Cell, aside: float, width: float) -> float
     return 100.0 * (0.5 + away / width)
 
 
-def tables_of(protocol: Protocol, outcomes: Iterable[Outcome]) -> list[DriverTable]:
-    """Return the tables, driver by driver."""
+def tables_of(
+    protocol: Protocol, outcomes: Iterable[Outcome], measured: Mapping[Key, float] | None = None
+) -> list[DriverTable]:
+    """Return the tables, driver by driver.
+
+    Args:
+        protocol: Protocol.
+        outcomes: Outcomes of all runs.
+        measured: Impact speeds [km/h] that were measured elsewhere; they verify the first table.
+    """
     by_driver: dict[str, list[Outcome]] = {}
     for one in outcomes:
         by_driver.setdefault(one.planned.driver, []).append(one)
@@ -188,6 +211,7 @@ def tables_of(protocol: Protocol, outcomes: Iterable[Outcome]) -> list[DriverTab
             driver,
             {one.planned.cell.key: one for one in mine if one.planned.cell is not None},
             tuple(one for one in mine if one.planned.cell is None),
+            measured or {} if driver == HOLDER else {},
         )
         for driver, mine in by_driver.items()
     ]
@@ -220,6 +244,8 @@ def _row(table: DriverTable, one: Outcome, out: Path) -> list[object]:
         points_of(table.protocol, one),
         one.id,
         *numbers,
+        table.measured.get(cell.key, nan) if cell is not None else nan,
+        table.verdicts.get(cell.key, "") if cell is not None else "",
         one.failure,
         f"giveway rerun {shlex.quote(str(out))} {one.id}",
     ]

@@ -41,15 +41,16 @@ class Matrix:
 
 def matrices_of(table: DriverTable) -> list[Matrix]:
     """Return the matrices of a driver, test by test, and that without a person."""
-    speeds = sorted({key[2] for key in table.cells} | {one.planned.speed for one in table.nobody})
-    found = [_matrix(table, test, speeds) for test in table.tests]
+    found = [_matrix(table, test) for test in table.tests]
+    speeds = sorted({one.planned.speed for one in table.nobody})
     roads = dict.fromkeys(one.planned.road for one in table.nobody)
     rows = [(road, [_alone(table, road, speed) for speed in speeds]) for road in roads]
     found.append(Matrix("False reaction", "the same drives without the person", "", speeds, rows))
     return found
 
 
-def _matrix(table: DriverTable, test: Test, speeds: Sequence[int]) -> Matrix:
+def _matrix(table: DriverTable, test: Test) -> Matrix:
+    speeds = sorted({speed for name, _, speed in table.cells if name == test.name})
     hits = sorted({hit for name, hit, _ in table.cells if name == test.name})
     rows = [
         (f"{hit} %", [_square(table.cells.get((test.name, hit, speed))) for speed in speeds])
@@ -110,7 +111,7 @@ def lead_of(table: DriverTable) -> str:
     rating = table.rating
     failed = [one.id for one in table.cells.values() if one.failure]
     if failed:
-        return f"{len(failed)} cells have no result ({', '.join(failed[:5])}): no points."
+        return f"No points, since there is no result of {len(failed)} ({', '.join(failed[:5])})."
     hit = [one for one in table.cells.values() if one.impact > 0.0]
     told = f"Impacts in {len(hit)} of {len(table.cells)} cells"
     if hit:
@@ -118,7 +119,19 @@ def lead_of(table: DriverTable) -> str:
     if rating is None:
         return f"{told}."
     zeroed = ", because the cell that all points need is not green" if rating.zeroed else ""
-    return f"{told}: {rating.total:g} of {rating.most:g} points by day{zeroed}."
+    checks = f" after {len(table.verdicts)} verified cells" if table.verdicts else ""
+    return f"{told}: {rating.total:g} of {rating.most:g} points by day{checks}{zeroed}."
+
+
+def verification_of(table: DriverTable) -> list[tuple[str, str, str, str]]:
+    """Return each measured cell: its name, its impact speeds [km/h] here and there, the verdict."""
+    rows: list[tuple[str, str, str, str]] = []
+    for key, verdict in table.verdicts.items():
+        one = table.cells[key]
+        assert one.planned.cell is not None
+        speeds = f"{one.relative:.1f}", f"{table.measured[key]:.1f}"
+        rows.append((one.planned.cell.label, *speeds, verdict))
+    return rows
 
 
 def ncap_page(
@@ -141,6 +154,7 @@ def ncap_page(
             "heading": "" if number == 0 else f"Not a Euro NCAP rating: {table.driver} drives",
             "lead": lead_of(table),
             "matrices": matrices_of(table),
+            "verified": verification_of(table),
             "false": [one.planned.label for one in table.nobody if one.reacts_to_nobody],
         }
         for number, table in enumerate(tables)

@@ -44,7 +44,7 @@ def ncap_command(
     if session is None:
         return 0
     outcomes = outcomes_of(session.study, asked.protocol, asked.runs, asked.width)
-    tables = tables_of(asked.protocol, outcomes)
+    tables = tables_of(asked.protocol, outcomes, asked.measured)
     frame = write_ncap(asked.out, tables)
     page = ncap_page(asked.protocol, tables, _facts(request, session.plan), _footer(request))
     write_atomically(asked.out / NCAP_FILES[1], page)

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from giveway.cli.screen.printing import escape, numbers_of
 from giveway.ncap.table import DriverTable
-from giveway.reports.ncap_page import Square, lead_of, matrices_of
+from giveway.reports.ncap_page import Square, lead_of, matrices_of, verification_of
 
 _STYLES = {
     "green": "green",
@@ -34,6 +34,9 @@ def print_ncap(console: Console, tables: Sequence[DriverTable]) -> None:
             points = f" ({matrix.points})" if matrix.points else ""
             console.print(f"{matrix.name}: {matrix.title}{points}", highlight=False)
             console.print(lines)
+        for name, here, there, verdict in verification_of(table):
+            told = f"{name}: {here} km/h, measured {there}: {verdict}"
+            console.print(told, highlight=False)
         console.print(lead_of(table), highlight=False)
         if any(one.reacts_to_nobody for one in table.nobody):
             console.print("[yellow]It brakes though nobody is there:[/] see the last matrix")
