@@ -80,19 +80,22 @@ def test_a_run_without_a_result_has_no_colour_and_the_table_no_points():
     whole = [one if one.planned.cell is not where else found for one in table()]
     (driven,) = tables_of(PROTOCOL, whole)
     assert driven.rating is None
-    assert lead_of(driven) == "1 cells have no result (c1-s1): no points."
+    assert lead_of(driven) == "No points, since there is no result of 1 (c1-s1)."
 
 
 def test_points_of_standard_cells_add_up_to_those_of_the_test():
     (driven,) = tables_of(PROTOCOL, table())
-    total = sum(
-        points_of(PROTOCOL, one) for one in driven.cells.values() if not one.planned.cell.extended
-    )
-    assert total == pytest.approx(3.0, abs=1e-4)
+    each = {
+        extended: [
+            points_of(PROTOCOL, one)
+            for one in driven.cells.values()
+            if one.planned.cell.extended == extended
+        ]
+        for extended in (False, True)
+    }
+    assert sum(each[False]) == pytest.approx(3.0, abs=1e-4)
+    assert all(map(isnan, each[True]))
     assert driven.rating.total == 3.375
-    assert isnan(
-        points_of(PROTOCOL, next(o for o in driven.cells.values() if o.planned.cell.extended))
-    )
 
 
 def test_measured_speeds_verify_the_first_table_and_cost_points():

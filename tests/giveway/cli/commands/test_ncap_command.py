@@ -57,7 +57,7 @@ def test_a_native_crash_costs_one_cell_and_not_the_table(monkeypatch, tmp_path, 
     car = zoo.car(behaviour="segfault", at=9.0)  # when the drive without a person has ended
     profile = ["--profile", car.with_suffix(".toml")]
     assert typed(monkeypatch, "ncap", car, *profile, *R152, "--out", tmp_path / "out") == 1
-    assert "no result (c1-s1)" in " ".join(capsys.readouterr().out.split())
+    assert "no result of 1 (c1-s1)" in " ".join(capsys.readouterr().out.split())
     hit, alone = pd.read_csv(tmp_path / "out" / "ncap.csv").to_dict("records")
     assert hit["colour"] == "failed"
     assert car.name in hit["failure"]
