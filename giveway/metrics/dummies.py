@@ -113,8 +113,7 @@ def _impact(drive: Any, person: CrowdTrack, size: tuple[float, float]) -> _Impac
     c, s = np.cos(track.heading[k]), np.sin(track.heading[k])
     off_x, off_y = person.x - track.front_x[k], person.y - track.front_y[k]
     ahead, aside = c * off_x + s * off_y, c * off_y - s * off_x
-    along = _walks_along(person, c, s)
-    half_ahead, half_aside = np.array(size if along else size[::-1]) / 2.0
+    half_ahead, half_aside = _extents(person, c, s, size)
     gap, walks = ahead - half_ahead, c * person.vx + s * person.vy
     reached = np.flatnonzero((gap[:-1] >= 0.0) & (gap[1:] < 0.0) & (np.diff(k) == 1))
     for i in reached.tolist():
@@ -124,12 +123,22 @@ def _impact(drive: Any, person: CrowdTrack, size: tuple[float, float]) -> _Impac
             return float(values[i] + share * (values[i + 1] - values[i]))
 
         speed, where = at(track.speed[k]), at(aside)
-        if speed > MOVING and abs(where) < drive.shape.width / 2.0 + half_aside:
+        if speed > MOVING and abs(where) < drive.shape.width / 2.0 + at(half_aside):
             return _Impact(at(track.time[k]), speed, speed - at(walks), where)
     return _Impact()
 
 
-def _walks_along(person: CrowdTrack, c: Array, s: Array) -> bool:
-    """Return whether a person walks along the ego's heading rather than across it."""
-    moved = person.x[-1] - person.x[0], person.y[-1] - person.y[0]
-    return bool(abs(c[0] * moved[0] + s[0] * moved[1]) > abs(c[0] * moved[1] - s[0] * moved[0]))
+def _extents(
+    person: CrowdTrack, c: Array, s: Array, size: tuple[float, float]
+) -> tuple[Array, Array]:
+    """Return half of a person's box (R,) [m] along the ego's heading, and across it.
+
+    The box is turned to where the person walks. One who stands all the time looks across.
+    """
+    x, y = person.x[-1] - person.x[0], person.y[-1] - person.y[0]
+    walked = float(np.hypot(x, y))
+    if walked == 0.0:
+        x, y, walked = -s[0], c[0], 1.0
+    ahead, aside = np.abs(c * x + s * y) / walked, np.abs(c * y - s * x) / walked
+    length, width = size
+    return (length * ahead + width * aside) / 2.0, (length * aside + width * ahead) / 2.0

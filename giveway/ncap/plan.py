@@ -11,7 +11,8 @@ from giveway.config.files.layers import Layer, merge
 from giveway.geometry.bodies import BODY
 from giveway.metrics.dummies import DUMMY
 from giveway.ncap.course import DRIVE, GATE, LINE
-from giveway.ncap.protocol import KMH, Cell, Protocol, Test
+from giveway.ncap.protocol import KMH, Cell, Protocol
+from giveway.ncap.turning import BEGIN, meeting, path_of
 from giveway.studies.definition import StudyDefinition, make_definition
 
 HOLDER = "speed-holder"
@@ -56,10 +57,9 @@ def runs_of(cells: tuple[Cell, ...], drivers: tuple[str, ...]) -> list[Planned]:
     for number, driver in enumerate(drivers):
         own = "" if number == 0 else f" {driver}"
         found += [
-            Planned(f"{cell.label}{own}", driver, road_of(cell.test), cell.speed, cell)
-            for cell in cells
+            Planned(f"{cell.label}{own}", driver, road_of(cell), cell.speed, cell) for cell in cells
         ]
-        alone = {(road_of(cell.test), cell.speed) for cell in cells}
+        alone = {(road_of(cell), cell.speed) for cell in cells}
         found += [
             Planned(f"nobody, {road}, {speed} km/h{own}", driver, road, speed, None)
             for road, speed in sorted(alone)
@@ -67,9 +67,11 @@ def runs_of(cells: tuple[Cell, ...], drivers: tuple[str, ...]) -> list[Planned]:
     return found
 
 
-def road_of(test: Test) -> str:
-    """Return the road of a test."""
-    return OBSTRUCTED if test.parked else OPEN
+def road_of(cell: Cell) -> str:
+    """Return the road of a cell."""
+    if cell.test.turn is not None:
+        return f"turn to the {cell.test.turn.side} at {cell.speed}"
+    return OBSTRUCTED if cell.test.parked else OPEN
 
 
 def study_of(
@@ -91,11 +93,12 @@ def study_of(
         seed: Seed of the runs.
     """
     width = width_of(car)
+    length = float(car.get("vehicle", {}).get("length") or BODY.length)
     own = {key: car[key] for key in OF_CONTROLLER if key in car}
     shared = {key: value for key, value in car.items() if key not in own}
     levels = {}
     for run in runs:
-        layers = [Layer("cell", _settings(protocol, run, width, courses))]
+        layers = [Layer("cell", _settings(protocol, run, width, length, courses))]
         if run.driver != HOLDER:
             layers.append(Layer("config", own))
         elif "hidden_speed" not in car.get("safety", {}):
@@ -132,30 +135,36 @@ def _common() -> dict[str, Any]:
 
 
 def _settings(
-    protocol: Protocol, run: Planned, width: float, courses: Mapping[str, Path]
+    protocol: Protocol, run: Planned, width: float, length: float, courses: Mapping[str, Path]
 ) -> dict[str, Any]:
-    """Return the settings of one run."""
+    """Return the settings of one run of a car of some width and length [m]."""
     speed, before = run.speed / KMH, _ALONE
+    if run.road not in {OPEN, OBSTRUCTED}:  # before the turn
+        before += (LINE - BEGIN) * KMH / run.speed
     values: dict[str, Any] = {
         "scenario": str(courses[run.road]),
         "controller": run.driver,
         "regulation": {"reference_speed": round(speed, 6)},
     }
+    met = LINE
     if run.cell is not None:
         dummy = protocol.dummy(run.cell.test)
-        person, before = script_of(protocol, run.cell, width)
+        person, before = script_of(protocol, run.cell, width, length)
+        met = max(person["meet_x"], LINE if run.cell.test.turn is None else 0.0)
         values["crowd"] = {"model": "recorded", "scripted": [person]}
         values["metrics"] = {DUMMY: [dummy.length, dummy.width]}
-    start = LINE - speed * (before + _LEAD)
+    start = met - speed * (before + _LEAD)
     values["ego"] = {
         "depart_position": round(start, 3),
         "initial_speed": round(speed, 6),
-        "travel_distance": round(LINE + _BEYOND - start, 3),
+        "travel_distance": round(met + _BEYOND - start, 3),
     }
     return values
 
 
-def script_of(protocol: Protocol, cell: Cell, width: float) -> tuple[dict[str, Any], float]:
+def script_of(
+    protocol: Protocol, cell: Cell, width: float, length: float = BODY.length
+) -> tuple[dict[str, Any], float]:
     """Return the script of a cell's dummy, and the time [s] of its walk to the meeting.
 
     The dummy's box is met by the front when its reference point is at the hit point.
@@ -164,17 +173,25 @@ def script_of(protocol: Protocol, cell: Cell, width: float) -> tuple[dict[str, A
         protocol: Protocol.
         cell: Cell.
         width: Width [m] of the car.
+        length: Length [m] of the car.
     """
     test, dummy = cell.test, protocol.dummy(cell.test)
     pace, along = test.pace / KMH, test.walks == "along"
     offset = width * (cell.hit / 100.0 - 0.5)
-    if along:  # the hit point counts from the right
+    if test.turn is not None:
+        direction = 1.0 if test.walks == "with the car" else -1.0
+        path = path_of(test.turn, cell.speed)
+        front, middle, crossed = meeting(test.turn, path, dummy, direction, length)
+        first = crossed - direction * cell.start
+        walked = direction * (middle - first)
+        place = {"x": first, "y": test.turn.line, "heading": 90.0 - 90.0 * direction}
+    elif along:  # the hit point counts from the right
         walked = test.acceleration + cell.start
         place = {"x": LINE - walked, "y": offset, "heading": 0.0}
         front = LINE - dummy.length / 2.0
     else:
         walked = cell.start + offset + dummy.reference
-        side = -1.0 if test.walks == "from the right" else 1.0
+        side = test.comes_from
         place = {"x": LINE, "y": side * cell.start, "heading": -90.0 * side}
         front = LINE - dummy.width / 2.0
     person = {

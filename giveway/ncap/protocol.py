@@ -105,6 +105,45 @@ class Row(Section):
     avoid: bool = False
 
 
+class Bend(Section):
+    """The curve of a turning test at one speed.
+
+    Attributes:
+        speed: Speed [km/h] of the car.
+        radius: Radius [m] of the arc.
+        clothoid: Angle [degree] of each clothoid.
+        arc: Angle [degree] of the arc.
+    """
+
+    speed: int
+    radius: float
+    clothoid: float
+    arc: float
+
+
+class Turn(Section):
+    """The turn of the car in a test.
+
+    Attributes:
+        side: Side to which it turns.
+        beside: Distance [m] of the dummy's line from the middle of the road that the car leaves.
+        lane: Width [m] of a lane, of which the car drives on the right one.
+        bends: Curves by speed.
+    """
+
+    side: Literal["left", "right"]
+    beside: float
+    lane: float
+    bends: tuple[Bend, ...]
+
+    @property
+    def line(self) -> float:
+        """The y [m] of the dummy's line, counted from the middle of the car's lane."""
+        if self.side == "left":
+            return self.beside + self.lane / 2.0
+        return self.lane / 2.0 - self.beside
+
+
 class Test(Section):
     """One test.
 
@@ -115,9 +154,10 @@ class Test(Section):
         dummy: Name of the dummy.
         pace: Speed [km/h] of the person.
         start: Distance [m] of the first place from the car's middle, or, along the road, of the
-            walk at full speed before the impact.
+            walk at full speed before the impact, or, at a turn, from the car's path.
         acceleration: Distance [m] of the acceleration.
         parked: True if parked cars hide the person.
+        turn: Turn of the car, or None if it drives straight on.
         standard_points: Points of the standard range.
         extended_points: Points of the extended range.
         rows: Cells.
@@ -125,15 +165,23 @@ class Test(Section):
 
     name: str
     title: str
-    walks: Literal["from the right", "from the left", "along"]
+    walks: Literal["from the right", "from the left", "along", "with the car", "against the car"]
     dummy: str
     pace: float
     start: float
     acceleration: float
     parked: bool = False
+    turn: Turn | None = None
     standard_points: float = 0.0
     extended_points: float = 0.0
     rows: tuple[Row, ...]
+
+    @property
+    def comes_from(self) -> int:
+        """The side from which the person comes to the car: 1 for the left, -1 for the right."""
+        if self.turn is None:
+            return 1 if self.walks == "from the left" else -1
+        return 1 if (self.walks == "with the car") == (self.turn.side == "left") else -1
 
     __test__ = False  # it is no test of pytest
 

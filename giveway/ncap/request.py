@@ -16,9 +16,19 @@ from giveway.errors import ConfigError
 from giveway.gate import MANIFEST
 from giveway.ncap.course import write_course
 from giveway.ncap.measured import read_measured
-from giveway.ncap.plan import HOLDER, OBSTRUCTED, OPEN, Planned, runs_of, study_of, width_of
+from giveway.ncap.plan import (
+    HOLDER,
+    OBSTRUCTED,
+    OPEN,
+    Planned,
+    road_of,
+    runs_of,
+    study_of,
+    width_of,
+)
 from giveway.ncap.protocol import Cell, Protocol, read_protocol
 from giveway.ncap.rating import Key
+from giveway.ncap.turning import path_of
 from giveway.studies.definition import StudyDefinition
 from giveway.studies.folder.lock import COURSE
 
@@ -173,6 +183,12 @@ def courses_of(out: Path, protocol: Protocol, width: float) -> dict[str, Path]:
         half = protocol.dummy(hidden[0]).width / 2.0
         name = f"parked-{width:g}"
         found[OBSTRUCTED] = write_course(folder / name, name, width, protocol.parked, half)
+    for cell in protocol.cells:
+        road, turn = road_of(cell), cell.test.turn
+        if turn is not None and road not in found:
+            path = path_of(turn, cell.speed)
+            name = f"{turn.side}-{cell.speed}"
+            found[road] = write_course(folder / name, name, width, path=path)
     return found
 
 

@@ -163,7 +163,7 @@ def outcome_of(
         0.0 if isnan(row[name]) else round(KMH * row[name], 2)
         for name in ("dummy_impact_speed", "dummy_relative_speed")
     )
-    numbers = {name: round(row[name], 3) for name in _NUMBERS}
+    numbers = {name: round(row[name], 3) + 0.0 for name in _NUMBERS}
     numbers["impact_point"] = nan
     if run.cell is None:
         return Outcome(run, id_, impact, relative, "", numbers)
@@ -186,7 +186,7 @@ def _hit_by(protocol: Protocol, cell: Cell, aside: float, width: float) -> float
         width: Width [m] of the car.
     """
     test = cell.test
-    away = -aside if test.walks == "from the left" else aside
+    away = -test.comes_from * aside
     if test.walks != "along":
         away -= protocol.dummy(test).reference
     return 100.0 * (0.5 + away / width)

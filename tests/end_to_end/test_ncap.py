@@ -12,20 +12,20 @@ from giveway.ncap.request import courses_of
 from giveway.ncap.table import outcome_of
 from giveway.studies.record import RunRecord
 
-PROTOCOL = read_protocol("euroncap-2026")
+PROTOCOLS = [read_protocol(name) for name in ("euroncap-2026", "euroncap-2023")]
 
 
 def outcome(folder, key, car, nobody=False):
     """Make the run of one cell, or of its road without the person."""
-    (cell,) = (one for one in PROTOCOL.cells if one.key == key)
+    protocol, cell = next((each, one) for each in PROTOCOLS for one in each.cells if one.key == key)
     width = car.get("vehicle", {}).get("width", 2.0)
-    run = Planned(cell.label, HOLDER, road_of(cell.test), cell.speed, None if nobody else cell)
-    courses = courses_of(folder, PROTOCOL, width)
-    study = study_of("x", PROTOCOL, [run], car, courses, 1)
+    run = Planned(cell.label, HOLDER, road_of(cell), cell.speed, None if nobody else cell)
+    courses = courses_of(folder, protocol, width)
+    study = study_of("x", protocol, [run], car, courses, 1)
     layers = [Layer("", study.run), Layer("", study.factors["test"][cell.label])]
     result = giveway.run(merge(layers))
     record = RunRecord("c1-s1", "", str(result.ending), tuple(result.summary_rows))
-    return outcome_of(PROTOCOL, run, "c1-s1", record, width)
+    return outcome_of(protocol, run, "c1-s1", record, width)
 
 
 @pytest.mark.parametrize(
@@ -36,6 +36,8 @@ def outcome(folder, key, car, nobody=False):
         (("CPFA", 75, 30), 1.8),
         (("CPNCO", 50, 40), 1.8),
         (("CPLA", 25, 80), 2.0),
+        (("CPTAfs", 50, 20), 1.8),
+        (("CPTAno", 50, 10), 2.0),
     ],
 )
 def test_without_the_layer_the_car_hits_the_dummy_where_the_protocol_says(tmp_path, key, width):
@@ -43,8 +45,9 @@ def test_without_the_layer_the_car_hits_the_dummy_where_the_protocol_says(tmp_pa
     found = outcome(tmp_path, key, car)
     assert abs(found.numbers["impact_point"] - key[1]) / 100.0 * width < 0.01
     assert found.impact == pytest.approx(key[2], abs=0.01)
-    along = 5.0 if key[0] == "CPLA" else 0.0
-    assert found.relative == pytest.approx(key[2] - along, abs=0.01)
+    if not key[0].startswith("CPTA"):
+        along = 5.0 if key[0] == "CPLA" else 0.0
+        assert found.relative == pytest.approx(key[2] - along, abs=0.01)
     assert found.numbers["hardest_braking"] < 0.01
 
 

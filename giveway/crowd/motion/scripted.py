@@ -9,6 +9,7 @@ from giveway.config.tables.scripted import ScriptedConfig
 from giveway.geometry.kernel import Array
 from pedestrian_model import Vehicles
 
+_STRAIGHT = 1e-3  # Change of heading [rad] up to which a vehicle comes straight on
 _MOVING = 0.1  # Speed [m/s] above which a vehicle comes to a meeting
 
 
@@ -58,8 +59,10 @@ class ScriptedWalk:
         angle = radians(entry.heading)
         self._direction = np.array([cos(angle), sin(angle)])
         self._start = np.array([entry.x, entry.y])
-        self._time = -entry.begin  # since setting out [s]
-        self._waits = entry.meet_after is not None
+        self._time = -entry.begin  # since setting out [s]; unknown before a meeting
+        self._met: float | None = None  # heading [rad] of the vehicle that is to be met
+        if entry.meet_after is not None:
+            self._time = -inf
 
     def go_on(self, vehicles: Vehicles, time_step: float) -> tuple[Array, Array]:
         """Return the position (2,) [m] and velocity (2,) [m/s] after the next step.
@@ -68,22 +71,29 @@ class ScriptedWalk:
             vehicles: Vehicles at the beginning of the step.
             time_step: Length of the step [s].
         """
-        if self._waits:
-            left = self._time_left(vehicles)
-            if left < time_step:
-                self._waits, self._time = False, -max(left, 0.0)
-        if not self._waits:
-            self._time += time_step
-        walked, speed = (0.0, 0.0) if self._waits else self._script.at(self._time)
+        if self._entry.meet_after is not None and self._time < 0.0:
+            self._time = -self._time_left(vehicles, self._entry.meet_after)
+        self._time += time_step
+        walked, speed = self._script.at(self._time)
         return self._start + walked * self._direction, speed * self._direction
 
-    def _time_left(self, vehicles: Vehicles) -> float:
-        """Return the time [s] to setting out, so as to meet the first vehicle; inf without one."""
-        entry, soonest = self._entry, inf
-        assert entry.meet_after is not None
+    def _time_left(self, vehicles: Vehicles, meet_after: float) -> float:
+        """Return the time [s] to setting out, so as to meet the first vehicle; inf without one.
+
+        A vehicle that has turned since it came straight on is expected at the time that was known.
+        """
+        entry, soonest, turned = self._entry, inf, False
         for x, y, heading, speed, front, *_ in vehicles.array:
+            if speed <= _MOVING:
+                continue
+            if self._met is not None and abs(heading - self._met) > _STRAIGHT:
+                turned = True
+                continue
             way = cos(heading), sin(heading)
             ahead = (entry.meet_x - x) * way[0] + (entry.meet_y - y) * way[1] - front
-            if ahead >= 0.0 and speed > _MOVING:
-                soonest = min(soonest, ahead / speed)
-        return soonest - self._script.time_at(entry.meet_after)
+            if ahead >= 0.0 and ahead / speed < soonest:
+                soonest, came = ahead / speed, heading
+        if soonest < inf:
+            self._met = came
+            return max(soonest - self._script.time_at(meet_after), 0.0)
+        return -self._time if turned else inf

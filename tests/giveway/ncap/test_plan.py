@@ -9,11 +9,17 @@ import pytest
 
 from giveway.config.tables.scripted import ScriptedConfig
 from giveway.crowd.motion.scripted import ScriptedWalk
+from giveway.geometry.path import EgoPath
 from giveway.ncap.plan import HOLDER, runs_of, script_of, study_of, width_of
 from giveway.ncap.protocol import KMH, PROTOCOLS, Cell, Protocol, read_protocol
+from giveway.ncap.turning import path_of
 from pedestrian_model import Vehicles
 
 STEP = 0.05
+
+
+STRAIGHT = EgoPath.through([[0.0, 0.0], [1000.0, 0.0]])
+LENGTH = 4.6
 
 
 def hit_point(protocol: Protocol, cell: Cell, width: float, start: float) -> float:
@@ -21,26 +27,31 @@ def hit_point(protocol: Protocol, cell: Cell, width: float, start: float) -> flo
 
     The car begins ``start`` [m] before the place at which the dummy sets out.
     """
-    person, before = script_of(protocol, cell, width)
-    entry, dummy = ScriptedConfig(**person), protocol.dummy(cell.test)
+    person, before = script_of(protocol, cell, width, LENGTH)
+    entry, dummy, turn = ScriptedConfig(**person), protocol.dummy(cell.test), cell.test.turn
     walk, speed = ScriptedWalk(entry), cell.speed / KMH
-    front = entry.meet_x - speed * before - start
-    along = cell.test.walks == "along"
-    half = (dummy.length if along else dummy.width) / 2.0
-    place, velocity = np.array([entry.x, entry.y]), np.zeros(2)
+    path = STRAIGHT if turn is None else path_of(turn, cell.speed)
+    front, heading = entry.meet_x - speed * before - start, np.radians(entry.heading)
+    towards = np.array([cos(heading), sin(heading)])
+    place, seen = np.array([entry.x, entry.y]), []
     for _ in range(4000):
-        gap = place[0] - half - front
-        closing = speed - velocity[0]
-        if gap <= closing * STEP:
-            place = place + gap / closing * velocity
+        pose = path.pose(front, LENGTH)
+        c, s = cos(pose.heading), sin(pose.heading)
+        way = abs(towards @ [c, s]), abs(towards @ [-s, c])
+        half = (dummy.length * way[0] + dummy.width * way[1]) / 2.0
+        off = place - [pose.x, pose.y]
+        point = off - dummy.reference * towards
+        seen.append((off @ [c, s] - half, point @ [-s, c]))
+        if seen[-1][0] <= 0.0:
             break
-        vehicle = Vehicles.create(front, 0.0, 0.0, speed, front=0.0, rear=4.0, width=width)
-        place, velocity = walk.go_on(vehicle, STEP)
+        car = Vehicles.create(
+            pose.x, pose.y, pose.heading, speed, front=0.0, rear=LENGTH, width=width
+        )
+        place, _ = walk.go_on(car, STEP)
         front += speed * STEP
-    heading = np.radians(entry.heading)
-    point = place - dummy.reference * np.array([cos(heading), sin(heading)])
-    side = -1.0 if cell.test.walks == "from the left" else 1.0
-    return 100.0 * (0.5 + side * point[1] / width)
+    (gap, at), (gone, then) = seen[-2:]
+    aside = at + gap / (gap - gone) * (then - at)
+    return 100.0 * (0.5 - cell.test.comes_from * aside / width)
 
 
 @pytest.mark.parametrize("name", PROTOCOLS)

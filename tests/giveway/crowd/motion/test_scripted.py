@@ -60,6 +60,24 @@ def test_it_stands_while_no_vehicle_comes_to_the_place(vehicle):
     assert velocity.tolist() == [0.0, 0.0]
 
 
+def test_a_vehicle_that_turns_on_its_way_is_expected_at_the_time_that_was_known():
+    """Two metres take 1.5 s; it has 1.6 s left, turns, and the person sets out 0.1 s later."""
+    person = walk(meet_after=2.0, meet_x=9.75)
+    person.go_on(car(9.75 - 16.0, 10.0), STEP)
+    turned = Vehicles.create(-5.0, 1.0, 0.2, 10.0)
+    places = [person.go_on(turned, STEP)[0][1] for _ in range(3)]
+    assert places[:1] == pytest.approx([-4.0])
+    assert places[2] == pytest.approx(-4.0 + 0.5 * 2.0 * 0.1**2)
+
+
+def test_a_vehicle_that_stops_is_waited_for():
+    person = walk(meet_after=2.0, meet_x=9.75)
+    person.go_on(car(9.75 - 16.0, 10.0), STEP)
+    for _ in range(100):
+        place, _ = person.go_on(car(0.0, 0.0), STEP)
+    assert place.tolist() == [10.0, -4.0]
+
+
 def test_it_stands_at_the_end_of_its_walk():
     person = walk(distance=1.0)
     for _ in range(100):
