@@ -67,10 +67,15 @@ def runs_of(cells: tuple[Cell, ...], drivers: tuple[str, ...]) -> list[Planned]:
     return found
 
 
+def course_name(road: str, speed: int) -> str:
+    """Return the name of the scenario of a road; a turn has another one at each speed [km/h]."""
+    return road if road in {OPEN, OBSTRUCTED} else f"{road} {speed}"
+
+
 def road_of(cell: Cell) -> str:
     """Return the road of a cell."""
     if cell.test.turn is not None:
-        return f"turn to the {cell.test.turn.side} at {cell.speed}"
+        return f"{cell.test.turn.side} turn"
     return OBSTRUCTED if cell.test.parked else OPEN
 
 
@@ -89,7 +94,7 @@ def study_of(
         protocol: Protocol.
         runs: Runs.
         car: Settings of the car, as in a run's TOML file.
-        courses: Scenario of each road.
+        courses: Scenario of each road, by its name.
         seed: Seed of the runs.
     """
     width = width_of(car)
@@ -142,7 +147,7 @@ def _settings(
     if run.road not in {OPEN, OBSTRUCTED}:  # before the turn
         before += (LINE - BEGIN) * KMH / run.speed
     values: dict[str, Any] = {
-        "scenario": str(courses[run.road]),
+        "scenario": str(courses[course_name(run.road, run.speed)]),
         "controller": run.driver,
         "regulation": {"reference_speed": round(speed, 6)},
     }

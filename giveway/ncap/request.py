@@ -21,6 +21,7 @@ from giveway.ncap.plan import (
     OBSTRUCTED,
     OPEN,
     Planned,
+    course_name,
     road_of,
     runs_of,
     study_of,
@@ -184,11 +185,10 @@ def courses_of(out: Path, protocol: Protocol, width: float) -> dict[str, Path]:
         name = f"parked-{width:g}"
         found[OBSTRUCTED] = write_course(folder / name, name, width, protocol.parked, half)
     for cell in protocol.cells:
-        road, turn = road_of(cell), cell.test.turn
-        if turn is not None and road not in found:
-            path = path_of(turn, cell.speed)
-            name = f"{turn.side}-{cell.speed}"
-            found[road] = write_course(folder / name, name, width, path=path)
+        course, turn = course_name(road_of(cell), cell.speed), cell.test.turn
+        if turn is not None and course not in found:
+            path, name = path_of(turn, cell.speed), course.replace(" ", "-")
+            found[course] = write_course(folder / name, name, width, path=path)
     return found
 
 

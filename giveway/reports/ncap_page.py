@@ -45,7 +45,9 @@ def matrices_of(table: DriverTable) -> list[Matrix]:
     speeds = sorted({one.planned.speed for one in table.nobody})
     roads = dict.fromkeys(one.planned.road for one in table.nobody)
     rows = [(road, [_alone(table, road, speed) for speed in speeds]) for road in roads]
-    found.append(Matrix("False reaction", "the same drives without the person", "", speeds, rows))
+    found.append(
+        Matrix("False reaction", "largest deceleration [m/s²] without the person", "", speeds, rows)
+    )
     return found
 
 
@@ -88,9 +90,7 @@ def _alone(table: DriverTable, road: str, speed: int) -> Square:
                 return Square("failed", "!", "failed", told=f"{one.id}: {one.failure}")
             braking = f"{one.numbers['hardest_braking']:.1f}"
             bad = one.reacts_to_nobody
-            return Square(
-                f"{braking} m/s²", "R" if bad else "G", "red" if bad else "green", told=_told(one)
-            )
+            return Square(braking, "R" if bad else "G", "red" if bad else "green", told=_told(one))
     return Square()
 
 
@@ -121,6 +121,15 @@ def lead_of(table: DriverTable) -> str:
     zeroed = ", because the cell that all points need is not green" if rating.zeroed else ""
     checks = f" after {len(table.verdicts)} verified cells" if table.verdicts else ""
     return f"{told}: {rating.total:g} of {rating.most:g} points by day{checks}{zeroed}."
+
+
+def reactions_of(table: DriverTable) -> str:
+    """Return the roads and speeds at which a driver brakes for nobody; empty without any."""
+    found: dict[str, list[str]] = {}
+    for one in table.nobody:
+        if one.reacts_to_nobody:
+            found.setdefault(one.planned.road, []).append(str(one.planned.speed))
+    return "; ".join(f"{road} at {', '.join(speeds)} km/h" for road, speeds in found.items())
 
 
 def verification_of(table: DriverTable) -> list[tuple[str, str, str, str]]:
@@ -155,7 +164,7 @@ def ncap_page(
             "lead": lead_of(table),
             "matrices": matrices_of(table),
             "verified": verification_of(table),
-            "false": [one.planned.label for one in table.nobody if one.reacts_to_nobody],
+            "false": reactions_of(table),
         }
         for number, table in enumerate(tables)
     ]

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from giveway.cli.screen.printing import escape, numbers_of
 from giveway.ncap.table import DriverTable
-from giveway.reports.ncap_page import Square, lead_of, matrices_of, verification_of
+from giveway.reports.ncap_page import Square, lead_of, matrices_of, reactions_of, verification_of
 
 _STYLES = {
     "green": "green",
@@ -29,6 +29,7 @@ def print_ncap(console: Console, tables: Sequence[DriverTable]) -> None:
             console.print(table.protocol.title, style="bold", highlight=False)
         for matrix in matrices_of(table):
             lines = Table(*numbers_of(*(f"{speed}" for speed in matrix.speeds)), box=None)
+            lines.columns[0].no_wrap = True
             for name, squares in matrix.rows:
                 lines.add_row(escape(name), *map(_shown, squares))
             points = f" ({matrix.points})" if matrix.points else ""
@@ -38,13 +39,19 @@ def print_ncap(console: Console, tables: Sequence[DriverTable]) -> None:
             told = f"{name}: {here} km/h, measured {there}: {verdict}"
             console.print(told, highlight=False)
         console.print(lead_of(table), highlight=False)
-        if any(one.reacts_to_nobody for one in table.nobody):
-            console.print("[yellow]It brakes though nobody is there:[/] see the last matrix")
+        if reactions := reactions_of(table):
+            console.print(f"[yellow]It brakes though nobody is there:[/] {reactions}")
 
 
 def _shown(square: Square) -> str:
+    """Return the letter of a colour, and the number unless it is 0."""
     if not square.text:
         return ""
     style = _STYLES.get(square.colour, "")
-    text = escape(f"{square.letter} {square.text.removesuffix(' m/s²')}")
+    number = square.text
+    if number in {"0.0", "failed"}:
+        number = ""
+    elif len(number) > len("0.0"):
+        number = f"{float(number):.0f}"
+    text = escape(square.letter + number)
     return f"[{style}]{text}[/]" if style else text

@@ -10,7 +10,15 @@ import pytest
 from giveway.config.tables.scripted import ScriptedConfig
 from giveway.crowd.motion.scripted import ScriptedWalk
 from giveway.geometry.path import EgoPath
-from giveway.ncap.plan import HOLDER, runs_of, script_of, study_of, width_of
+from giveway.ncap.plan import (
+    HOLDER,
+    course_name,
+    road_of,
+    runs_of,
+    script_of,
+    study_of,
+    width_of,
+)
 from giveway.ncap.protocol import KMH, PROTOCOLS, Cell, Protocol, read_protocol
 from giveway.ncap.turning import path_of
 from pedestrian_model import Vehicles
@@ -85,6 +93,13 @@ def test_every_road_and_speed_is_driven_without_a_person_too():
     assert len(alone) == len(set(alone)) == 2 * (8 + 6)
     assert len(runs) == 2 * (110 + 14)
     assert len({run.label for run in runs}) == len(runs)
+
+
+def test_a_turn_has_another_course_at_each_speed():
+    protocol = read_protocol("euroncap-2023")
+    turns = [cell for cell in protocol.cells if cell.test.turn is not None]
+    found = {course_name(road_of(cell), cell.speed) for cell in turns}
+    assert found == {"left turn 10", "left turn 15", "left turn 20", "right turn 10"}
 
 
 def test_the_layer_of_the_tests_knows_nobody_in_hiding_unless_the_user_says_so(tmp_path):

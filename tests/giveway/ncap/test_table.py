@@ -131,5 +131,8 @@ def test_braking_for_nobody_is_said(tmp_path):
         for one in table()
     ]
     page = ncap_page(PROTOCOL, tables_of(PROTOCOL, rows), [], "")
-    assert "It brakes though nobody is there: nobody, open road, 10 km/h" in page
+    assert (
+        "It brakes though nobody is there: open road at 10, 20, 30, 40, 50, 60, 70, 80 km/h;"
+        in page
+    )
     assert page.count('class="red"') == 14

@@ -27,8 +27,8 @@ def test_a_car_that_brakes_is_green_and_each_cell_can_be_made_again(monkeypatch,
     assert typed(monkeypatch, "ncap", "fmi2", *R152, "--out", "out") in {0, None}
     said = " ".join(capsys.readouterr().out.split())
     assert "UN R152, 01 series (draft values)" in said
-    assert "50 % G 0.0" in said
-    assert "open road G 0.0" in said
+    assert "20 50 % G" in said
+    assert "20 open road G" in said
     table = pd.read_csv("out/ncap.csv")
     assert table["test"].tolist() == ["R152", "nobody"]
     hit, alone = table.to_dict("records")
