@@ -13,14 +13,17 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from giveway.figures.conflict_points import Conflict, mark_conflicts
+from giveway.figures.instants import closest_approach, nearest_instants, telling_instants
 from giveway.figures.other_vehicles import draw_vehicles, vehicles_at
 from giveway.figures.road import Road, draw_marks, draw_road, states_at
 from giveway.figures.sight_view import SightView, draw_area
 from giveway.figures.style import (
     BLACK,
+    BLUE,
     VERMILION,
     NotebookFigure,
     keep_panels,
@@ -36,8 +39,6 @@ from giveway.run_data.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Signa
 
 TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
 """Colours of time, without the last third, which is too light for a line on white."""
-SNAPSHOTS = 6
-ENCOUNTER = 10.0  # Distance [m] to a pedestrian below which snapshots are taken
 MARGIN = 2.0  # Margin [m] around all trajectories
 SURROUNDINGS = 8.0  # Distance [m] shown around the ego's positions in the snapshots
 # Longest side [m] of a shared view; on longer drives the view follows the ego
@@ -48,6 +49,7 @@ TICK = 1.0  # Time [s] of walking that is the length of a pedestrian's velocity 
 SEGMENTS = 150  # Largest number of segments per trajectory
 # Time [s] without a record after which a trajectory begins again, since SUMO moved the person
 PAUSE = 2.5
+_HALO = withStroke(linewidth=2.5, foreground="white")
 
 
 class Backdrop(NamedTuple):
@@ -94,8 +96,8 @@ def top_view_figure(
         shape: Rectangle of the ego.
         body_radius: Radius of a pedestrian [m].
         times: Times of the snapshots [s], each taken at the nearest control instant. With None
-            there are six over the time in which a pedestrian is within 10 m of the ego: one at the
-            closest approach, the others evenly.
+            there are six: the closest approach, the longest stops, and others evenly over the time
+            in which a pedestrian is within 10 m of the ego.
         backdrop: Road, lights, other vehicles and conflicts to draw.
         title: Title of the whole figure.
 
@@ -104,8 +106,13 @@ def top_view_figure(
     """
     if not ego.time.size:
         raise ValueError("top view: the run has no instants; pass tracks of at least one")
-    closest = closest_approach(ego, crowd, shape)
-    steps = _encounter(ego, crowd, closest) if times is None else _nearest_steps(ego, times)
+    if times is None:
+        events = telling_instants(ego, crowd, closest_approach(ego, crowd, shape))
+    elif len(times):
+        events = nearest_instants(ego, np.asarray(times))
+    else:
+        raise ValueError("top view: times is empty; leave it out or give instants [s]")
+    steps = list(events)
     corners = np.array([rectangle(ego, k, shape) for k in range(ego.time.size)])
     places = np.column_stack((crowd.x, crowd.y))
     whole = Box.around(np.concatenate((corners.reshape(-1, 2), places)), MARGIN)
@@ -122,19 +129,22 @@ def top_view_figure(
     draw_road(overview, road)
     draw_marks(overview, backdrop.marks, None, whole)
     lines = _draw_pedestrian_trajectories(overview, ego.time, crowd, colours)
-    _draw_ego_trajectory(overview, ego, colours)
+    _draw_ego_trajectory(overview, ego)
     mark_conflicts(overview, backdrop.conflicts)
-    for k in steps:
-        colour = lines.cmap(colours(ego.time[k]))
-        overview.add_patch(Polygon(corners[k], fill=False, edgecolor=colour, linewidth=1.4))
+    for number, k in enumerate(steps, 1):
+        overview.add_patch(Polygon(corners[k], fill=False, edgecolor=BLUE, linewidth=1.4))
+        overview.annotate(
+            str(number), corners[k].mean(axis=0), (0, 7), textcoords="offset points",
+            ha="center", color=BLUE, weight="bold", path_effects=[_HALO],
+        )  # fmt: skip
     whole.apply(overview)
     overview.set(
         xlabel="x [m]",
         ylabel="y [m]",
-        title="Trajectories, begun at the circles;\nthe ego at the snapshots",
+        title="Trajectories, begun at the circles;\nthe ego's in blue, numbers: its snapshots",
     )
     figure.colorbar(lines, ax=overview, label="Time [s]", shrink=0.8, aspect=30)
-    for axes, k, part in zip(panels, steps, parts, strict=True):
+    for number, (axes, k, part) in enumerate(zip(panels, steps, parts, strict=True), 1):
         draw_road(axes, [line for line in road if part.touches(line)])
         draw_marks(axes, backdrop.marks, states_at(backdrop.signals, float(ego.time[k])), part)
         time, others = float(ego.time[k]), []
@@ -148,8 +158,8 @@ def top_view_figure(
             perceived &= [backdrop.sight.perceives(crowd.ids[p], time) for p in crowd.pedestrian]
         _draw_scene(axes, k, corners[k], crowd, body_radius, perceived)
         part.apply(axes)
-        told = ", closest approach" if k == closest else ""
-        axes.set_title(f"t = {ego.time[k]:.2f} s{told}", fontsize=9)
+        told = f", {events[k]}" if events[k] else ""
+        axes.set_title(f"{number}: {ego.time[k]:.1f} s{told}", fontsize=10)
     figure.suptitle(title)
     if side_by_side:
         figure.draw_without_rendering()  # the layout's first pass would cut the label of x
@@ -197,44 +207,6 @@ def rectangle(ego: EgoTrack, k: int, shape: VehicleShape) -> NDArray[np.float64]
     return shape.corners(np.array((ego.front_x[k], ego.front_y[k])), float(ego.heading[k]))
 
 
-def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:
-    """Return the first instant of the smallest distance to a pedestrian, or None without people.
-
-    If a person is inside the rectangle, the distance is negative.
-    """
-    if not crowd.x.size:
-        return None
-    step = crowd.step
-    cos, sin = np.cos(ego.heading[step]), np.sin(ego.heading[step])
-    x, y = crowd.x - ego.front_x[step], crowd.y - ego.front_y[step]
-    along = np.abs(x * cos + y * sin + shape.length / 2) - shape.length / 2
-    aside = np.abs(y * cos - x * sin) - shape.width / 2
-    beyond = np.hypot(np.maximum(along, 0.0), np.maximum(aside, 0.0))
-    return int(step[np.argmin(beyond + np.minimum(np.maximum(along, aside), 0.0))])
-
-
-def _encounter(ego: EgoTrack, crowd: CrowdTrack, closest: int | None) -> NDArray[np.int64]:
-    """Return instants over the encounter, with the closest approach among them.
-
-    They are spread over the whole run if no pedestrian came close.
-    """
-    step = crowd.step
-    apart = np.hypot(crowd.x - ego.front_x[step], crowd.y - ego.front_y[step])
-    close = step[apart < ENCOUNTER]
-    first, last = (close[0], close[-1]) if close.size else (0, ego.time.size - 1)
-    count = min(SNAPSHOTS, int(last - first) + 1)
-    steps = np.round(np.linspace(first, last, count)).astype(np.int64)
-    if close.size and closest is not None and closest not in steps:
-        steps[np.abs(steps - closest).argmin()] = closest
-    return np.sort(steps)
-
-
-def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
-    if not len(times):
-        raise ValueError("top view: times is empty; leave it out or give instants [s]")
-    return np.array([np.abs(ego.time - time).argmin() for time in times], dtype=np.int64)
-
-
 def _arrange(
     whole: Box, parts: Sequence[Box], *, side_by_side: bool
 ) -> tuple[Figure, Axes, list[Axes]]:
@@ -243,12 +215,12 @@ def _arrange(
     together = all(each == part for each in parts)
     columns = min(count, 2 if side_by_side or together else 3)
     rows = -(-count // columns)
-    snapshots_width = 6.6 if side_by_side else 9.5  # width [in]
+    snapshots_width = 5.6 if side_by_side else 7.6  # width [in]
     snapshots_height = rows * (snapshots_width / max(columns, 2) * part.aspect + 0.3) + 0.4
     figure = NotebookFigure(layout="constrained")
     if side_by_side:
-        height = min(max(snapshots_height, 4.5), 9.0)
-        overview_width = max(height / whole.aspect + 1.0, 3.8)
+        height = min(max(snapshots_height, 4.0), 7.0)
+        overview_width = max(height / whole.aspect + 1.0, 3.4)
         figure.set_size_inches(overview_width + snapshots_width, height + 0.4)
         left, right = figure.subfigures(
             1, 2, squeeze=False, width_ratios=(overview_width, snapshots_width)
@@ -294,13 +266,13 @@ def _draw_pedestrian_trajectories(
     return lines
 
 
-def _draw_ego_trajectory(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
-    """Draw the ego's trajectory in the colours of time."""
+def _draw_ego_trajectory(axes: Axes, ego: EgoTrack) -> None:
+    """Draw the ego's trajectory in the ego's colour."""
     kept = _thinned(0, ego.time.size - 1)
     front = np.column_stack((ego.front_x, ego.front_y))[kept]
     driven = LineCollection(
-        list(np.stack((front[:-1], front[1:]), axis=1)), array=ego.time[kept[:-1]],
-        norm=colours, cmap=TIME_COLOURS, linewidths=3.0, capstyle="round", label="ego",
+        list(np.stack((front[:-1], front[1:]), axis=1)), colors=BLUE, linewidths=2.5,
+        capstyle="round", label="ego",
     )  # fmt: skip
     axes.add_collection(driven, autolim=False)
 
@@ -320,7 +292,7 @@ def _draw_scene(
     perceived: NDArray[np.bool_],
 ) -> None:
     """Draw the ego as a rectangle with a nose, and pedestrians as circles with ticks."""
-    axes.add_patch(Polygon(corners, facecolor="#404040", edgecolor=BLACK, zorder=2, label="ego"))
+    axes.add_patch(Polygon(corners, facecolor=BLUE, edgecolor=BLACK, zorder=2, label="ego"))
     axes.fill(*nose_of(corners).T, color="white", zorder=2.5)
     here = crowd.step == k
     centre = np.column_stack((crowd.x[here], crowd.y[here]))

@@ -59,7 +59,7 @@ def test_the_rectangle_hangs_behind_the_front_bumper(run):
 def test_snapshots_show_everybody_to_scale(run):
     ego, crowd = run(30, 1, "mpc")
     _, snapshots = panels(top_view_figure(ego, crowd, CAR, R, times=(2.0, 6.0)))
-    assert [axes.get_title() for axes in snapshots] == ["t = 2.00 s", "t = 6.00 s"]
+    assert [axes.get_title() for axes in snapshots] == ["1: 2.0 s", "2: 6.0 s"]
     for axes, k in zip(snapshots, (40, 120), strict=True):
         here = crowd.step == k
         circles = drawn(axes, EllipseCollection, "pedestrians")
@@ -84,19 +84,22 @@ def test_velocity_ticks_are_a_second_of_walking(run):
 def test_six_snapshots_show_the_encounter_and_closest_approach(run):
     ego, crowd = run(30, 1, "mpc")
     _, snapshots = panels(top_view_figure(ego, crowd, CAR, R))
-    times = [float(axes.get_title().split()[2].rstrip(",")) for axes in snapshots]
+    times = [float(axes.get_title().split()[1]) for axes in snapshots]
     assert len(times) == 6
     apart = np.hypot(crowd.x - ego.front_x[crowd.step], crowd.y - ego.front_y[crowd.step])
     close = ego.time[crowd.step[apart < 10.0]]
-    assert (times[0], times[-1]) == pytest.approx((close.min(), close.max()), abs=0.005)
+    assert close.min() - 0.05 < times[0] < close.min() + 2.0
+    assert times[-1] == pytest.approx(close.max(), abs=0.051)
     assert times == sorted(times)
     (named,) = [axes for axes in snapshots if axes.get_title().endswith("closest approach")]
     clearance = pedestrian_metrics(ego, crowd, CAR, R)["minimum_clearance"].min()
-    k = np.abs(ego.time - times[snapshots.index(named)]).argmin()
-    here = crowd.step == k
-    x, y = np.abs(crowd.x[here] - ego.front_x[k] + 2.5), np.abs(crowd.y[here])
-    gap = np.hypot(np.maximum(x - 2.5, 0.0), np.maximum(y - 1.0, 0.0)).min()
-    assert gap - R == pytest.approx(clearance, abs=1e-6)
+    about = np.flatnonzero(np.abs(ego.time - times[snapshots.index(named)]) < 0.06)
+    gaps = []
+    for k in about:
+        here = crowd.step == k
+        x, y = np.abs(crowd.x[here] - ego.front_x[k] + 2.5), np.abs(crowd.y[here])
+        gaps.append(np.hypot(np.maximum(x - 2.5, 0.0), np.maximum(y - 1.0, 0.0)).min())
+    assert min(gaps) - R == pytest.approx(clearance, abs=1e-6)
 
 
 def test_late_trajectories_stand_out_on_white_and_lie_on_top(run):
@@ -234,7 +237,7 @@ def test_other_vehicles_are_drawn_where_they_are_by_then(run):
     (at_0,), (at_1,) = (
         [patch for patch in axes.patches if patch.get_label() == "background"]
         for axes in figure.axes
-        if axes.get_title().startswith("t = ")
+        if axes.get_title()[:1].isdigit()
     )
     assert at_0.get_xy()[:4].tolist() == [[30, 5], [26, 5], [26, 3], [30, 3]]
     assert at_1.get_xy()[:4].tolist() == [[32, 5], [28, 5], [28, 3], [32, 3]]
