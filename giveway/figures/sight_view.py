@@ -19,11 +19,9 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path as PlotPath
 
 from giveway.config import EgoRunConfig
-from giveway.ego.perception.protocol import OwnState
 from giveway.ego.perception.sight import Mount, SightOptions
-from giveway.ego.perception.visibility import CHILD, Eye
+from giveway.ego.perception.visibility import CHILD, Eye, eyes_of
 from giveway.figures.style import BLACK
-from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import Pose
 from giveway.plug_ins.options import read_options
@@ -84,8 +82,8 @@ class SightView:
         for name, corners in vehicles:
             tops = np.full((4, 1), self.opaque.heights.get(name, inf))
             sides.append(np.hstack([corners, np.roll(corners, -1, axis=0), tops]))
-        own = OwnState(pose, 0.0, 0, VehicleShape())
-        return hidden_area([mount.eye(own) for mount in self.mounts], np.concatenate(sides))
+        eyes = eyes_of(np.array([mount.row for mount in self.mounts]), *pose)
+        return hidden_area([Eye(*eye) for eye in eyes], np.concatenate(sides))
 
 
 def draw_area(axes: Axes, area: Any) -> None:

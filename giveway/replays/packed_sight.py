@@ -1,8 +1,7 @@
 """The cameras of egos, what hides people from them, and who is perceived, for the page."""
 
 from collections.abc import Iterable
-from dataclasses import astuple
-from math import inf, radians
+from math import inf
 from typing import Any
 
 from giveway.figures.sight_view import SightView
@@ -41,10 +40,7 @@ def pack_sight(run: RunFolder, ego: str, names: dict[str, int]) -> dict[str, Any
 
 def _packed(view: SightView, names: dict[str, int]) -> dict[str, Any]:
     return {
-        "cameras": [
-            [*astuple(mount)[:3], radians(mount.heading), mount.range, mount.half_angle]
-            for mount in view.mounts
-        ],
+        "cameras": [list(mount.row) for mount in view.mounts],
         "stretches": {
             str(names[who]): [[begin, until if until < inf else None] for begin, until in them]
             for who, them in view.stretches.items()

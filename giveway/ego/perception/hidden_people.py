@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from controller.driving_constants import COMFORTABLE
 from giveway.ego.perception.path_ahead import PathView
 from giveway.ego.perception.truth import Truth
-from giveway.ego.perception.visibility import sides_of
+from giveway.ego.perception.visibility import walls_of
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath
 
@@ -90,7 +90,7 @@ class HidingPlaces:
         self._view.station = front
         poses = self._view.poses(distances)
         others = np.delete(truth.vehicles, row, axis=0)
-        walls = np.concatenate([truth.outlines, sides_of(truth.vehicles, _flat(truth), row)])
+        walls, _ = walls_of(truth.outlines, truth.vehicles, _flat(truth), row)
         free = np.empty((len(poses), 2))
         count = fill_free(poses, walls, others, free)
         poses, free, distances = poses[:count], free[:count], distances[:count]

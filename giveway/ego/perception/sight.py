@@ -7,16 +7,16 @@ sight is remembered for a while, as walking on.
 """
 
 from dataclasses import dataclass
-from math import cos, isfinite, pi, radians, sin, sqrt
+from math import isfinite, pi, radians, sqrt
 from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Strict
 
-from controller.driving_constants import STANDING
 from controller.parameters import require, require_not_negative, require_positive
 from giveway.crowd.motion.noise import BOUND, planar_noise
+from giveway.ego.perception.memory import Memory
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, SensorSetup
 from giveway.ego.perception.truth import Truth
 from giveway.ego.perception.visibility import (
@@ -24,15 +24,14 @@ from giveway.ego.perception.visibility import (
     RADIUS,
     Eye,
     chords_of,
+    eyes_of,
     fill_shares,
-    sides_of,
+    walls_of,
 )
 from giveway.geometry.kernel import Array
-from pedestrian_model import Crowd
 
-_ENOUGH = 0.5  # share of a body's width from which on it is seen; rounding aside
 _ROUNDING = 1e-9
-_NEVER = -1.0
+_ENOUGH = 0.5 - _ROUNDING  # share of a body's width from which on it is seen
 
 
 _Number = Annotated[float, Strict()]  # true is none
@@ -72,21 +71,11 @@ class Mount:
         require(self.field_of_view <= 360.0, "field_of_view", self.field_of_view, "at most 360")
 
     @property
-    def half_angle(self) -> float:
-        """Half of the field of view [rad]."""
-        return min(radians(self.field_of_view) / 2.0, pi)
-
-    def eye(self, ego: OwnState) -> Eye:
-        """Return the camera where it is now."""
-        x, y, heading = ego.pose
-        return Eye(
-            x + self.ahead * cos(heading) - self.aside * sin(heading),
-            y + self.ahead * sin(heading) + self.aside * cos(heading),
-            self.height,
-            heading + radians(self.heading),
-            self.range,
-            self.half_angle,
-        )
+    def row(self) -> Eye:
+        """The camera in the frame of the front bumper."""
+        half = min(radians(self.field_of_view) / 2.0, pi)
+        turned = radians(self.heading)
+        return Eye(self.ahead, self.aside, self.height, turned, self.range, half)
 
 
 USUAL = (
@@ -165,10 +154,11 @@ class Sight:
         self._random = setup.random()
         self._late = round(options.latency / setup.time_step)
         self._past: list[tuple[Ids, Array, Array, NDArray[np.bool_], Array]] = []
-        self._known = np.zeros((0, _COLUMNS))
-        self._room: Crowd | None = None
+        turns = _WITHIN * options.velocity_noise
+        self._memory = Memory(options.memory, turns, options.acceleration)
         self.delay = self._late * setup.time_step
-        self._views: list[tuple[tuple[Eye, ...], Array]] = []
+        self._mounts = np.array([mount.row for mount in options.mounts])
+        self._views: list[tuple[Array, Array]] = []
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         """Return the people who are seen, or were seen a short time ago.
@@ -180,15 +170,20 @@ class Sight:
         """
         o, now, people = self._options, truth.time, truth.people
         seen = self._look(truth, ego)
-        seen &= self._noticed(person_ids, now)
-        off = people.position - ego.pose[:2]
-        spread = o.position_noise + o.noise_per_metre * np.hypot(off[:, 0], off[:, 1])
+        if o.missed:
+            begins = o.missed * self._time_step / (o.missed_time * (1.0 - o.missed))
+            draws = self._random.random(len(self._memory.rows(person_ids)))  # by id
+            seen &= self._memory.noticed(person_ids, draws, begins, now, o.missed_time)
+        spread = np.full(len(people), o.position_noise)
+        if o.noise_per_metre:
+            off = people.position - ego.pose[:2]
+            spread += o.noise_per_metre * np.hypot(off[:, 0], off[:, 1])
         self._past.append(
             (person_ids, people.position.copy(), people.velocity.copy(), seen, spread)
         )
         if len(self._past) > self._late:
             self._learn(*self._past.pop(0), now - self.delay)
-        return self._remembered(truth, person_ids, now)
+        return self._memory.percept(people, person_ids, now, self.delay)
 
     def unseen(self, points: Array) -> NDArray[np.bool_]:
         """Return at which points (k, 2) [m] a child could stand and not be in sight.
@@ -201,41 +196,18 @@ class Sight:
 
     def _look(self, truth: Truth, ego: OwnState) -> NDArray[np.bool_]:
         """Return which people (n,) are in sight of a camera, and keep what hides others."""
-        eyes = tuple(mount.eye(ego) for mount in self._options.mounts)
-        sides = sides_of(truth.vehicles, truth.vehicle_heights, ego.row)
-        stands = np.repeat(np.delete(truth.vehicles[:, 3], ego.row) < STANDING, 4)
-        self._views.append((eyes, np.concatenate([truth.outlines, sides[stands]])))
+        eyes = eyes_of(self._mounts, *ego.pose)
+        walls, still = walls_of(truth.outlines, truth.vehicles, truth.vehicle_heights, ego.row)
+        self._views.append((eyes, walls[:still]))
         del self._views[: -1 - self._late]
-        walls = np.concatenate([truth.outlines, sides])
         position, heights = truth.people.position, truth.person_heights
         if not self._options.people_hide:
             return _in_sight(eyes, walls, position, heights)
         seen = np.zeros(len(position), dtype=np.bool_)
-        for eye in eyes:
-            chords = chords_of(position, heights, eye, RADIUS)
-            seen |= _sees(eye, np.concatenate([walls, chords]), position, heights)
+        for k in range(len(eyes)):
+            chords = chords_of(position, heights, Eye(*eyes[k]), RADIUS)
+            seen |= _in_sight(eyes[k : k + 1], np.concatenate([walls, chords]), position, heights)
         return seen
-
-    def _noticed(self, person_ids: Ids, now: float) -> NDArray[np.bool_]:
-        """Return which people (n,) are not missed now; who is missed is so for a while."""
-        o, known = self._options, self._rows(person_ids)
-        if not o.missed:
-            return np.ones(len(person_ids), dtype=np.bool_)
-        begins = o.missed * self._time_step / (o.missed_time * (1.0 - o.missed))
-        draws = self._random.random(len(known))[person_ids]  # by id: the order does not matter
-        free = known[person_ids, 5] <= now
-        known[person_ids[free & (draws < begins)], 5] = now + o.missed_time
-        noticed: NDArray[np.bool_] = known[person_ids, 5] <= now
-        return noticed
-
-    def _rows(self, person_ids: Ids) -> Array:
-        """The memory, with a row for each person."""
-        most = int(person_ids.max(initial=-1)) + 1
-        if most > len(self._known):
-            more = np.zeros((2 * most - len(self._known), _COLUMNS))
-            more[:, 4] = _NEVER
-            self._known = np.concatenate([self._known, more])
-        return self._known
 
     def _learn(
         self,
@@ -247,50 +219,20 @@ class Sight:
         then: float,
     ) -> None:
         """Remember the people who were seen at an instant, with noise."""
-        o, known, n = self._options, self._rows(person_ids), int(seen.sum())
-        ids, spread = person_ids[seen], spread[seen]
-        order = np.argsort(ids)
-        noise = np.zeros((2, n, 2))
+        o = self._options
         if o.position_noise or o.noise_per_metre or o.velocity_noise:
-            for part in noise:
-                part[order] = planar_noise(self._random, n)
-        known[ids, 0:2] = position[seen] + spread[:, None] * noise[0]
-        known[ids, 2:4] = velocity[seen] + o.velocity_noise * noise[1]
-        known[ids, 4] = then
-        known[ids, 6] = _WITHIN * spread
-
-    def _remembered(self, truth: Truth, person_ids: Ids, now: float) -> Percept:
-        """Return the people of whom something is known, moved on to where they should be."""
-        o, known = self._options, self._rows(person_ids)[person_ids]
-        late = self.delay
-        kept = (known[:, 4] >= 0.0) & (now - known[:, 4] <= late + o.memory + _ROUNDING)
-        known, people = known[kept], truth.people.select(kept, self._room)
-        self._room = people
-        age = now - known[:, 4]
-        people.velocity[:] = known[:, 2:4]
-        people.position[:] = known[:, 0:2] + age[:, None] * known[:, 2:4]
-        turns = _WITHIN * o.velocity_noise
-        bound = known[:, 6] + age * (turns + 0.5 * o.acceleration * age)
-        return Percept(people, person_ids[kept], age, bound, turns + o.acceleration * age)
+            rows = np.flatnonzero(seen)
+            rows = rows[np.argsort(person_ids[rows])]  # the order does not matter
+            position[rows] += spread[rows, None] * planar_noise(self._random, len(rows))
+            velocity[rows] += o.velocity_noise * planar_noise(self._random, len(rows))
+        self._memory.learn(person_ids, position, velocity, seen, _WITHIN * spread, then)
 
 
-def _in_sight(
-    eyes: tuple[Eye, ...], walls: Array, points: Array, heights: Array
-) -> NDArray[np.bool_]:
+def _in_sight(eyes: Array, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:
     """Return which bodies (k,) at ``points`` are in sight of a camera."""
-    seen = _sees(eyes[0], walls, points, heights)
-    for eye in eyes[1:]:
-        rest = np.flatnonzero(~seen)
-        seen[rest] = _sees(eye, walls, points[rest], heights[rest])
-    return seen
-
-
-def _sees(eye: Eye, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:
-    """Return which bodies (k,) at ``points`` one camera sees."""
     shares = np.empty(len(points))
-    fill_shares(eye, (points, heights, RADIUS), walls, shares)
-    return shares >= _ENOUGH - _ROUNDING
+    fill_shares(eyes, (points, heights, RADIUS), walls, _ENOUGH, shares)
+    return shares >= _ENOUGH
 
 
-_COLUMNS = 7  # x, y [m]; velocity [m/s]; time when seen; until when missed [s]; error [m]
 _WITHIN = sqrt(2.0) * BOUND  # largest noise in standard deviations: cut off on each axis

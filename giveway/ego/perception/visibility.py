@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from controller.driving_constants import STANDING
 from giveway.geometry.kernel import Array, inner, kernel
 
 RADIUS = 0.27
@@ -21,6 +22,7 @@ CHILD = 1.15
 """Height [m] of Euro NCAP's child target, a child of seven years."""
 
 _OWN = 1e-6  # share of the distance within which something is not in front of the body
+_ROUNDING = 1e-12  # of cosines of angles
 _NEXT_TO = 1e-9  # share of the distance within which something is at the sensor itself
 
 
@@ -45,42 +47,63 @@ class Eye(NamedTuple):
 
 
 @kernel
+def eyes_of(mounts: Array, x: float, y: float, heading: float) -> Array:
+    """Return the sensors (e, 6) where they are now.
+
+    Args:
+        mounts: Members of each :class:`Eye` in the frame of the ego.
+        x: Coordinate [m] of the ego.
+        y: Coordinate [m] of the ego.
+        heading: Its heading [rad].
+    """
+    cos, sin, eyes = np.cos(heading), np.sin(heading), mounts.copy()
+    eyes[:, 0] = x + mounts[:, 0] * cos - mounts[:, 1] * sin
+    eyes[:, 1] = y + mounts[:, 0] * sin + mounts[:, 1] * cos
+    eyes[:, 3] += heading
+    return eyes
+
+
+@kernel
 def fill_shares(
-    eye: tuple[float, float, float, float, float, float],
+    eyes: Array,
     bodies: tuple[Array, Array, float],
     walls: Array,
+    enough: float,
     shares: Array,
 ) -> None:
-    """Fill in the share (n,) of the width of each body that a sensor sees.
+    """Fill in the share (n,) of the width of each body that the sensor sees that sees most of it.
 
     It is 0 beyond the range and outside of the field of view.
 
     Args:
-        eye: Members of an :class:`Eye`.
+        eyes: Sensors (e, 6), the members of each :class:`Eye`.
         bodies: Centres (n, 2) [m], heights (n,) [m], and the radius [m] of all.
         walls: Walls (k, 5): x0, y0, x1, y1, height [m].
+        enough: Share from which on no further sensor looks at a body.
         shares: Result; overwritten.
     """
-    (x, y, z, heading, reach, half), (position, height, radius) = eye, bodies
-    near = walls_within((x, y, reach), walls)
-    hidden = np.empty((near.shape[0], 2))
-    for i in range(position.shape[0]):
-        d_x, d_y = position[i, 0] - x, position[i, 1] - y
-        shares[i] = 0.0
-        if d_x * d_x + d_y * d_y > reach * reach:
-            continue
-        turned = np.arctan2(d_y, d_x) - heading
-        turned -= 2.0 * np.pi * np.round(turned / (2.0 * np.pi))
-        if abs(turned) > half:
-            continue
-        shares[i] = _share((d_x, d_y, radius), (x, y, z), height[i], near, hidden)
+    shares[:] = 0.0
+    near, hidden = np.empty_like(walls), np.empty((walls.shape[0], 2))
+    position, height, radius = bodies
+    for e in range(eyes.shape[0]):
+        x, y, z, heading, reach, half = eyes[e]
+        to_x, to_y, least = np.cos(heading), np.sin(heading), np.cos(half) - _ROUNDING
+        count = _walls_within((x, y, z, reach), walls, near)
+        for i in range(position.shape[0]):
+            d_x, d_y = position[i, 0] - x, position[i, 1] - y
+            square = d_x * d_x + d_y * d_y
+            if shares[i] >= enough or square > reach * reach:
+                continue
+            if half < np.pi and d_x * to_x + d_y * to_y < least * np.sqrt(square):
+                continue
+            share = _share((d_x, d_y, radius), height[i] - z, near[:count], hidden)
+            shares[i] = max(shares[i], share)
 
 
 @inner
-def walls_within(circle: tuple[float, float, float], walls: Array) -> Array:
-    """Return the walls that are not wholly beyond a circle: x, y and radius [m]."""
-    x, y, radius = circle
-    near = np.empty_like(walls)
+def _walls_within(eye: tuple[float, float, float, float], walls: Array, near: Array) -> int:
+    """Fill in the walls, as seen from a sensor, that are not wholly beyond its range."""
+    x, y, z, reach = eye
     count = 0
     for k in range(walls.shape[0]):
         a_x, a_y = walls[k, 0] - x, walls[k, 1] - y
@@ -90,40 +113,43 @@ def walls_within(circle: tuple[float, float, float], walls: Array) -> Array:
         if size > 0.0:
             at = min(max(-(a_x * b_x + a_y * b_y) / size, 0.0), 1.0)
         n_x, n_y = a_x + at * b_x, a_y + at * b_y
-        if n_x * n_x + n_y * n_y <= radius * radius:
-            near[count] = walls[k]
+        if n_x * n_x + n_y * n_y <= reach * reach:
+            near[count, 0], near[count, 1] = a_x, a_y
+            near[count, 2], near[count, 3] = walls[k, 2] - x, walls[k, 3] - y
+            near[count, 4] = walls[k, 4] - z
             count += 1
-    return near[:count]
+    return count
 
 
 @inner
-def _share(
-    body: tuple[float, float, float],
-    eye: tuple[float, float, float],
-    top: float,
-    walls: Array,
-    hidden: Array,
-) -> float:
+def _share(body: tuple[float, float, float], rises: float, walls: Array, hidden: Array) -> float:
     """Return the share of a body's width that no wall hides.
 
     Args:
         body: Centre of the body relative to the sensor, x, y [m], and its radius [m].
-        eye: Position x, y and height z [m] of the sensor.
-        top: Height [m] of the body.
-        walls: Walls (k, 5).
+        rises: Height [m] of the body above the sensor.
+        walls: Walls (k, 5), relative to the sensor.
         hidden: Scratch (k, 2).
     """
-    (d_x, d_y, radius), (x, y, z) = body, eye
+    d_x, d_y, radius = body
     square = d_x * d_x + d_y * d_y
     if square <= radius * radius:
         return 1.0
-    across = 1.0 / (radius * np.sqrt(square))
+    distance = np.sqrt(square)
+    across, slope = 1.0 / (radius * distance), distance / radius
     count = 0
     for k in range(walls.shape[0]):
-        a_x, a_y, b_x, b_y = walls[k, 0] - x, walls[k, 1] - y, walls[k, 2] - x, walls[k, 3] - y
-        u_a, u_b = (a_x * d_x + a_y * d_y) / square, (b_x * d_x + b_y * d_y) / square
-        w_a, w_b = (a_y * d_x - a_x * d_y) * across, (b_y * d_x - b_x * d_y) * across
-        above, rises = walls[k, 4] - z, top - z
+        a_x, a_y, b_x, b_y = walls[k, 0], walls[k, 1], walls[k, 2], walls[k, 3]
+        along_a, along_b = a_x * d_x + a_y * d_y, b_x * d_x + b_y * d_y
+        if max(along_a, along_b) <= 0.0 or min(along_a, along_b) >= square:
+            continue
+        aside_a, aside_b = a_y * d_x - a_x * d_y, b_y * d_x - b_x * d_y
+        if min(aside_a * slope - along_a, aside_b * slope - along_b) > 0.0:
+            continue  # to the left of the body
+        if max(aside_a * slope + along_a, aside_b * slope + along_b) < 0.0:
+            continue
+        u_a, u_b, w_a, w_b = along_a / square, along_b / square, aside_a * across, aside_b * across
+        above = walls[k, 4]
         begin, end = _clipped(u_a - _NEXT_TO, u_b - _NEXT_TO, 0.0, 1.0)
         begin, end = _clipped(1.0 - _OWN - u_a, 1.0 - _OWN - u_b, begin, end)
         begin, end = _clipped(u_a - w_a, u_b - w_b, begin, end)
@@ -172,40 +198,45 @@ def _covered(intervals: Array, count: int) -> float:
 
 
 @kernel
-def sides_of(bodies: Array, heights: Array, but: int) -> Array:
-    """Return the sides (4 (m - 1), 5) of vehicles as walls.
+def walls_of(outlines: Array, bodies: Array, heights: Array, but: int) -> tuple[Array, int]:
+    """Return what hides people: outlines, the sides of vehicles at rest, and those of others.
 
     Args:
+        outlines: Walls (k, 5).
         bodies: Poses (m, 7), as in :class:`~giveway.ego.perception.truth.Truth`.
         heights: Heights (m,) [m].
         but: Row that is left out.
+
+    Returns:
+        Walls (k + 4 (m - 1), 5), and the number of those that stand.
     """
-    sides = np.empty((4 * bodies.shape[0], 5))
-    count = 0
-    for row in range(bodies.shape[0]):
-        if row == but:
-            continue
-        x, y, cos, sin = (
-            bodies[row, 0],
-            bodies[row, 1],
-            np.cos(bodies[row, 2]),
-            np.sin(bodies[row, 2]),
-        )
-        front, rear, half = bodies[row, 4], -bodies[row, 5], 0.5 * bodies[row, 6]
-        for side in range(4):
-            along = front if side in (0, 3) else rear
-            aside = half if side < 2 else -half
-            onwards = front if side in (2, 3) else rear
-            across = half if side in (0, 3) else -half
-            sides[count, 0], sides[count, 1] = (
-                x + along * cos - aside * sin,
-                y + along * sin + aside * cos,
-            )
-            sides[count, 2] = x + onwards * cos - across * sin
-            sides[count, 3] = y + onwards * sin + across * cos
-            sides[count, 4] = heights[row]
-            count += 1
-    return sides[:count]
+    walls = np.empty((outlines.shape[0] + 4 * bodies.shape[0], 5))
+    count = standing = outlines.shape[0]
+    walls[:count] = outlines
+    for moving in (False, True):
+        standing = count
+        for row in range(bodies.shape[0]):
+            if row != but and (bodies[row, 3] >= STANDING) == moving:
+                count = _add_sides(bodies[row], heights[row], walls, count)
+    return walls[:count], standing
+
+
+@inner
+def _add_sides(body: Array, height: float, walls: Array, count: int) -> int:
+    x, y, cos, sin = body[0], body[1], np.cos(body[2]), np.sin(body[2])
+    front, rear, half = body[4], -body[5], 0.5 * body[6]
+    for side in range(4):
+        along = front if side in (0, 3) else rear
+        aside = half if side < 2 else -half
+        onwards = front if side in (2, 3) else rear
+        across = half if side in (0, 3) else -half
+        walls[count, 0] = x + along * cos - aside * sin
+        walls[count, 1] = y + along * sin + aside * cos
+        walls[count, 2] = x + onwards * cos - across * sin
+        walls[count, 3] = y + onwards * sin + across * cos
+        walls[count, 4] = height
+        count += 1
+    return count
 
 
 def chords_of(position: Array, heights: Array, eye: Eye, radius: float) -> Array:

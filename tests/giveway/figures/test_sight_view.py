@@ -29,7 +29,7 @@ def test_a_shadow_is_where_the_kernel_sees_nobody() -> None:
             for around, marks in ((walls, seen), (walls[:0], within)):
                 shares = np.empty(400)
                 bodies = points, np.full(400, height), POINT
-                fill_shares(tuple(eye), bodies, around, shares)
+                fill_shares(np.array([eye]), bodies, around, inf, shares)
                 marks |= shares > 0.5
         area = hidden_area(eyes, walls)
         clear = shapely.distance(area.boundary, shapely.points(points)) > 0.05

@@ -10,7 +10,7 @@ from giveway.config import EgoRunConfig
 from giveway.ego.perception import OwnState, SensorSetup, Truth
 from giveway.ego.perception.hidden_people import ERROR, Hidden, HidingPlaces, fill_free
 from giveway.ego.perception.sight import Sight, SightOptions
-from giveway.ego.perception.visibility import CHILD, RADIUS, sides_of
+from giveway.ego.perception.visibility import CHILD, RADIUS, walls_of
 from giveway.ego.rules.hidden_people import CRAWL, HiddenPeople
 from giveway.ego.rules.protocol import Situation
 from giveway.ego.safety_layer import RUSHES, EgoSafetyLayer
@@ -236,7 +236,10 @@ def test_nobody_who_is_hidden_is_nearer_than_the_places_say(front: float) -> Non
     found = HidingPlaces(PATH, CHILD_RUNS).ahead(sensor, world, 0, front, 6.0)
     stations = np.arange(front, front + 5.5, 0.02)
     poses = np.column_stack([stations, np.zeros((len(stations), 2))])
-    free, walls = np.empty((len(poses), 2)), sides_of(world.vehicles, world.vehicle_heights, 0)
+    free, walls = (
+        np.empty((len(poses), 2)),
+        walls_of(world.outlines, world.vehicles, world.vehicle_heights, 0)[0],
+    )
     fill_free(poses, walls, world.vehicles[1:], free)
     aside = np.arange(0.0, 3.5, 0.02)
     points = np.column_stack([np.repeat(stations, len(aside)), -np.tile(aside, len(stations))])

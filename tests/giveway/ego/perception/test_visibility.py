@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from giveway.ego.perception.visibility import Eye, chords_of, fill_shares, sides_of
+from giveway.ego.perception.visibility import Eye, chords_of, fill_shares, walls_of
 from giveway.geometry.kernel import Array
 
 RADIUS = 0.27
@@ -17,7 +17,7 @@ TALL = 10.0
 def shares(eye: Eye, position: Array, walls: Array, height: float = 1.7) -> Array:
     seen = np.empty(len(position))
     tops = np.full(len(position), height)
-    fill_shares(tuple(eye), (position, tops, RADIUS), walls, seen)
+    fill_shares(np.array([eye]), (position, tops, RADIUS), walls, inf, seen)
     return seen
 
 
@@ -69,7 +69,9 @@ def test_nobody_is_seen_beyond_the_range() -> None:
 
 @pytest.mark.parametrize(("height", "seen"), [(1.15, 0.0), (1.75, 1.0)])
 def test_a_parked_car_hides_a_child_and_not_an_adult(height: float, seen: float) -> None:
-    car = sides_of(np.array([[8.0, 0.0, pi / 2, 0.0, 2.25, 2.25, 1.8]]), np.array([1.45]), -1)
+    car = walls_of(
+        NONE, np.array([[8.0, 0.0, pi / 2, 0.0, 2.25, 2.25, 1.8]]), np.array([1.45]), -1
+    )[0]
     assert shares(eye(), AHEAD, car, height) == pytest.approx(seen)
 
 
@@ -87,8 +89,8 @@ def test_people_hide_each_other_and_not_themselves() -> None:
 
 def test_the_own_body_hides_nothing() -> None:
     bodies = np.array([[5.0, 0.0, 0.0, 0.0, 2.0, 2.0, 1.8], [7.0, 5.0, 0.3, 0.0, 2.0, 2.0, 1.8]])
-    assert len(sides_of(bodies, np.full(2, 1.5), 0)) == 4
-    assert len(sides_of(bodies, np.full(2, 1.5), -1)) == 8
+    assert len(walls_of(NONE, bodies, np.full(2, 1.5), 0)[0]) == 4
+    assert len(walls_of(NONE, bodies, np.full(2, 1.5), -1)[0]) == 8
 
 
 @pytest.mark.parametrize("seed", range(4))
