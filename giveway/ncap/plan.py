@@ -155,7 +155,7 @@ def _settings(
     if run.cell is not None:
         dummy = protocol.dummy(run.cell.test)
         person, before = script_of(protocol, run.cell, width, length)
-        met = max(person["meet_x"], LINE if run.cell.test.turn is None else 0.0)
+        met = LINE if run.cell.test.turn is None else person["meet_x"]
         values["crowd"] = {"model": "recorded", "scripted": [person]}
         values["metrics"] = {DUMMY: [dummy.length, dummy.width]}
     start = met - speed * (before + _LEAD)
@@ -180,25 +180,8 @@ def script_of(
         width: Width [m] of the car.
         length: Length [m] of the car.
     """
-    test, dummy = cell.test, protocol.dummy(cell.test)
-    pace, along = test.pace / KMH, test.walks == "along"
-    offset = width * (cell.hit / 100.0 - 0.5)
-    if test.turn is not None:
-        direction = 1.0 if test.walks == "with the car" else -1.0
-        path = path_of(test.turn, cell.speed)
-        front, middle, crossed = meeting(test.turn, path, dummy, direction, length)
-        first = crossed - direction * cell.start
-        walked = direction * (middle - first)
-        place = {"x": first, "y": test.turn.line, "heading": 90.0 - 90.0 * direction}
-    elif along:  # the hit point counts from the right
-        walked = test.acceleration + cell.start
-        place = {"x": LINE - walked, "y": offset, "heading": 0.0}
-        front = LINE - dummy.length / 2.0
-    else:
-        walked = cell.start + offset + dummy.reference
-        side = test.comes_from
-        place = {"x": LINE, "y": side * cell.start, "heading": -90.0 * side}
-        front = LINE - dummy.width / 2.0
+    test, pace = cell.test, cell.test.pace / KMH
+    place, walked, front = _walk_of(protocol, cell, width, length)
     person = {
         "name": "dummy",
         **{key: round(value, 6) for key, value in place.items()},
@@ -207,6 +190,34 @@ def script_of(
         "distance": round(walked + _WALKS_ON, 6),
         "meet_after": round(walked, 6),
         "meet_x": round(front, 6),
-        "kind": dummy.kind,
+        "kind": protocol.dummy(test).kind,
     }
     return person, (walked + test.acceleration) / pace
+
+
+def _walk_of(
+    protocol: Protocol, cell: Cell, width: float, length: float
+) -> tuple[dict[str, float], float, float]:
+    """Return the dummy's first place and direction, its walk [m], and the front's station [m].
+
+    Walk and station are those of the meeting.
+    """
+    test, dummy = cell.test, protocol.dummy(cell.test)
+    offset = width * (cell.hit / 100.0 - 0.5)
+    if test.turn is not None:
+        direction = 1.0 if test.walks == "with the car" else -1.0
+        path = path_of(test.turn, cell.speed)
+        front, middle, crossed = meeting(test.turn, path, dummy, direction, length)
+        first = crossed - direction * cell.start
+        walked = direction * (middle - first)
+        place = {"x": first, "y": test.turn.line, "heading": 90.0 - 90.0 * direction}
+    elif test.walks == "along":  # the hit point counts from the right
+        walked = test.acceleration + cell.start
+        place = {"x": LINE - walked, "y": offset, "heading": 0.0}
+        front = LINE - dummy.length / 2.0
+    else:
+        walked = cell.start + offset + dummy.reference
+        side = test.comes_from
+        place = {"x": LINE, "y": side * cell.start, "heading": -90.0 * side}
+        front = LINE - dummy.width / 2.0
+    return place, walked, front

@@ -110,7 +110,7 @@ class DriverTable:
 
     @property
     def verdicts(self) -> dict[Key, Verdict]:
-        """Whether each measured impact speed confirms the colour of its cell."""
+        """The verdicts on the colours of those cells whose impact speeds were measured."""
         found: dict[Key, Verdict] = {}
         for key, one in self.cells.items():
             cell = one.planned.cell

@@ -11,6 +11,7 @@ from giveway.cli.commands.study_session import make_study
 from giveway.cli.screen.ncap_table import print_ncap
 from giveway.cli.screen.printing import print_json, print_place
 from giveway.cli.screen.study_summary import print_runs
+from giveway.errors import ResultsError
 from giveway.ncap.request import NcapRequest, forget_course, requested_ncap
 from giveway.ncap.table import DriverTable, outcomes_of, tables_of, write_ncap
 from giveway.reports.ncap_page import ncap_page
@@ -48,6 +49,8 @@ def ncap_command(
     frame = write_ncap(asked.out, tables)
     page = ncap_page(asked.protocol, tables, _facts(request, session.plan), _footer(request))
     write_atomically(asked.out / NCAP_FILES[1], page)
+    if all(one.failure for one in outcomes):
+        raise ResultsError(f"{asked.out}: no cell has a result; {outcomes[0].failure}")
     print_ncap(console, tables)
     print_runs(console, session.study, session.effort)
     print_place(console, "Table", asked.out / NCAP_FILES[1])

@@ -64,6 +64,19 @@ def test_a_native_crash_costs_one_cell_and_not_the_table(monkeypatch, tmp_path, 
     assert alone["hardest_braking"] < 0.1
 
 
+def test_a_car_whose_brakes_do_not_work_is_one_line(monkeypatch, tmp_path, capsys, zoo):
+    car = zoo.car()
+    profile = car.with_suffix(".toml").read_text(encoding="utf-8")
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(profile.replace("[inputs.force]", "[inputs.force]\ngain = -1.0"))
+    flags = ["--profile", wrong, "--out", tmp_path / "out", "--quiet"]
+    assert typed(monkeypatch, "ncap", car, *R152, *flags) == 2
+    error = capsys.readouterr().err
+    assert "no cell has a result" in error
+    assert "turn the sign" in error
+    assert len(error.splitlines()) == 1
+
+
 @pytest.mark.parametrize(
     ("flags", "said"),
     [
