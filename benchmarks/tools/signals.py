@@ -5,12 +5,12 @@
     python benchmarks/tools/signals.py --seed 1 --out FOLDER --only run:17
 
 Each case starts a command in a session of its own and sends SIGINT, SIGTERM or SIGHUP, to the
-process alone or to its whole group. The instant is between giveway's first line and the end of the
-command, by the command's measured duration: uniform in 60 % of the cases, in the first half second
-in 25 %, in the last 5 % of the duration in 15 %. A case is right if the exit code is 128 + n with
-one line, or the regular one of finished work, nothing is left behind and every file is whole
-(``signals_verdicts.py``). A signal before giveway's first line is not judged, and counts as
-``early``.
+process alone or to its whole group. The instant is between the one from which giveway hears
+signals, a millisecond after its first line, and the end of the command, by the command's measured
+duration: uniform in 60 % of the cases, in the first half second in 25 %, in the last 5 % of the
+duration in 15 %. A case is right if the exit code is 128 + n with one line, or the regular one of
+finished work, nothing is left behind and every file is whole (``signals_verdicts.py``). An earlier
+signal is not judged, and counts as ``early``.
 
 One line of ``FOLDER/signals_SEED.jsonl`` per case; a case that is done is not done again, but with
 ``--again`` those that were not right. Folders of such cases stay in ``FOLDER/cases``. The end
@@ -52,7 +52,7 @@ import os, sys, time
 
 class Finder:
     def find_spec(self, name, path=None, target=None):
-        if name == "giveway._start.early_signals":
+        if name == "giveway._start.environment":  # signals are heard from here
             sys.meta_path.remove(self)
             try:
                 handle = os.open(os.environ["SIGNALS_MARK"], os.O_CREAT | os.O_EXCL | os.O_WRONLY)

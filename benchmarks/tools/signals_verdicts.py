@@ -21,7 +21,6 @@ OUTCOMES: Final = (
 )
 BAD: Final = OUTCOMES[5:]
 _GRACE: Final = 2.0  # Time [s] within which the other processes of a command must have ended
-_MARGIN: Final = 0.002  # Time [s] from the search for giveway to its first line
 _TELLTALE: Final = ("Traceback (most recent call last)", "ImportError", "Exception ignored")
 _PARTIAL: Final = (".new", ".tmp", ".part")
 _ENDS: Final = {".html": b"</html>", ".xml": b">", ".png": b"IEND\xaeB`\x82"}
@@ -113,7 +112,7 @@ def judge(
 def _outcome(ended: Ended, folder: Path, command: Command, number: int) -> tuple[str, str]:
     if not ended.sent:
         return "late", ""
-    if ended.sent < ended.first + _MARGIN:
+    if ended.sent < ended.first:
         return "early", ""
     if ended.hung:
         return "hang", "killed at the limit"

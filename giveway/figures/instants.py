@@ -1,5 +1,7 @@
 """The instants of a drive that a picture shows: its events, and others evenly between them."""
 
+from collections import Counter
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,9 +53,9 @@ def _stops(ego: EgoTrack) -> list[tuple[int, str]]:
 
 
 def _cause(ego: EgoTrack, begin: int, end: int) -> str:
-    """Return the first cause of a stop that is known, in words."""
-    causes = [cause for cause in ego.waits_for[begin:end] if cause in WAITS]
-    return WAITS[causes[0]][1] if causes else "stands"
+    """Return the most frequent cause of a stop in words."""
+    causes = Counter(cause for cause in ego.waits_for[begin:end] if cause in WAITS)
+    return WAITS[causes.most_common(1)[0][0]][1] if causes else "stands"
 
 
 def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:

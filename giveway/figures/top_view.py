@@ -220,7 +220,7 @@ def _arrange(
     figure = NotebookFigure(layout="constrained")
     if side_by_side:
         height = min(max(snapshots_height, 4.0), 7.0)
-        overview_width = max(height / whole.aspect + 1.0, 3.4)
+        overview_width = min(max(height / whole.aspect + 1.0, 3.4), 8.0)
         figure.set_size_inches(overview_width + snapshots_width, height + 0.4)
         left, right = figure.subfigures(
             1, 2, squeeze=False, width_ratios=(overview_width, snapshots_width)
