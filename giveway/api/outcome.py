@@ -24,6 +24,7 @@ from giveway.results.run_result import RunResult
 from giveway.run_data.footways import NO_FOOTWAYS
 from giveway.run_data.progress import Ending
 from giveway.sumo.network.painted_marks import road_marks
+from giveway.sumo.opaque_bodies import NOTHING_OPAQUE
 from sumo_scenarios import Scenario
 
 TRAFFIC_DIFFERS = (
@@ -56,6 +57,9 @@ def outcome(
     touched += [loop.meetings.touches.remark] if len(loop.meetings.touches) else []
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
     crowd_track, background = rows.crowd_track(), rows.background_track()
+    opaque = loop.world.opaque([*background.id, *(ego.id for ego in egos)])
+    if opaque is not None and opaque.hides_nobody:
+        remarks = (*remarks, NOTHING_OPAQUE)
     remarks = (*remarks, *unreached(parts.config.measure, crowd_track))
     if crowd_track.is_long:
         remarks = (*remarks, NO_VIEW)
@@ -98,7 +102,7 @@ def outcome(
         marks=road_marks(parts.sumo.lanes),
         footways=NO_FOOTWAYS if parts.exchange is None else parts.exchange.footways,
         remarks=remarks,
-        opaque=loop.world.opaque([*background.id, *(ego.id for ego in egos)]),
+        opaque=opaque,
     )
 
 

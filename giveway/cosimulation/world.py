@@ -26,6 +26,7 @@ class World:
         self._roster, self._mirror = parts.roster, mirror
         self._truth = Truth.of_people(parts.roster.crowd)
         looked_at = any(ego.config.perception.plugged_in_sensor for ego in parts.egos)
+        self._cameras = any(ego.config.perception.sensor == "sight" for ego in parts.egos)
         self._opaque = parts.sumo.opaque if looked_at else None
         if self._opaque is not None:
             self._truth.outlines = self._opaque.walls(parts.config.perception.heights)
@@ -46,12 +47,12 @@ class World:
         return truth
 
     def opaque(self, names: Iterable[str]) -> Opaque | None:
-        """The walls, and the heights of vehicles that have been on the road; None without sensors.
+        """The walls, and the heights of vehicles that have been on the road; None without cameras.
 
         Args:
             names: Ids of the vehicles.
         """
-        if self._opaque is None:
+        if self._opaque is None or not self._cameras:
             return None
         known = sorted(map(str, set(names)))
         heights = self._opaque.vehicle_heights(known).tolist()

@@ -3,11 +3,13 @@
 import math
 from collections import Counter
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+from giveway.config.files.layers import read_toml
 from giveway.doctor.contents import Contents, read_contents
 from giveway.doctor.finding import Finding, error, note, ok, warning
 from giveway.doctor.interplay import interplay
+from giveway.doctor.opaque_polygons import opaque_polygons
 from giveway.doctor.trial import PATIENCE, try_in_sumo
 from giveway.errors import GivewayError
 from giveway.errors import ScenarioError as UnusableScenario
@@ -53,11 +55,18 @@ def examine_scenario(scenario: str | Path, patience: float = PATIENCE) -> list[F
     findings += [*_network(files, network, demand), *_demand(network, demand), *_time(files)]
     findings += [*_settings(files), *_remote(files, network, demand)]
     if not any(finding.level == "error" for finding in findings):
-        findings += interplay(files)
+        findings += [*interplay(files), *opaque_polygons(files, demand, _perception(files))]
     people = demand.persons > 0
     return findings + try_in_sumo(
         files.config_file, patience, people=people, net_file=files.net_file
     )
+
+
+def _perception(files: ScenarioFiles) -> dict[str, Any]:
+    """Return the table [perception] of the scenario's own settings."""
+    settings = find(files.config_file).settings_file
+    own = {} if settings is None else read_toml(settings).values.get("perception", {})
+    return own if isinstance(own, dict) else {}
 
 
 def _missing(files: ScenarioFiles) -> list[Finding]:

@@ -36,6 +36,11 @@ class Opaque:
     walls: Array = field(default_factory=lambda: np.empty((0, 5)))
     heights: dict[str, float] = field(default_factory=dict)
 
+    @property
+    def hides_nobody(self) -> bool:
+        """True if nothing is opaque, from a single ego's place."""
+        return not len(self.walls) and len(self.heights) < 2
+
 
 @dataclass(frozen=True)
 class Scene:

@@ -11,6 +11,10 @@ from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.sumo.library import direct
 
+NOTHING_OPAQUE = (
+    "sensor 'sight': nothing hides anybody: no polygon of a type in [perception] opaque, and no "
+    "other vehicle"
+)
 _HEIGHT = "height"  # parameter of a polygon that is taller or lower than others of its type
 
 
@@ -47,7 +51,7 @@ class OpaqueBodies:
         """
         sides = [np.empty((0, 5))]
         for name in sorted(self._polygon.getIDList()):
-            height = _height_of(self._polygon.getType(name), heights)
+            height = height_of(self._polygon.getType(name), heights)
             if height is None:
                 continue
             own = self._polygon.getParameter(name, _HEIGHT)
@@ -76,8 +80,13 @@ def _own_height(name: str, text: str) -> float:
     return height
 
 
-def _height_of(kind: str, heights: Mapping[str, float]) -> float | None:
-    """The height [m] of a type of polygon, or None if it hides nobody."""
+def height_of(kind: str, heights: Mapping[str, float]) -> float | None:
+    """The height [m] of a type of polygon, or None if it hides nobody.
+
+    Args:
+        kind: Type; it may be a kind of a known one, like ``building.house``.
+        heights: Height [m] of each known type.
+    """
     while kind:
         if kind in heights:
             return heights[kind]

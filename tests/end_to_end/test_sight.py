@@ -31,3 +31,10 @@ def test_where_nothing_hides_anybody_cameras_change_nothing(run_once) -> None:
     assert cameras.ego.position.iloc[-1] == pytest.approx(everybody.ego.position.iloc[-1], abs=0.5)
     assert len(cameras.sights)
     assert not (cameras.ego.reason == "hidden people").any()
+
+
+def test_a_run_in_which_nothing_hides_anybody_says_so(run_once) -> None:
+    sees = {"perception.sensor": "sight", "time_limit": 0.5}
+    assert any("nothing hides anybody" in said for said in run_once(**sees).remarks)
+    behind_cars = run_once(scenario="parked_cars", time_limit=0.5)
+    assert not any("nothing hides" in said for said in behind_cars.remarks)
