@@ -108,7 +108,8 @@ def trajectory_pieces(
         frames = [frame for frame in frames if len(frame)]
         if frames:
             table = pd.concat(frames, ignore_index=True)
-            yield table.sort_values("time", kind="stable", ignore_index=True)[names]
+            ordered = table.sort_values("time", kind="stable", ignore_index=True)
+            yield ordered.reindex(columns=names)
         elif following is None:
             yield pd.DataFrame(columns=names)
         part = following

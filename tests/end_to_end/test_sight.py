@@ -38,3 +38,8 @@ def test_a_run_in_which_nothing_hides_anybody_says_so(run_once) -> None:
     assert any("nothing hides anybody" in said for said in run_once(**sees).remarks)
     behind_cars = run_once(scenario="parked_cars", time_limit=0.5)
     assert not any("nothing hides" in said for said in behind_cars.remarks)
+
+
+def test_trajectories_of_cameras_that_have_met_nobody_yet_tell_of_nobody(run_once) -> None:
+    rows = run_once(scenario="parked_cars", time_limit=0.5).trajectories
+    assert rows["seen"].isna().all()
