@@ -59,9 +59,9 @@ class DummyMetric:
         dummy_relative_speed: Annotated[
             float, Quantity("m/s", "the same relative to the dummy, along the ego's heading")
         ]
-        dummy_aside: Annotated[
+        dummy_lateral_offset: Annotated[
             float,
-            Quantity("m", "place of the dummy's centre then, to the left of the front's middle"),
+            Quantity("m", "lateral offset of the dummy's centre from the front's middle then"),
         ]
         first_sight_time: Annotated[
             float, Quantity("s", "time from departure until a person is perceived; empty: never")

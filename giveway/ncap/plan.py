@@ -180,19 +180,19 @@ def script_of(
         width: Width [m] of the car.
         length: Length [m] of the car.
     """
-    test, pace = cell.test, cell.test.pace / KMH
+    test, walking_speed = cell.test, cell.test.walking_speed / KMH
     place, walked, front = _walk_of(protocol, cell, width, length)
     person = {
         "name": "dummy",
         **{key: round(value, 6) for key, value in place.items()},
-        "speed": round(pace, 6),
+        "speed": round(walking_speed, 6),
         "acceleration_distance": test.acceleration,
         "distance": round(walked + _WALKS_ON, 6),
         "meet_after": round(walked, 6),
         "meet_x": round(front, 6),
         "kind": protocol.dummy(test).kind,
     }
-    return person, (walked + test.acceleration) / pace
+    return person, (walked + test.acceleration) / walking_speed
 
 
 def _walk_of(

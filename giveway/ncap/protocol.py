@@ -152,7 +152,7 @@ class Test(Section):
         title: Title.
         walks: Direction from which, or in which, the person walks.
         dummy: Name of the dummy.
-        pace: Speed [km/h] of the person.
+        walking_speed: Speed [km/h] of the person.
         start: Distance [m] of the first place from the car's middle, or, along the road, of the
             walk at full speed before the impact, or, at a turn, from the car's path.
         acceleration: Distance [m] of the acceleration.
@@ -167,7 +167,7 @@ class Test(Section):
     title: str
     walks: Literal["from the right", "from the left", "along", "with the car", "against the car"]
     dummy: str
-    pace: float
+    walking_speed: float
     start: float
     acceleration: float
     parked: bool = False

@@ -167,7 +167,9 @@ def outcome_of(
     numbers["impact_point"] = nan
     if run.cell is None:
         return Outcome(run, id_, impact, relative, "", numbers)
-    numbers["impact_point"] = round(_hit_by(protocol, run.cell, row["dummy_aside"], width), 3)
+    numbers["impact_point"] = round(
+        _hit_by(protocol, run.cell, row["dummy_lateral_offset"], width), 3
+    )
     colour = colour_of(protocol, run.cell, relative)
     return Outcome(run, id_, impact, relative, colour, numbers)
 

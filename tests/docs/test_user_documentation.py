@@ -24,6 +24,7 @@ from giveway.metrics.baseline import BASELINE_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.metrics.travel import SIGNAL_DELAY_FIELDS, TRAVEL_FIELDS
 from giveway.metrics.waiting import WAITING_FIELDS
+from giveway.ncap.table import COLUMNS as NCAP_COLUMNS
 from giveway.recordings import KNOWN
 from giveway.recordings.describing import RECORDING_FIELDS
 from giveway.recordings.measuring import DRIVE_FIELDS, PERSON_FIELDS
@@ -83,6 +84,13 @@ def test_the_printed_call_keeps_every_id(tmp_path: Path, monkeypatch: pytest.Mon
 def test_every_column_of_recordings_is_documented(columns: tuple) -> None:
     text = (DOCS / "recordings.md").read_text(encoding="utf-8")
     for column in columns:
+        row = f"| `{column.name}` | {column.type} | {column.unit or ''} | {column.description} |"
+        assert row in text
+
+
+def test_every_column_of_ncap_is_documented() -> None:
+    text = (DOCS / "ncap.md").read_text(encoding="utf-8")
+    for column in NCAP_COLUMNS:
         row = f"| `{column.name}` | {column.type} | {column.unit or ''} | {column.description} |"
         assert row in text
 

@@ -28,7 +28,7 @@ def test_a_crossing_dummy_is_hit_at_the_side_of_its_box(driving, crowd, walking)
     """Its middle is at x = 8.25 m; the front is at its box, 8 m, after 2 s."""
     found = measured(driving(TIME, 4.0), crowd(walking(TIME, (8.25, -3.0), (0.0, 1.4))))
     assert found.dummy_impact_speed == found.dummy_relative_speed == pytest.approx(4.0)
-    assert found.dummy_aside == pytest.approx(-0.2)
+    assert found.dummy_lateral_offset == pytest.approx(-0.2)
 
 
 def test_a_dummy_that_walks_ahead_is_hit_from_behind(driving, crowd, walking):
@@ -36,7 +36,7 @@ def test_a_dummy_that_walks_ahead_is_hit_from_behind(driving, crowd, walking):
     found = measured(driving(TIME, 4.0), crowd(walking(TIME, (6.3, 0.5), (1.0, 0.0))))
     assert found.dummy_impact_speed == pytest.approx(4.0)
     assert found.dummy_relative_speed == pytest.approx(3.0)
-    assert found.dummy_aside == pytest.approx(0.5)
+    assert found.dummy_lateral_offset == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_a_dummy_that_walks_ahead_is_hit_from_behind(driving, crowd, walking):
 )
 def test_a_dummy_beside_or_beyond_is_not_hit(driving, crowd, walking, place, velocity):
     found = measured(driving(TIME, 4.0), crowd(walking(TIME, place, velocity)))
-    assert np.isnan([found.dummy_impact_speed, found.dummy_aside]).all()
+    assert np.isnan([found.dummy_impact_speed, found.dummy_lateral_offset]).all()
 
 
 def test_nobody_and_no_braking_are_empty(driving, crowd):

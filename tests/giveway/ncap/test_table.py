@@ -34,7 +34,7 @@ def measured(where, speed=nan, aside=nan, width=1.8):
         "ego": "ego",
         "dummy_impact_speed": speed,
         "dummy_relative_speed": speed,
-        "dummy_aside": aside,
+        "dummy_lateral_offset": aside,
         **BRAKED,
     }
     record = RunRecord("c1-s1", "key", "completed", (row,))
