@@ -197,7 +197,7 @@ class NcapChoice(NamedTuple):
         list[str] | None, typer.Option("--only", metavar="TEST", help="A test; repeatable.")
     ] = None
     speeds: Annotated[
-        list[int] | None, typer.Option("--speed", help="A speed [km/h]; repeatable.")
+        list[int] | None, typer.Option("--speed", metavar="KM/H", help="A speed; repeatable.")
     ] = None
     measured: Annotated[
         Path | None,

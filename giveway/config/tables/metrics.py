@@ -2,9 +2,13 @@
 
 from typing import ClassVar
 
+from pydantic import field_validator
+
 from giveway.config.option import Displacement, option
 from giveway.config.tables.plug_in_table import PlugInTable
 from giveway.plug_ins.sockets import METRIC, Socket
+
+_LARGEST = 3.0  # Largest side [m] of a dummy
 
 
 class MetricsConfig(PlugInTable):
@@ -24,3 +28,12 @@ class MetricsConfig(PlugInTable):
         "Length and width of a test's dummy. The summary has the speed at which the front reaches "
         "it, and how the ego braked. It does not by default, but in giveway ncap",
     )
+
+    @field_validator("dummy")
+    @classmethod
+    def _has_a_box(cls, size: Displacement | None) -> Displacement | None:
+        if size is not None and not all(0.0 < side <= _LARGEST for side in size):
+            raise ValueError(
+                f"{size[0]:g},{size[1]:g}: expected two lengths above 0, up to {_LARGEST:g} m"
+            )
+        return size

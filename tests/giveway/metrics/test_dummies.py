@@ -10,6 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import load
+from giveway.errors import ConfigError
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.dummies import DummyMetric, DummyOptions
 from giveway.run_data.tracks import NO_SIGHTS, SightTrack
@@ -78,3 +81,9 @@ def test_the_first_sight_is_that_of_this_ego(driving, crowd, walking):
     )
     found = measured(driving(TIME, 4.0), crowd(walking(TIME, (8.0, 0.0), (0.0, 0.0))), sights)
     assert (found.first_sight_time, found.first_sight_distance) == (0.4, 7.0)
+
+
+@pytest.mark.parametrize("size", [[0.6, 0.0], [-1.0, 0.5], [4.0, 0.5]])
+def test_a_dummy_has_a_box_of_its_size(size):
+    with pytest.raises(ConfigError, match="expected two lengths above 0, up to 3 m"):
+        load([Layer("mine", {"metrics": {"dummy": size}})])
