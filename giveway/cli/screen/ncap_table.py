@@ -33,7 +33,7 @@ def print_ncap(console: Console, tables: Sequence[DriverTable]) -> None:
             for name, squares in matrix.rows:
                 lines.add_row(escape(name), *map(_shown, squares))
             points = f" ({matrix.points})" if matrix.points else ""
-            console.print(f"{matrix.name}: {matrix.title}{points}", highlight=False)
+            console.print(escape(f"{matrix.name}: {matrix.title}{points}"), highlight=False)
             console.print(lines)
         for name, here, there, verdict in verification_of(table):
             told = f"{name}: {here} km/h, measured {there}: {verdict}"

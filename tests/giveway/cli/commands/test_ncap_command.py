@@ -28,7 +28,7 @@ def test_a_car_that_brakes_is_green_and_each_cell_can_be_made_again(monkeypatch,
     said = " ".join(capsys.readouterr().out.split())
     assert "UN R152, 01 series (draft values)" in said
     assert "20 50 % G" in said
-    assert "20 open road G" in said
+    assert "largest deceleration [m/s²] without the person 20 open road G" in said
     table = pd.read_csv("out/ncap.csv")
     assert table["test"].tolist() == ["R152", "nobody"]
     hit, alone = table.to_dict("records")
