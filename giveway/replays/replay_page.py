@@ -32,6 +32,7 @@ from giveway.replays.packed_tracks import (
     thinning,
 )
 from giveway.replays.run_folder import PREDICTIONS, RunFolder, read_predictions
+from giveway.run_data.tracks import counted
 from giveway.run_data.writing import pretty_unit
 
 _SCRIPTS = (
@@ -193,7 +194,7 @@ def _title(run: RunFolder) -> str:
     scenario = run.summary.get("scenario", run.config.scenario)
     controllers = {one.driver for one in run.egos.values()}
     pedestrians = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
-    parts = [str(scenario), " + ".join(sorted(controllers)), f"{pedestrians} pedestrians"]
+    parts = [str(scenario), " + ".join(sorted(controllers)), counted(pedestrians)]
     return " · ".join([part for part in parts if part] + [f"seed {run.config.seed}"])
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from giveway.errors import ResultsError
 from giveway.results.digest import digest
+from giveway.run_data.tracks import counted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,8 +63,8 @@ def one_line(result: RunTables) -> str:
     if len(result.egos) > 1:
         driver = f"{len(result.egos)} egos"
     return (
-        f"<RunResult {head['scenario']}: {driver}, {head['pedestrians']} "
-        f"pedestrians, seed {head['seed']}; {head['ending']} after {simulated:.2f} s>"
+        f"<RunResult {head['scenario']}: {driver}, {counted(head['pedestrians'])}, "
+        f"seed {head['seed']}; {head['ending']} after {simulated:.2f} s>"
     )
 
 

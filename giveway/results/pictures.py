@@ -25,6 +25,7 @@ from giveway.measures import density_map
 from giveway.results.ego_result import EgoResult
 from giveway.results.names import MARKS
 from giveway.results.run_tables import RunTables
+from giveway.run_data.tracks import counted
 from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 
@@ -114,23 +115,23 @@ def _conflicts(ego: EgoResult) -> list[Conflict]:
 
 def density_picture(result: RunTables) -> Figure:
     """Draw the mean density of the people over the run, and the places of conflicts."""
-    people = len(result.crowd_track.ids)
+    people = counted(len(result.crowd_track.ids))
     return density_figure(
         density_map(result.crowd_track, len(result.time)),
         result.config.measure,
         conflicts=[conflict for ego in result.egos for conflict in _conflicts(ego)],
-        title=f"{result.scenario.name}, {people} pedestrians, seed {result.config.seed}",
+        title=f"{result.scenario.name}, {people}, seed {result.config.seed}",
     )
 
 
 def crowd_picture(result: RunTables) -> Figure:
     """Draw the trajectories of a run without an ego."""
-    people = len(result.crowd_track.ids)
+    people = counted(len(result.crowd_track.ids))
     return crowd_view_figure(
         result.time,
         result.crowd_track,
         road=result.road,
-        title=f"{result.scenario.name}, {people} pedestrians, seed {result.config.seed}",
+        title=f"{result.scenario.name}, {people}, seed {result.config.seed}",
     )
 
 
@@ -138,7 +139,7 @@ def _title(result: RunTables, ego: EgoResult) -> str:
     who = "" if ego.id == "ego" else f"ego {ego.id}, "
     return (
         f"{result.scenario.name}, {who}{ego.config.driver}, "
-        f"{len(result.crowd_track.ids)} pedestrians, seed {result.config.seed}"
+        f"{counted(len(result.crowd_track.ids))}, seed {result.config.seed}"
     )
 
 

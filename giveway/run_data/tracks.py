@@ -289,3 +289,8 @@ class Timings:
     def total(self, name: str) -> float:
         """Return the time [s] of one part, summed over all steps."""
         return float(self.seconds[:, self.NAMES.index(name)].sum())
+
+
+def counted(people: int) -> str:
+    """Return a number of people in words: "1 pedestrian", "24 pedestrians"."""
+    return "1 pedestrian" if people == 1 else f"{people} pedestrians"

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from giveway.results.digest import digest, formatted
 from giveway.results.run_result import RunResult
+from giveway.run_data.tracks import counted
 
 _KNOWN = ("scenario", "controller", "pedestrians", "seed", "ending", "ego")  # by the title
 
@@ -59,8 +60,7 @@ def _title(result: RunResult) -> str:
         who = result.egos[0].config.driver
     else:
         who = f"{len(result.egos)} egos" if result.egos else "no ego"
-    number = len(result.crowd_track.ids)
-    people = "1 pedestrian" if number == 1 else f"{number} pedestrians"
+    people = counted(len(result.crowd_track.ids))
     seed = result.config.seed
     return f"{result.scenario.name}: {who}, {people}, seed {seed} - {result.ending}"
 
