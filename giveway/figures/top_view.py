@@ -155,7 +155,8 @@ def top_view_figure(
         if backdrop.sight is not None:
             pose = Pose(float(ego.front_x[k]), float(ego.front_y[k]), float(ego.heading[k]))
             draw_area(axes, backdrop.sight.hidden(pose, others))
-            perceived &= [backdrop.sight.perceives(crowd.ids[p], time) for p in crowd.pedestrian]
+            for row in np.flatnonzero(crowd.step == k):
+                perceived[row] = backdrop.sight.perceives(crowd.ids[crowd.pedestrian[row]], time)
         _draw_scene(axes, k, corners[k], crowd, body_radius, perceived)
         part.apply(axes)
         told = f", {events[k]}" if events[k] else ""

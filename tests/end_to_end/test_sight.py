@@ -2,6 +2,8 @@
 
 import pytest
 
+from giveway.results.pictures import top_view_picture
+
 
 def frontal(result) -> int:
     return int(result.summary["frontal_contacts"])
@@ -41,5 +43,6 @@ def test_a_run_in_which_nothing_hides_anybody_says_so(run_once) -> None:
 
 
 def test_trajectories_of_cameras_that_have_met_nobody_yet_tell_of_nobody(run_once) -> None:
-    rows = run_once(scenario="parked_cars", time_limit=0.5).trajectories
-    assert rows["seen"].isna().all()
+    result = run_once(scenario="parked_cars", time_limit=0.5)
+    assert result.trajectories["seen"].isna().all()
+    assert top_view_picture(result, result.egos[0]).axes
