@@ -75,6 +75,8 @@ _PEOPLE = (
     _Row(4, "Smallest time to collision", "minimum_ttc_moving", "s"),
     _Row(7, "People below 1.5 s to a collision", "people_below_ttc"),
     _Row(6, "Delay of the people, together", "people_delay", "s"),
+    _Row(3, "Overlaps with people as recorded", "recorded_contacts"),
+    _Row(7, "Recorded people who began to react", "handed_over"),
 )
 _RULES = (
     _Row(_ALWAYS, "Red lights run", "red_lights_run"),
@@ -108,7 +110,10 @@ def digest(result: RunTables) -> list[Line]:
     factor = result.timing_summary["real_time_factor"]
     blanks = ("",) * max(0, len(egos) - 1)
     lines.append(Line("computing", "Real-time factor", (formatted(factor, "x"), *blanks), "x"))
+    named = {row.value for row in _PEOPLE}
     for own in (column for ego in egos[:1] for column in ego.measured.columns):
+        if own.name in named:
+            continue
         values = tuple(formatted(ego.summary.get(own.name), own.unit or "") for ego in egos)
         lines.append(Line("own metrics", own.name, values, own.unit or ""))
     return lines

@@ -112,6 +112,7 @@ def interrupted(result: RunResult, folder: Path) -> int:
 def default_folder(config: RunConfig, scenario: str) -> Path:
     """Return ``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos.
 
+    The number of persons is left out if giveway adds none: the scenario may bring its own.
     If anything else differs from the scenario's settings and the defaults, six digits of a hash
     over the whole configuration follow, so that different runs have different folders.
     """
@@ -119,8 +120,8 @@ def default_folder(config: RunConfig, scenario: str) -> Path:
     controllers = _safe("_".join(dict.fromkeys(ego.controller_name for ego in egos))) or "no_ego"
     taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
     safe = _safe(taken)
-    pedestrians = f"{config.crowd.pedestrians}ped"
-    name = f"{scenario}_{controllers}{safe[:60]}_{pedestrians}_seed{config.seed}"
+    added = f"_{config.crowd.pedestrians}ped" if config.crowd.pedestrians else ""
+    name = f"{scenario}_{controllers}{safe[:60]}{added}_seed{config.seed}"
     if not _is_told_by_name(config):
         name += f"_{sha256(dump_toml(config).encode()).hexdigest()[:6]}"
     return Path("results") / name

@@ -89,6 +89,14 @@ def test_more_than_fits_leaves_out_what_tells_least():
     assert groups == sorted(groups, key=["drive", "people", "rules", "computing"].index)
 
 
+def test_people_who_walk_as_recorded_are_told_in_words():
+    columns = [SimpleNamespace(name=n, unit=None) for n in ("handed_over", "recorded_contacts")]
+    quiet = QUIET | {"handed_over": 0, "recorded_contacts": 0}
+    assert _shown(_run(quiet, columns=columns)) == _shown(_run(QUIET))
+    met = _shown(_run(quiet | {"recorded_contacts": 2}, columns=columns))
+    assert met["Overlaps with people as recorded"] == ("2", "")
+
+
 def test_people_let_pass_are_counted():
     assert _shown(_run(RULED | {"encounters": 4, "yielding_rate": 0.75}, ruled=True))[
         "People let pass at crossings"

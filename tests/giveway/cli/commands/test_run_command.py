@@ -74,6 +74,15 @@ def test_runs_that_differ_have_folders_that_differ(type_here: Type, tmp_path: Pa
     assert all(re.fullmatch(r"shared_space_mpc_2ped_seed1_[0-9a-f]{6}", name) for name in names)
 
 
+def test_a_folder_counts_nobody_where_the_scenario_brings_people(
+    type_here: Type, tmp_path: Path
+) -> None:
+    words = ("--pedestrians", 0, "--time-limit", 0.1, "--no-pictures", "-q")
+    assert type_here("run", "shared_space", *words).returncode == 0
+    (folder,) = (tmp_path / "results").iterdir()
+    assert folder.name.startswith("shared_space_mpc_seed1_")
+
+
 def test_a_missing_vehicle_is_said_before_results_that_exist(
     refused: Callable[..., str], tmp_path: Path
 ) -> None:
