@@ -26,7 +26,8 @@ def test_a_scenario_is_written_run_and_compared(tmp_path: Path, type_here: Calla
     words = ("--controller", "pid-tuned", "--no-pictures", "--out", "run")
     done = type_here("run", "own/", *words)
     assert done.returncode == 0, done.stderr
-    assert "recorded_contacts" in done.stdout
+    told = "Overlaps with people as recorded" in done.stdout
+    assert told == bool(pd.read_csv(tmp_path / "run" / "summary.csv")["recorded_contacts"][0])
     compared = type_here("data", "compare", "run", "--out", "out")
     assert compared.returncode == 0, compared.stderr
     for text in ("In place of yard, vehicle 1", "recorded driver", "the person went first"):
