@@ -95,6 +95,14 @@ class RunConfig(RunSettings):
         own = CrowdConfig.model_construct(_fields_set=self.crowd.model_fields_set, **values)
         object.__setattr__(self, "crowd", own)  # the key does not count as set by the user
 
+    def as_json(self) -> str:
+        """Return the configuration as JSON, without the vehicle's keys that nobody has set.
+
+        A vehicle is identified if its mass is not told; a default that is written would tell it.
+        """
+        unset = set(type(self.vehicle).model_fields) - self.vehicle.model_fields_set
+        return self.model_dump_json(exclude={"vehicle": unset})
+
     def each_ego(self) -> tuple[EgoRunConfig, ...]:
         """Return the configuration of each ego, complete and without ``egos``.
 

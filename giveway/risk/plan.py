@@ -112,7 +112,7 @@ class RiskPlan:
 
     def task(self, run: RiskRun) -> Task:
         """Return the task that a worker needs to make a run."""
-        text = self.config(run.vector).model_dump_json()
+        text = self.config(run.vector).as_json()
         made_by = software_identity(), relevant_versions()
         return Task(run.id, run.key, text, self.hashes, *made_by)
 

@@ -67,7 +67,7 @@ class PlannedRun:
 
     def task(self) -> Task:
         """Return the task that a worker needs to make the run."""
-        text = self.config.model_dump_json()
+        text = self.config.as_json()
         made_by = software_identity(), relevant_versions()
         return Task(self.id, self.key, text, self.planned.inputs, *made_by)
 

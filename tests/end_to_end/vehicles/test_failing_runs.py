@@ -174,6 +174,21 @@ def test_a_run_that_goes_on_notes_what_is_odd(zoo, giveway, options, note):
     assert re.search(note, " ".join(done.stdout.split()))
 
 
+def test_a_study_drives_what_a_run_identifies(zoo, giveway, tmp_path):
+    car = zoo.car(values={"mass": 2000.0})
+    run = {"scenario": "shared_space", "time_limit": 6.0, "crowd.preset": "SIM"}
+    run |= {"vehicle.fmu": str(car), "vehicle.profile": str(car.with_suffix(".toml"))}
+    lines = [f"{key} = {json.dumps(value)}" for key, value in run.items()]
+    study = ['name = "cars"', "replications = 1", "[run]", *lines]
+    study += ["[factors]", 'controller = ["pid-tuned", "mpc"]']
+    (tmp_path / "cars.toml").write_text("\n".join(study))
+    done = giveway("study", "cars.toml", "--out", "cars", "--jobs", 1, "--no-report", "-q")
+    assert done.returncode == 0, done.stderr
+    again = giveway("rerun", "cars", "c1-s1", "--no-pictures")
+    assert (again.returncode, again.stderr) == (0, "")
+    assert "identified M = 2" in " ".join(again.stdout.split())
+
+
 @pytest.mark.parametrize(
     ("options", "flags", "said"),
     [

@@ -211,3 +211,12 @@ def test_the_declared_preset_does_not_count_as_set_by_the_user() -> None:
     again = RunConfig.model_validate_json(paper.model_dump_json())
     assert again == paper
     assert EgoRunConfig(controller="mpc-paper").crowd.preset == "SIM"
+
+
+def test_json_for_workers_tells_no_mass_that_nobody_has_told() -> None:
+    config = RunConfig.model_validate({"vehicle": {"fmu": "bus.fmu"}, "seed": 3})
+    again = RunConfig.model_validate_json(config.as_json())
+    assert again == config
+    assert again.vehicle.model_fields_set == {"fmu"}
+    heavy = RunConfig.model_validate({"vehicle": {"fmu": "bus.fmu", "mass": 1000.0}})
+    assert "mass" in RunConfig.model_validate_json(heavy.as_json()).vehicle.model_fields_set
