@@ -13,8 +13,9 @@ from giveway.cli.completion import complete_scenario
 from giveway.cli.data_commands import build_data
 from giveway.cli.fmu_commands import build_export, build_fmu
 from giveway.cli.help import Commands, JsonFlag
-from giveway.cli.option_groups import RunOutputs, ungrouped
+from giveway.cli.option_groups import RunOutputs
 from giveway.cli.study_commands import add_studies
+from giveway.cli.ungrouping import ungrouped
 from giveway.cli.validation_commands import add_validation
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?

@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from giveway.cli.help import Commands
-from giveway.cli.option_groups import DryRun, ReplaceFile, StepTests, Unsealed, ungrouped
+from giveway.cli.option_groups import DryRun, ReplaceFile, StepTests, Unsealed
+from giveway.cli.ungrouping import ungrouped
 from giveway.errors import ConfigError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]

@@ -20,8 +20,8 @@ from giveway.cli.option_groups import (
     StudySeeds,
     Trust,
     Unsealed,
-    ungrouped,
 )
+from giveway.cli.ungrouping import ungrouped
 
 _Folder = Annotated[Path, typer.Argument(help="The folder of a study or risk.")]
 

@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from giveway.cli.help import Commands
-from giveway.cli.option_groups import FitSettings, ungrouped
+from giveway.cli.option_groups import FitSettings
+from giveway.cli.ungrouping import ungrouped
 
 _Clips = Annotated[Path, typer.Argument(help="A data set's folder, or any part of it with clips.")]
 _Dataset = Annotated[

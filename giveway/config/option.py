@@ -7,10 +7,12 @@ from typing import Annotated, Any, Final, Literal, Protocol, TypeVar, get_args
 
 from pydantic import (
     AfterValidator,
+    BaseModel,
     BeforeValidator,
     ConfigDict,
     Field,
     JsonValue,
+    ValidationError,
     ValidationInfo,
     field_validator,
 )
@@ -239,6 +241,7 @@ class NamedTable(Protocol):
 
 
 _Table = TypeVar("_Table", bound=NamedTable)
+_Model = TypeVar("_Model", bound=BaseModel)
 
 
 def read_tables(
@@ -264,3 +267,35 @@ def read_tables(
         if names.count(name) > 1:
             raise ValueError(f"{what} '{name}': two have this name; give each its own")
     return tuple(tables)
+
+
+def reader_of_named(kind: type[_Model], what: str) -> Callable[[dict[str, Any], int], _Model]:
+    """Return the function that reads one table of an array; without a name it gets its number.
+
+    Args:
+        kind: Class of a table, with the attribute ``name``.
+        what: Word for a table, in messages and in names.
+    """
+
+    def read(entry: dict[str, Any], number: int) -> _Model:
+        name = entry.get("name") or f"{what}{number}"
+        try:
+            return kind.model_validate({**entry, "name": name})
+        except ValidationError as error:
+            first: Any = error.errors(include_url=False)[0]
+            raise ValueError(f"{what} '{name}': {_explained(kind, first)}") from None
+
+    return read
+
+
+def _explained(kind: type[BaseModel], error: Any) -> str:
+    """Return one line on pydantic's error in a table."""
+    if not error["loc"]:  # its values do not fit each other
+        return str(error["ctx"]["error"])
+    key = str(error["loc"][0])
+    field = kind.model_fields.get(key)
+    if field is None:
+        return f"unknown key '{key}'; expected one of {', '.join(kind.model_fields)}"
+    if error["type"] == "missing":
+        return f"{key} is missing ({field.description})"
+    return f"{key} = {error['input']!r}: {expectation(error, field)}"

@@ -11,6 +11,7 @@ import numpy as np
 
 from giveway.geometry.path import EgoPath
 from giveway.ncap.protocol import ParkedCars
+from giveway.scenario_files.path_network import configuration_of
 from giveway.studies.folder.atomic_files import write_atomically
 
 LENGTH: Final = 1000.0
@@ -37,22 +38,6 @@ width="{width:.2f}" shape="{shape}"/>
 """
 _JUNCTION = """    <junction id="{name}_{end}" type="dead_end" x="{x:.2f}" y="{y:.4f}" \
 incLanes="{lanes}" intLanes="" shape="{x:.2f},{y:.4f} {x:.2f},{above:.4f}"/>
-"""
-_CONFIGURATION = """<?xml version="1.0" encoding="UTF-8"?>
-<configuration>
-    <input>
-        <net-file value="{name}.net.xml"/>
-        <route-files value="{name}.rou.xml"/>
-    </input>
-    <time>
-        <begin value="0"/>
-        <end value="200"/>
-        <step-length value="0.05"/>
-    </time>
-    <processing>
-        <pedestrian.model value="striping"/>
-    </processing>
-</configuration>
 """
 _PARKED = """    <vType id="parked{n}" vClass="passenger" length="{length}" width="{width}" \
 height="{height}"/>
@@ -133,7 +118,7 @@ def write_course(
     written = {
         f"{name}.net.xml": _NET.format(bounds=bounds, edges=edges, junctions=junctions),
         f"{name}.rou.xml": f"<routes>\n{''.join(reversed(cars))}</routes>\n",
-        f"{name}.sumocfg": _CONFIGURATION.format(name=name),
+        f"{name}.sumocfg": configuration_of(name, 200.0, routes=True),
     }
     for file, text in written.items():
         write_atomically(folder / file, text)

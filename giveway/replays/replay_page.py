@@ -133,8 +133,7 @@ def _written(target: Path, page: str) -> Path:
 
 def _text(name: str) -> Markup:
     """Return a file of the page, unchanged."""
-    file = files("giveway.replays") / "page" / name
-    return Markup(file.read_text(encoding="utf-8"))
+    return Markup((files("giveway.replays") / "page" / name).read_text(encoding="utf-8"))
 
 
 def _template(name: str) -> Template:

@@ -39,7 +39,7 @@ _CONFIGURATION = """<?xml version="1.0" encoding="UTF-8"?>
 <configuration>
     <input>
         <net-file value="{name}.net.xml"/>
-    </input>
+{routes}    </input>
     <time>
         <begin value="0"/>
         <end value="{end:g}"/>
@@ -82,9 +82,13 @@ def network_along(path: Array, limit: float) -> str:
     )
 
 
-def configuration_of(name: str, end: float) -> str:
-    """Return the text of the configuration ``NAME.sumocfg``, which ends at a time [s]."""
-    return _CONFIGURATION.format(name=name, end=end)
+def configuration_of(name: str, end: float, *, routes: bool = False) -> str:
+    """Return the text of the configuration ``NAME.sumocfg``, which ends at a time [s].
+
+    With ``routes`` it reads ``NAME.rou.xml``, too.
+    """
+    file = f'        <route-files value="{name}.rou.xml"/>\n' if routes else ""
+    return _CONFIGURATION.format(name=name, end=end, routes=file)
 
 
 def _points(points: Array) -> str:

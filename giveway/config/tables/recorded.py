@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final, Literal
 
-from pydantic import ValidationError
-
-from giveway.config.option import Name, Section, expectation, option, read_tables
+from giveway.config.option import Name, Section, option, read_tables, reader_of_named
 from giveway.config.tables.people import ADULT, Kind
 
 RECORDED: Final = "recorded"
@@ -104,25 +102,10 @@ def read_recorded(value: Any) -> tuple[RecordedConfig, ...]:
     """
     if isinstance(value, list | tuple) and len(value) > _MOST:
         raise ValueError(f"{len(value)} recordings: expected {_MOST} at most")
-    return read_tables(value, RecordedConfig, RECORDED, "[[crowd.recorded]]", _read)
-
-
-def _read(entry: dict[str, Any], number: int) -> RecordedConfig:
-    name = entry.get("name") or f"{RECORDED}{number}"
-    try:
-        return RecordedConfig.model_validate({**entry, "name": name})
-    except ValidationError as error:
-        first: Any = error.errors(include_url=False)[0]
-        raise ValueError(f"recorded '{name}': {_explain(first)}") from None
-
-
-def _explain(error: Any) -> str:
-    """Return one line on pydantic's error in an entry."""
-    key = str(error["loc"][0])
-    field = RecordedConfig.model_fields.get(key)
-    if field is None:
-        known = ", ".join(RecordedConfig.model_fields)
-        return f"unknown key '{key}'; expected one of {known}"
-    if error["type"] == "missing":
-        return f"{key} is missing ({field.description})"
-    return f"{key} = {error['input']!r}: {expectation(error, field)}"
+    return read_tables(
+        value,
+        RecordedConfig,
+        RECORDED,
+        "[[crowd.recorded]]",
+        reader_of_named(RecordedConfig, RECORDED),
+    )

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from pydantic import ValidationError, model_validator
+from pydantic import model_validator
 
-from giveway.config.option import Name, Section, expectation, option, read_tables
+from giveway.config.option import Name, Section, option, read_tables, reader_of_named
 from giveway.config.tables.people import ADULT, Kind
 
 SCRIPTED: Final = "scripted"
@@ -110,27 +110,10 @@ def read_scripted(value: Any) -> tuple[ScriptedConfig, ...]:
     """
     if isinstance(value, list | tuple) and len(value) > _MOST:
         raise ValueError(f"{len(value)} scripted people: expected {_MOST} at most")
-    return read_tables(value, ScriptedConfig, SCRIPTED, "[[crowd.scripted]]", _read)
-
-
-def _read(entry: dict[str, Any], number: int) -> ScriptedConfig:
-    name = entry.get("name") or f"{SCRIPTED}{number}"
-    try:
-        return ScriptedConfig.model_validate({**entry, "name": name})
-    except ValidationError as error:
-        first: Any = error.errors(include_url=False)[0]
-        raise ValueError(f"scripted '{name}': {_explain(first)}") from None
-
-
-def _explain(error: Any) -> str:
-    """Return one line on pydantic's error in an entry."""
-    if not error["loc"]:
-        return str(error["ctx"]["error"])
-    key = str(error["loc"][0])
-    field = ScriptedConfig.model_fields.get(key)
-    if field is None:
-        known = ", ".join(ScriptedConfig.model_fields)
-        return f"unknown key '{key}'; expected one of {known}"
-    if error["type"] == "missing":
-        return f"{key} is missing ({field.description})"
-    return f"{key} = {error['input']!r}: {expectation(error, field)}"
+    return read_tables(
+        value,
+        ScriptedConfig,
+        SCRIPTED,
+        "[[crowd.scripted]]",
+        reader_of_named(ScriptedConfig, SCRIPTED),
+    )
