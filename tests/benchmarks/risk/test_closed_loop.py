@@ -24,14 +24,25 @@ def test_every_kept_interval_meets_that_of_the_reference():
         assert float(reference["low"]) <= float(one["high"]), one["name"]
 
 
-def test_the_table_has_what_is_there_the_reference_first(tmp_path):
-    for name in ("subset-10", "subset-2", "reference"):
+def test_the_table_has_all_parts_of_the_reference_in_its_first_row(tmp_path):
+    for name, runs, events in (
+        ("subset-10", 4000, 200),
+        ("subset-2", 4100, 210),
+        ("reference-1", 10_000, 19),
+        ("reference-2", 10_000, 21),
+    ):
         (tmp_path / name).mkdir()
-        (tmp_path / name / "risk.csv").write_text("event,probability,low,high\nfrontal,0.1,0,1\n")
+        (tmp_path / name / "risk.csv").write_text(
+            f"event,probability,low,high,runs,events\nfrontal,0.1,0,1,{runs},{events}\n"
+        )
     (tmp_path / "subset-3").mkdir()
     closed_loop.keep(tmp_path, tmp_path / "kept.csv")
-    assert [row["name"] for row in rows(tmp_path / "kept.csv")] == [
+    reference, *estimates = rows(tmp_path / "kept.csv")
+    assert [one["name"] for one in estimates] == ["subset-2", "subset-10"]
+    assert (reference["name"], reference["runs"], reference["events"]) == (
         "reference",
-        "subset-2",
-        "subset-10",
-    ]
+        "20000",
+        "40",
+    )
+    assert float(reference["probability"]) == 0.002
+    assert 0.001 < float(reference["low"]) < 0.002 < float(reference["high"]) < 0.003
