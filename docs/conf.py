@@ -7,6 +7,7 @@ same links between them. Equations become MathML while the site is built: a page
 from __future__ import annotations
 
 import sys
+import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,14 +20,24 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.writers.html5 import HTML5Translator
 
-sys.path.insert(0, str(Path(__file__).parent))  # field_comments
+DOCS = Path(__file__).parent
+MENU = tomllib.loads((DOCS / "menu.toml").read_text(encoding="utf-8"))
+PROJECT = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+sys.path.insert(0, str(DOCS))  # field_comments, glossary_links
 
 project = "giveway"
 author = "the giveway engineers"
 project_copyright = "the giveway engineers, MIT licence"
 version = release = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "field_comments"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "field_comments",
+    "glossary_links",
+]
 root_doc = "docs/index"
 include_patterns = [
     "README.md",
@@ -52,9 +63,13 @@ napoleon_use_ivar = True
 add_module_names = False
 
 html_theme = "furo"
-html_title = "giveway"
+html_title = f"giveway {version}"
+html_theme_options = {}
+if repository := PROJECT.get("urls", {}).get("Repository"):
+    html_theme_options = {"source_repository": repository, "source_branch": "main"}
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_js_files = [("site.js", {"defer": "defer"})]
 html_additional_pages = {"index": "first_page.html"}
 templates_path = ["_templates"]
 html_copy_source = False
@@ -85,7 +100,22 @@ def skip_children() -> None:
     raise nodes.SkipNode
 
 
+def add_menu(app: Sphinx, name: str, source: list[str]) -> None:
+    """Add the pages below this one, as docs/menu.toml lists them."""
+    entries = {page_of(entry): pages for part in MENU.values() for entry, pages in part.items()}
+    for caption, pages in (MENU if name == root_doc else {"": entries.get(name, [])}).items():
+        listed = [page.replace(page_of(page), f"/{page_of(page)}") for page in pages]
+        head = ["```{toctree}", ":hidden:", *([f":caption: {caption}"] if caption else [])]
+        source[0] += "\n".join(["\n", *head, "", *listed, "```\n"]) if listed else ""
+
+
+def page_of(entry: str) -> str:
+    """Return the page that an entry of the menu names."""
+    return entry.rpartition("<")[2].rstrip(">")
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Add the renderer of equations."""
+    """Add the menu and the renderer of equations."""
+    app.connect("source-read", add_menu)
     app.add_html_math_renderer("mathml", (inline_equation, None), (block_equation, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -183,7 +183,7 @@ def run_page(page: Path, scratch: Path, *, slow: bool) -> Counter[str]:
 def main() -> int:
     """Run what is asked for; 1: something failed."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("pages", nargs="*", help="like README.md docs/people.md; none: all")
+    parser.add_argument("pages", nargs="*", help="like README.md docs/encounters.md; none: all")
     parser.add_argument("--all", action="store_true", help="large studies, too: hours")
     parser.add_argument("--folder", type=Path, help="scratch folder that is kept, to resume in")
     asked = parser.parse_args()

@@ -1,7 +1,7 @@
 """The protocol of pedestrian models of other packages.
 
 A class of an installed package is a pedestrian model if it can be made from a :class:`ModelSetup`
-(and its options, if it has any) and has the method ``step``. docs/plugins.md is the guide.
+(and its options, if it has any) and has the method ``step``. docs/own_pedestrians.md is the guide.
 """
 
 from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable

@@ -1,7 +1,7 @@
 """Does something happen in the scenario encounter? python benchmarks/bounds/encounters.py.
 
 In each crowd it says whether people slow ``pid-tuned``, and by how much a driver who knows the
-future of the crowd in which nobody drives is faster: docs/encounter.md, docs/bounds.md. With
+future of the crowd in which nobody drives is faster: docs/encounters.md, docs/bounds.md. With
 ``--figure FILE`` it draws one seed's crowds instead.
 """
 

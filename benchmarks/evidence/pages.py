@@ -145,7 +145,7 @@ PAGES: dict[str, Page] = {
         ),
         Page(
             "models",
-            "docs/models.md",
+            "docs/pedestrians.md",
             (
                 Block("drivers", samples.MODELS, means(*MODEL_COLUMNS)),
                 Block("beliefs", samples.BELIEFS, means(*MODEL_COLUMNS)),
@@ -191,7 +191,7 @@ PAGES: dict[str, Page] = {
         ),
         Page(
             "encounter",
-            "docs/encounter.md",
+            "docs/encounters.md",
             (_told("densities", "bounds/encounters.py --seeds 40", "seeds 1 to 40", "--seeds 2"),),
             (*DRIVING, *CLAIRVOYANT, "benchmarks/bounds/encounters.py"),
         ),

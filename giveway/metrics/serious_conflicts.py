@@ -18,8 +18,8 @@ from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 EVASION = 3.0
 """Deceleration [m/s^2] above which the ego brakes in order to evade."""
-# Border of serious conflicts (Hydén 1987, as quoted by others; see docs/measures.md): 1.5 times the
-# time that the shortest braking distance takes at the conflicting speed.
+# Border of serious conflicts (Hydén 1987, as quoted by others; see docs/encounters.md): 1.5 times
+# the time that the shortest braking distance takes at the conflicting speed.
 _MARGIN = 1.5
 _TWICE_BRAKING = 16.7  # Twice the hardest braking [m/s^2] from low speed: 2 g times friction 0.85
 _FADING = 0.0306  # Relative loss of friction [s/m] per mean speed of the braking

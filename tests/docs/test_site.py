@@ -6,12 +6,15 @@ import importlib
 import re
 import subprocess
 import sys
+import tomllib
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlsplit
 
 import pytest
+
+import giveway
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,17 +45,33 @@ def test_the_reference_has_every_public_name(package: str) -> None:
     assert sorted(named) == sorted(public)
 
 
-def test_every_page_is_in_the_site_s_lists() -> None:
-    listed: set[Path] = set()
-    for page in (ROOT / "docs").rglob("index.md"):
-        for block in re.findall(r"```\{toctree\}\n(.*?)```", page.read_text("utf-8"), re.DOTALL):
-            for entry in block.splitlines():
-                if entry and not entry.startswith(":"):
-                    name = entry.rpartition("<")[2].rstrip(">")
-                    listed.add((page.parent / f"{name}.md").resolve())
-    pages = {file for file in (ROOT / "docs").rglob("*.md") if file != ROOT / "docs" / "index.md"}
-    assert sorted(pages - listed) == []
-    assert [page for page in listed if not page.is_file()] == []
+def menu() -> dict[str, dict[str, list[str]]]:
+    """The pages of each part of the menu, by the entries above them."""
+    parts = tomllib.loads((ROOT / "docs" / "menu.toml").read_text(encoding="utf-8"))
+    page = re.compile(r"^.*<|>$")
+    return {
+        name: {
+            page.sub("", entry): [page.sub("", one) for one in pages]
+            for entry, pages in part.items()
+        }
+        for name, part in parts.items()
+    }
+
+
+def test_the_menu_has_four_parts_and_sixteen_entries_at_most() -> None:
+    assert list(menu()) == ["Tutorials", "Guides", "Reference", "Evidence"]
+    assert sum(map(len, menu().values())) <= 16
+
+
+def test_every_page_is_in_the_menu_once() -> None:
+    listed = [
+        page for part in menu().values() for entry in part.items() for page in (entry[0], *entry[1])
+    ]
+    files = (file.relative_to(ROOT) for file in (ROOT / "docs").rglob("*.md"))
+    pages = {file.with_suffix("").as_posix() for file in files} - {"docs/index"}
+    assert sorted(pages - set(listed)) == []
+    assert [page for page in listed if not (ROOT / f"{page}.md").is_file()] == []
+    assert len(listed) == len(set(listed))
 
 
 class Page(HTMLParser):
@@ -122,6 +141,16 @@ def test_links_between_pages_lead_somewhere(site: Path) -> None:
                     unquote(parts.fragment) not in there[target].anchors
                 )
     assert broken == []
+
+
+def test_pages_link_the_glossary_at_the_first_use_of_a_term(site: Path) -> None:
+    text = (site / "docs" / "plugins.html").read_text(encoding="utf-8")
+    assert text.count('href="glossary.html#term-safety-layer"') == 1
+
+
+def test_the_title_has_the_version(site: Path) -> None:
+    text = (site / "docs" / "index.html").read_text(encoding="utf-8")
+    assert f"<title>giveway {giveway.__version__}</title>" in text
 
 
 def test_equations_are_written_into_the_pages(site: Path) -> None:

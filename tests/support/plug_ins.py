@@ -15,12 +15,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 
-PAGE = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = [(DOCS / name).read_text("utf-8") for name in ("plugins.md", "own_pedestrians.md")]
 
 
 def printed(mark: str) -> str:
-    """The block of docs/plugins.md below a mark."""
-    found = re.search(rf"<!-- {re.escape(mark)} -->\n```\w*\n(.*?)```", PAGE, re.DOTALL)
+    """The block of docs/plugins.md or docs/own_pedestrians.md below a mark."""
+    block = rf"<!-- {re.escape(mark)} -->\n```\w*\n(.*?)```"
+    found = re.search(block, "".join(PAGES), re.DOTALL)
     assert found, mark
     return found.group(1)
 

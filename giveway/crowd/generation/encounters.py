@@ -1,7 +1,7 @@
 """Generates crowds that an ego meets: groups from both sides, timed by the ego's free drive.
 
 Sizes and formations of groups are those of groups.py, also for people who walk alone.
-docs/encounter.md describes the distributions and their results.
+docs/encounters.md describes the distributions and their results.
 """
 
 from collections.abc import Sequence

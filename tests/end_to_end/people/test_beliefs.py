@@ -55,7 +55,7 @@ def test_on_a_road_with_lights_walls_and_people_of_its_own():
 
 @pytest.fixture
 def shy(installed):
-    """The package of docs/plugins.md."""
+    """The package of docs/own_pedestrians.md."""
     points = tomllib.loads(printed("file: shy pyproject.toml"))["project"]["entry-points"]
     ((name, value),) = points[GROUP].items()
     return installed(

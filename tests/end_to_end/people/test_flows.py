@@ -112,7 +112,9 @@ def test_a_study_varies_their_number_and_who_they_are(study_of, tmp_path: Path) 
 
 
 def test_what_docs_print_runs_and_can_be_replayed(tmp_path: Path) -> None:
-    (block,) = re.findall(r"```toml\n(.*?)```", (DOCS / "crowds.md").read_text(), flags=re.DOTALL)
+    (block,) = re.findall(
+        r"```toml\n(.*?)```", (DOCS / "pedestrians.md").read_text(), flags=re.DOTALL
+    )
     config = tmp_path / "plaza.toml"
     config.write_text(block, encoding="utf-8")
     result = giveway.run(config, results=tmp_path / "run", pictures=False)

@@ -1,4 +1,4 @@
-"""Somebody else's people walk: as docs/plugins.md prints them, in runs, twins and studies."""
+"""Somebody else's people walk, as docs/own_pedestrians.md prints them: runs, twins, studies."""
 
 from __future__ import annotations
 
