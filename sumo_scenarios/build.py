@@ -10,6 +10,7 @@ import argparse
 import importlib.util
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -19,6 +20,8 @@ from pathlib import Path
 from sumo_scenarios.catalogue import available, find
 from sumo_scenarios.errors import BuildError, ScenarioError
 
+_HOME = "SUMO_HOME"
+_DEBIAN = Path("/usr/share/sumo")  # Folder of the tools and data of a Debian package
 _HEADER = re.compile(r"<!-- generated on .*?-->", re.DOTALL)
 
 
@@ -53,17 +56,7 @@ def _run_netconvert(config: Path, output: Path) -> None:
         raise BuildError(
             f"{config} is missing: it names the node and edge files that netconvert is to read"
         )
-    home = _sumo_home()
-    command: list[str | Path] = [home / "bin" / "netconvert", "-c", config, "--output-file", output]
-    environment = os.environ | {"SUMO_HOME": str(home)}
-    try:
-        result = subprocess.run(
-            command, capture_output=True, text=True, check=False, env=environment
-        )
-    except OSError as error:
-        raise BuildError(
-            f"netconvert cannot be run: {error}; reinstall 'giveway[build]'"
-        ) from error
+    result = convert(["-c", str(config), "--output-file", str(output)])
     if result.returncode != 0 or not output.is_file():
         reason = " ".join(result.stderr.split())
         raise BuildError(
@@ -72,12 +65,49 @@ def _run_netconvert(config: Path, output: Path) -> None:
     sys.stderr.write(result.stderr)  # warnings that the author has to judge
 
 
-def _sumo_home() -> Path:
-    """Find the folder of the eclipse-sumo wheel, whose version the build extra pins."""
+def convert(words: Sequence[str], typemaps: Sequence[str] = ()) -> subprocess.CompletedProcess[str]:
+    """Run netconvert with some options.
+
+    Args:
+        words: Options.
+        typemaps: Files of SUMO's folder ``data/typemap``, from which it takes types of edges.
+
+    Raises:
+        BuildError: there is no netconvert, or it cannot be run.
+    """
+    program, home = netconvert_and_home()
+    if typemaps:
+        folder = home / "data" / "typemap"
+        words = [*words, "--type-files", ",".join(str(folder / name) for name in typemaps)]
+    environment = os.environ | {"SUMO_HOME": str(home)}
+    try:
+        return subprocess.run(
+            [program, *words], capture_output=True, text=True, check=False, env=environment
+        )
+    except OSError as error:
+        raise BuildError(f"netconvert cannot be run: {error}; reinstall 'giveway[new]'") from error
+
+
+def netconvert_and_home() -> tuple[Path, Path]:
+    """Return the program netconvert, and the folder with SUMO's tools and data.
+
+    Those of the eclipse-sumo wheel, whose version the extra ``new`` bounds, come before those of
+    ``SUMO_HOME`` and of the search path.
+
+    Raises:
+        BuildError: there is no netconvert.
+    """
     package = importlib.util.find_spec("sumo")
-    if package is None or package.origin is None:
-        raise BuildError("netconvert is missing: pip install 'giveway[build]'")
-    return Path(package.origin).parent
+    homes = [] if package is None or package.origin is None else [Path(package.origin).parent]
+    homes += [Path(os.environ[_HOME])] if os.environ.get(_HOME) else []
+    for home in homes:
+        if found := shutil.which("netconvert", path=home / "bin"):
+            return Path(found), home
+    if found := shutil.which("netconvert"):
+        program = Path(found)
+        homes += [program.resolve().parents[1], _DEBIAN]
+        return program, next((home for home in homes if (home / "data").is_dir()), homes[0])
+    raise BuildError("netconvert is missing: pip install 'giveway[new]', or set SUMO_HOME")
 
 
 def _without_date(network: str, name: str) -> str:

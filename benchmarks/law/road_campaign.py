@@ -17,7 +17,7 @@ drive is a process of its own: one that dies has a row with the cause. The end p
 each violation, and the pooled numbers with 95 % intervals beside the bars of a good driver.
 ``--table`` prints that without driving, and ``--beside FOLDER`` the values of the same drives in
 another state of the repository, with the ratio of the times of pairs. Drawn
-networks need netgenerate: pip install 'giveway[build]'.
+networks need netgenerate: pip install 'giveway[new]'.
 """
 
 from __future__ import annotations

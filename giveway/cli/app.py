@@ -41,6 +41,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     add_studies(app)
     add_validation(app)
     app.add("scenarios", _scenarios)
+    app.add("new", _new)
     app.add("doctor", _doctor)
     app.add("precompile", _precompile)
     app.add("recover", _recover)
@@ -226,6 +227,40 @@ def _scenarios(as_json: JsonFlag = False) -> None:
     from sumo_scenarios import available, find
 
     print_list({name: find(name).description for name in available()}, as_json=as_json)
+
+
+def _new(
+    source: Annotated[
+        Path | None,
+        typer.Argument(
+            help="Description of a street (.toml), or map of OpenStreetMap (.osm, .osm.gz); "
+            "without it an example of a description is written, street.toml."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the scenario [name of the source].")
+    ] = None,
+    vehicles: Annotated[
+        float, typer.Option(help="Vehicles in an hour, on a whole map.", min=0.0, max=1e5)
+    ] = 360.0,
+    people: Annotated[
+        float, typer.Option(help="People in an hour, on a whole map.", min=0.0, max=1e5)
+    ] = 2400.0,
+    duration: Annotated[
+        float, typer.Option(help="Time in s in which they depart on a map.", min=60.0, max=86400.0)
+    ] = 600.0,
+    seed: Annotated[
+        int, typer.Option(help="Seed of their trips on a map.", min=0, max=2**31 - 1)
+    ] = 1,
+    force: Annotated[bool, typer.Option("--force", help="Replace the scenario there.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
+) -> None:
+    """Make a scenario of a drawn street or a map: network, traffic, people, settings."""
+    from giveway.cli.commands.new_command import new_command
+    from giveway.scenario_builder import Demand
+
+    demand = Demand(vehicles, people, duration, seed)
+    new_command(source, out, demand, force=force, quiet=quiet)
 
 
 def _build_plot() -> Commands:

@@ -74,7 +74,9 @@ def test_without_netconvert_the_message_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(BuildError, match=r"pip install 'giveway\[build\]'"):
+    monkeypatch.delenv("SUMO_HOME", raising=False)
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(BuildError, match=r"pip install 'giveway\[new\]'"):
         build("street")
 
 

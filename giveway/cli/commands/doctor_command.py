@@ -11,7 +11,7 @@ from giveway.cli.screen.printing import findings_table, print_json
 from giveway.doctor import Finding, examine_environment, examine_scenario
 from giveway.studies.folder.examination import examine_results, is_results
 
-_STYLES = {"ok": "green", "note": "cyan", "warning": "yellow", "error": "bold red"}
+STYLES = {"ok": "green", "note": "cyan", "warning": "yellow", "error": "bold red"}
 
 
 def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
@@ -53,7 +53,7 @@ def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
 
 def _table(title: str, findings: Sequence[Finding]) -> Table:
     rows = ((found.level, found.subject, found.text, found.remedy) for found in findings)
-    return findings_table(title, _STYLES, rows)
+    return findings_table(title, STYLES, rows)
 
 
 def _verdict(errors: int, warnings: int) -> str:
