@@ -35,7 +35,7 @@ def option(
     *,
     flag: str | None = None,
     least: float | None = None,
-    because: str | None = None,
+    because: str | tuple[str, str] | None = None,
     **bounds: Any,
 ) -> Any:
     """Declare an option with its documentation.
@@ -46,10 +46,12 @@ def option(
         description: Meaning of the option.
         flag: Name on the command line, if the derived one is clumsy.
         least: Smallest positive value that makes sense; a bound says whether 0 is allowed.
-        because: Reason why values outside of ``least`` and ``bounds`` make no sense.
+        because: Reason why values outside of ``least`` and ``bounds`` make no sense; or two, of
+            values that are too small and too large.
         bounds: Bounds as for a pydantic field.
     """
-    extra: dict[str, JsonValue] = {"unit": unit, "flag": flag, "least": least, "because": because}
+    reasons: list[JsonValue] = [because, because] if not isinstance(because, tuple) else [*because]
+    extra: dict[str, JsonValue] = {"unit": unit, "flag": flag, "least": least, "because": reasons}
     return Field(default, description=description, json_schema_extra=extra, **bounds)
 
 
@@ -72,7 +74,9 @@ def expectation(error: Any, field: FieldInfo) -> str:
         expected = f"expected {len(get_args(field.annotation))} values"
     unit = f" [{extra['unit']}]" if extra.get("unit") else ""
     out_of_range = error["type"] in _OUT_OF_RANGE and not _is_sign_wrong(error, field)
-    because = f": {extra['because']}" if out_of_range and extra.get("because") else ""
+    too_small, too_large = extra.get("because", (None, None))
+    reason = too_large if error["type"].startswith("less") else too_small
+    because = f": {reason}" if out_of_range and reason else ""
     return f"{expected}{unit}{because} ({field.description})"
 
 

@@ -73,7 +73,7 @@ class RunSettings(Section):
         flag="--time-step",
         ge=0.001,
         le=0.5,
-        because="SUMO counts milliseconds, and in more than 0.5 s people walk too far",
+        because=("SUMO counts milliseconds", "in more than 0.5 s people walk too far"),
     )
     time_limit: float | None = option(
         None,
@@ -83,7 +83,7 @@ class RunSettings(Section):
         gt=0,
         le=1e7,
         least=0.001,
-        because="no step is shorter, and no run longer",
+        because=("no step is shorter", "no run is longer"),
     )
     twin: bool = option(
         False,
@@ -189,6 +189,12 @@ class RunSettings(Section):
         """The controller's name for titles: "MPC", or a plug-in's name as it is written."""
         name = self.controller_name
         return name.upper() if name in BUNDLED else name
+
+    @property
+    def described_controller(self) -> str:
+        """The controller's name and its options that are set, as in "mpc style=assertive"."""
+        own = (f" {key}={value}" for key, value in self.controller_options.items())
+        return self.controller_name + "".join(own)
 
     @property
     def controller_name(self) -> str:

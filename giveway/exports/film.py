@@ -13,6 +13,7 @@ import matplotlib as mpl
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from giveway.config.files.naming import title
 from giveway.errors import InstallationError, ResultsError
 from giveway.exports.sampling import PEDESTRIAN, Sampled, Track
 from giveway.figures.road import LIGHTS, UNPAINTED, bands
@@ -203,8 +204,7 @@ class Painter:
                 told += f"   {ego.speed[k]:.1f} m/s"
         _label(draw, (pad, pad), told, self._large)
         config = self._run.config
-        driver = "no ego" if config.ego.none else config.driver
-        about = f"{Path(config.scenario).stem}, {driver}, seed {config.seed}"
+        about = title(config, Path(config.scenario).stem)
         _label(draw, (pad, canvas.height - pad), about, self._small, low=True)
         metres = 10.0 if scale * 10.0 < canvas.width / 4 else 5.0
         right, low = canvas.width - pad, canvas.height - pad

@@ -13,6 +13,7 @@ from jinja2 import Environment, StrictUndefined, Template
 from markupsafe import Markup
 from shapely import LineString
 
+from giveway.config.files.naming import title
 from giveway.config.files.presets import parameters_of
 from giveway.config.tables.controllers import PaperPidOptions
 from giveway.errors import ResultsError
@@ -191,10 +192,9 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
 
 def _title(run: RunFolder) -> str:
     scenario = run.summary.get("scenario", run.config.scenario)
-    controllers = {one.driver for one in run.egos.values()}
+    drivers = " + ".join(sorted({one.driver for one in run.egos.values()}))
     pedestrians = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
-    parts = [str(scenario), " + ".join(sorted(controllers)), counted(pedestrians)]
-    return " · ".join([part for part in parts if part] + [f"seed {run.config.seed}"])
+    return title(run.config, str(scenario), counted(pedestrians), drivers)
 
 
 def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: float) -> list[str]:
@@ -282,7 +282,7 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
     kinds = list(dict.fromkeys(acted))
     return {
         "id": name,
-        "controller": config.controller_name,
+        "controller": config.described_controller,
         "body": [length, width],
         **pack_sight(run, name, names),
         "corridor": gap.corridor(width),

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from giveway.config.files.naming import title
 from giveway.errors import ResultsError, remedy
 from giveway.figures import (
     crowd_view_figure,
@@ -120,7 +121,7 @@ def density_picture(result: RunTables) -> Figure:
         density_map(result.crowd_track, len(result.time)),
         result.config.measure,
         conflicts=[conflict for ego in result.egos for conflict in _conflicts(ego)],
-        title=f"{result.scenario.name}, {people}, seed {result.config.seed}",
+        title=title(result.config, result.scenario.name, people),
     )
 
 
@@ -131,16 +132,13 @@ def crowd_picture(result: RunTables) -> Figure:
         result.time,
         result.crowd_track,
         road=result.road,
-        title=f"{result.scenario.name}, {people}, seed {result.config.seed}",
+        title=title(result.config, result.scenario.name, people),
     )
 
 
 def _title(result: RunTables, ego: EgoResult) -> str:
-    who = "" if ego.id == "ego" else f"ego {ego.id}, "
-    return (
-        f"{result.scenario.name}, {who}{ego.config.driver}, "
-        f"{counted(len(result.crowd_track.ids))}, seed {result.config.seed}"
-    )
+    who = "" if ego.id == "ego" else f"ego {ego.id}, {ego.config.driver}"
+    return title(ego.config, result.scenario.name, counted(len(result.crowd_track.ids)), who)
 
 
 def influence_picture(

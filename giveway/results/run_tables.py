@@ -255,7 +255,7 @@ class RunTables:
         """The run's settings and ending: the first columns of the summary."""
         return {
             "scenario": self.scenario.name,
-            "controller": "" if self.config.ego.none else self.config.controller_name,
+            "controller": "" if self.config.ego.none else self.config.described_controller,
             "pedestrians": len(self.crowd_track.ids),
             "seed": self.config.seed,
             "ending": str(self.ending),
@@ -269,7 +269,11 @@ class RunTables:
         return self.head | (self._row(self.egos[0]) if self.egos else {})
 
     def _row(self, ego: EgoResult) -> dict[str, Any]:
-        head = {"controller": ego.config.controller_name, "ending": str(ego.ending), "ego": ego.id}
+        head = {
+            "controller": ego.config.described_controller,
+            "ending": str(ego.ending),
+            "ego": ego.id,
+        }
         return self.head | head | ego.summary
 
     @property

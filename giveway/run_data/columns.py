@@ -89,7 +89,12 @@ def columns_of(table: type) -> tuple[Column, ...]:
 SUMMARY_HEAD = (
     Column("scenario", "string", None, "the scenario's name"),
     Column("ego", "string", None, "SUMO id of the ego"),
-    Column("controller", "string", None, "the controller that was asked for"),
+    Column(
+        "controller",
+        "string",
+        None,
+        "the controller that was asked for, and its options that are set",
+    ),
     Column("pedestrians", "integer", "persons", "pedestrians that giveway moved"),
     Column("seed", "integer", None, "seed of the crowd that giveway adds"),
     Column(

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +11,9 @@ from giveway.cli.exit import fail
 from giveway.cli.option_groups import RunOutputs
 from giveway.cli.screen.printing import escape, print_json
 from giveway.cli.screen.progress_bars import run_progress
-from giveway.config import RunConfig
-from giveway.config.files.layers import Layer, dump_toml, read_toml
+from giveway.config.files.layers import Layer, read_toml
 from giveway.config.files.loading import load
+from giveway.config.files.naming import default_folder
 from giveway.errors import GivewayError
 from giveway.processes.interrupts import DeferredInterrupt, ended_by, exit_code_of, who_ended
 from giveway.results.folder import Destination, check_folder
@@ -107,46 +106,6 @@ def interrupted(result: RunResult, folder: Path) -> int:
     kept = f"rows up to then are in {folder}" if len(result.time) else "there are no rows yet"
     error = ended_by(DeferredInterrupt.latest)
     return fail(f"{who_ended(error)}; {kept}", exit_code_of(error))
-
-
-def default_folder(config: RunConfig, scenario: str) -> Path:
-    """Return ``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos.
-
-    The number of persons is left out if giveway adds none: the scenario may bring its own.
-    If anything else differs from the scenario's settings and the defaults, six digits of a hash
-    over the whole configuration follow, so that different runs have different folders.
-    """
-    egos = config.each_ego()
-    controllers = _safe("_".join(dict.fromkeys(ego.controller_name for ego in egos))) or "no_ego"
-    taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
-    safe = _safe(taken)
-    added = f"_{config.crowd.pedestrians}ped" if config.crowd.pedestrians else ""
-    name = f"{scenario}_{controllers}{safe[:60]}{added}_seed{config.seed}"
-    if not _is_told_by_name(config):
-        name += f"_{sha256(dump_toml(config).encode()).hexdigest()[:6]}"
-    return Path("results") / name
-
-
-def _safe(name: str) -> str:
-    """Return a part of a folder's name that is valid on every system."""
-    return "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in name)
-
-
-def _is_told_by_name(config: RunConfig) -> bool:
-    """Return whether the folder's name says all that differs from the scenario's own settings."""
-    ego = {key: value for key in ("take_over", "none") if (value := getattr(config.ego, key))}
-    told = {
-        "scenario": config.scenario,
-        "controller": config.controller,
-        "seed": config.seed,
-        "crowd": {"pedestrians": config.crowd.pedestrians},
-        "ego": ego,
-    }
-    try:
-        plain, _ = load([Layer("", told)])
-    except GivewayError:
-        return False
-    return dump_toml(plain) == dump_toml(config)
 
 
 def show(console: Console, result: RunResult, folder: Path, *, explain: bool = False) -> None:

@@ -6,6 +6,7 @@ from itertools import groupby
 from rich.table import Column, Table
 from rich.text import Text
 
+from giveway.config.files.naming import title
 from giveway.results.digest import digest, formatted
 from giveway.results.run_result import RunResult
 from giveway.run_data.tracks import counted
@@ -56,13 +57,10 @@ def explanation(result: RunResult) -> Table:
 
 
 def _title(result: RunResult) -> str:
-    if len(result.egos) == 1:
-        who = result.egos[0].config.driver
-    else:
-        who = f"{len(result.egos)} egos" if result.egos else "no ego"
+    config = result.egos[0].config if len(result.egos) == 1 else result.config
+    who = f"{len(result.egos)} egos" if len(result.egos) > 1 else ""
     people = counted(len(result.crowd_track.ids))
-    seed = result.config.seed
-    return f"{result.scenario.name}: {who}, {people}, seed {seed} - {result.ending}"
+    return f"{title(config, result.scenario.name, people, who)} - {result.ending}"
 
 
 def _counts(result: RunResult) -> Iterator[tuple[str, str]]:

@@ -142,7 +142,9 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
     missing, left, fewest = [], _MOST_ROWS, math.inf
     known_metrics = {known.name: known for known in study.metrics}
     own = [(known.name, "general") for known in study.metrics[len(METRICS) :]]
-    for name, situation in (*_SHOWN, *own):
+    primary = study.definition.primary_outcome
+    first = [] if primary is None else [(primary.metric, primary.situation)]
+    for name, situation in dict.fromkeys((*first, *_SHOWN, *own)):
         known = known_metrics[name]
         chosen = comparison[(comparison["metric"] == name) & (comparison["situation"] == situation)]
         few = chosen[chosen["verdict"] == "N.A."]["n"]
@@ -160,7 +162,11 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
     _print_lacking(console, study, fewest)
     if missing:
         console.print(f"In no pair on both sides: {', '.join(missing)}", highlight=False)
-    console.print("All metrics, situations and contexts: comparison.csv", highlight=False)
+    console.print(
+        f"All {len(known_metrics)} metrics, in every situation and context: comparison.csv, and "
+        f"giveway report {escape(str(study.path))}",
+        highlight=False,
+    )
 
 
 def _print_lacking(console: Console, study: StudyFolder, fewest: float) -> None:

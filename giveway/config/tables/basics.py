@@ -90,7 +90,7 @@ class EgoConfig(Section):
         gt=0,
         le=1e6,
         least=0.1,
-        because="a drive is at least 0.1 m long, and no network is larger",
+        because=("it is no drive", "no network is larger"),
     )
 
 
@@ -129,7 +129,7 @@ class VehicleConfig(Section):
         gt=0,
         le=1e6,
         least=10.0,
-        because="the lightest vehicle is a scooter of some 10 kg, the heaviest a train",
+        because=("the lightest vehicle is a scooter of some 10 kg", "the heaviest is a train"),
     )
     friction: float = option(
         100.0,
@@ -137,7 +137,7 @@ class VehicleConfig(Section):
         "Friction alpha in the same model. A profile may know it",
         ge=0,
         le=1e6,
-        because="friction slows a vehicle down, but not within one step",
+        because=("friction slows a vehicle down", "it would stop within one step"),
     )
     force_limit: float = option(
         8000.0,
@@ -164,7 +164,7 @@ class VehicleConfig(Section):
         gt=0,
         le=100,
         least=0.1,
-        because="a slower vehicle hardly moves, and no car is faster",
+        because=("a slower vehicle hardly moves", "no car is faster"),
     )
     length: float | None = option(
         None,
@@ -174,7 +174,7 @@ class VehicleConfig(Section):
         gt=0,
         le=50,
         least=0.1,
-        because="the shortest vehicle is a robot, the longest a tram",
+        because=("the shortest vehicle is a robot", "the longest is a tram"),
     )
     width: float | None = option(
         None,
@@ -184,7 +184,10 @@ class VehicleConfig(Section):
         gt=0,
         le=10,
         least=0.1,
-        because="the narrowest vehicle is a scooter, the widest a machine on a field",
+        because=(
+            "the narrowest vehicle is a scooter",
+            "the widest is a machine on a field",
+        ),
     )
 
     @property
@@ -260,7 +263,7 @@ class RecordConfig(Section):
         gt=0,
         le=1e6,
         least=0.001,
-        because="no step is shorter, and no run longer",
+        because=("no step is shorter", "no run is longer"),
     )
     predictions: float | None = option(
         None,
@@ -270,7 +273,7 @@ class RecordConfig(Section):
         gt=0,
         le=1e3,
         least=0.001,
-        because="no step is shorter, and no run longer",
+        because=("no step is shorter", "no run is longer"),
     )
     stop_speed: float = option(
         0.2,

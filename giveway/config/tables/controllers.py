@@ -77,7 +77,7 @@ class PaperMpcOptions(PaperPidOptions):
         "Prediction horizon N",
         ge=2,
         le=200,
-        because="a plan has several steps, and nothing is known about people after 200",
+        because=("a plan has several steps", "nothing is known about people after 200"),
     )
 
 
@@ -162,7 +162,7 @@ class TunedPidOptions(Section):
         gt=0,
         le=10,
         least=0.1,
-        because="a loop with less damping oscillates, and one with much more creeps",
+        because=("a loop with less damping oscillates", "one with more creeps"),
     )
     acceleration_feed_forward: bool = option(
         True, None, "The force M dv_ref/dt is fed forward beside alpha v_ref"
@@ -178,7 +178,7 @@ class PlannerOptions(Section):
         "Prediction horizon. Beyond it people walk on and the ego adapts its speed",
         ge=0.3,
         le=10,
-        because="a stop takes longer than 0.3 s, and nothing is known about people after 10 s",
+        because=("a stop takes longer", "nothing is known about people after 10 s"),
     )
     style: Literal["careful", "normal", "assertive"] = option(
         "normal",
@@ -294,7 +294,7 @@ class SafetyConfig(Section):
         ge=0,
         le=10,
         least=0.01,
-        because="slower people hardly move, and nobody runs faster",
+        because=("slower people hardly move", "nobody runs faster"),
     )
 
 

@@ -88,7 +88,7 @@ class CrowdConfig(Section):
         "Mean desired speed",
         ge=_SLOWEST,
         le=_FASTEST,
-        because="nobody walks slower on and on, or faster",
+        because=("nobody walks so slowly on and on", "nobody walks faster"),
     )
     desired_speed_sd: float = option(
         0.26,

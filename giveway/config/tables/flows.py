@@ -122,7 +122,7 @@ class FlowConfig(Section):
         description="Average number of people in an hour",
         json_schema_extra={
             "unit": "persons/h",
-            "because": "a flow has people, and a path 10 m wide carries at most 50,000",
+            "because": ["a flow has people", "a path 10 m wide carries at most 50,000"],
         },
     )
     begin: float = option(
@@ -132,7 +132,7 @@ class FlowConfig(Section):
         "0, people are on their way already",
         ge=-_LONGEST_BEFORE,
         le=_FARTHEST,
-        because="no walk takes longer than an hour, and no run 1e7 s",
+        because=("no walk takes longer than an hour", "no run takes 1e7 s"),
     )
     end: float | None = option(
         None,

@@ -18,7 +18,7 @@ class RegulationConfig(Section):
         f"By default it is lane, but {DEFAULT_SPEED:g} m/s for the paper's controllers",
         flag="--desired-speed",
         least=0.1,
-        because="a slower vehicle hardly moves, and no car is faster",
+        because=("a slower vehicle hardly moves", "no car is faster"),
     )
     safe_distance: float = option(
         8.0,
@@ -28,7 +28,7 @@ class RegulationConfig(Section):
         ge=0,
         le=500,
         least=MILLIMETRE,
-        because="a gap is at least a millimetre, and people are not seen half a kilometre ahead",
+        because=("a gap is at least a millimetre", "people are not seen so far ahead"),
     )
     critical_gap: float | None = option(
         None,
@@ -38,5 +38,5 @@ class RegulationConfig(Section):
         flag="--critical-gap",
         ge=0.5,
         le=60,
-        because="crossing takes over 0.5 s, and drivers do not wait for a gap of a minute",
+        because=("crossing takes longer", "drivers do not wait for such a gap"),
     )

@@ -120,7 +120,7 @@ def test_somebody_elses_fmu_drives_by_its_profile(headway, tmp_path):
     assert told["options"] == {"headway": 3.0}
     assert told["profile"]["outputs"]["acceleration"]["variable"] == "a_set"
     assert len(told["sha256"]) == 64
-    assert result.summary["controller"] == "headway.fmu"
+    assert result.summary["controller"] == "headway.fmu headway=3.0"
 
 
 def test_units_series_and_speeds(zoo, tmp_path):

@@ -5,6 +5,8 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
+from giveway.config.files.layers import Layer
+from giveway.config.files.loading import load
 from giveway.config.option import (
     NameList,
     OptionList,
@@ -16,12 +18,15 @@ from giveway.config.option import (
     is_number,
     option,
 )
+from giveway.errors import ConfigError
 
 
 class Table(Section):
     """A table with an option of each kind."""
 
-    width: float = option(1.0, "m", "width of a door", least=0.1, because="people fit", ge=0)
+    width: float = option(
+        1.0, "m", "width of a door", least=0.1, because=("people fit", "no door is wider"), ge=0
+    )
     people: int = option(0, None, "number of people", ge=0, le=9, because="more do not fit")
     names: NameList = ()
     radius: TextOrNumber = ""
@@ -79,3 +84,14 @@ def test_truth_and_infinity_are_no_numbers() -> None:
     assert not is_number(True)
     assert not is_number(float("inf"))
     assert not is_number("3")
+
+
+@pytest.mark.parametrize(
+    ("value", "reason", "other"),
+    [(0.0001, "milliseconds", "too far"), (0.7, "too far", "milliseconds")],
+)
+def test_the_reason_given_is_that_of_the_bound_that_was_broken(value, reason, other):
+    with pytest.raises(ConfigError) as refused:
+        load([Layer("", {"time_step": value})])
+    assert reason in str(refused.value)
+    assert other not in str(refused.value)

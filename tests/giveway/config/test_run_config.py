@@ -86,7 +86,8 @@ def test_a_value_that_makes_no_sense_is_refused_with_the_reason(
     settings: dict = {option.location[-1]: int(value) if abs(value) >= 1 else value}
     for table in reversed(option.location[:-1]):
         settings = {table: settings}
-    assert f": {option.extra['because']} (" in explain(settings)
+    too_small, too_large = option.extra["because"]
+    assert f": {too_large if value > 1.0 else too_small} (" in explain(settings)
 
 
 def test_no_length_or_duration_or_force_may_be_a_billionth() -> None:

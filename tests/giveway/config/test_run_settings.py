@@ -29,6 +29,9 @@ def test_a_controller_has_a_name_for_titles_and_one_for_tables() -> None:
     assert RunSettings(controller="pid-tuned").driver == "PID-TUNED"
     assert RunSettings(controller="some.package:Class").driver == "some.package:Class"
     assert RunSettings(controller="folder/mine.fmu").controller_name == "mine.fmu"
+    styled = RunSettings(controller_options={"style": "careful"})
+    assert styled.described_controller == "mpc style=careful"
+    assert styled.controller_name == RunSettings().described_controller == "mpc"
 
 
 def test_options_of_a_model_are_the_defaults_while_another_one_moves_people() -> None:

@@ -63,24 +63,13 @@ def test_a_run_in_which_nobody_is_has_a_summary(type_here: Type) -> None:
     assert "Real-time factor" in done.stdout
 
 
-def test_runs_that_differ_have_folders_that_differ(type_here: Type, tmp_path: Path) -> None:
-    short = ("--time-limit", 1, "--no-pictures", "--quiet")
-    wanted = ([*short], [*short, "--ego-initial-speed", 2], [*short, "--two-sided"])
-    for words in wanted:
-        done = type_here("run", "shared_space", "--pedestrians", 2, *words)
-        assert done.returncode == 0, done.stderr
-    names = sorted(path.name for path in (tmp_path / "results").iterdir())
-    assert len(names) == 3
-    assert all(re.fullmatch(r"shared_space_mpc_2ped_seed1_[0-9a-f]{6}", name) for name in names)
-
-
 def test_a_folder_counts_nobody_where_the_scenario_brings_people(
     type_here: Type, tmp_path: Path
 ) -> None:
     words = ("--pedestrians", 0, "--time-limit", 0.1, "--no-pictures", "-q")
     assert type_here("run", "shared_space", *words).returncode == 0
     (folder,) = (tmp_path / "results").iterdir()
-    assert folder.name.startswith("shared_space_mpc_seed1_")
+    assert folder.name == "shared_space_mpc_time-limit-0.1_seed1"
 
 
 def test_a_missing_vehicle_is_said_before_results_that_exist(

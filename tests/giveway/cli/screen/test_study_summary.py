@@ -51,6 +51,13 @@ def test_the_interval_is_headed_by_the_confidence_asked_for(
     assert "95 %" not in text
 
 
+def test_the_primary_outcome_stands_first(study_of, small_study_text, printed, tmp_path):
+    wanted = '[primary_outcome]\nmetric = "rms_jerk"\nsmallest_effect = 0.1\nreason = "felt"\n'
+    text = printed(study_of(f"{small_study_text}\n{wanted}", tmp_path / "study"))
+    assert text.count("RMS jerk [m/s^3], general") == 1
+    assert text.index("RMS jerk [m/s^3], general") < text.index("minimum clearance")
+
+
 def test_what_has_no_pair_is_one_line(small_study, printed):
     text = " ".join(printed(small_study).split())
     assert "In no pair on both sides: completion time (general)" in text
