@@ -85,6 +85,8 @@ def network_sources(extract: Path, name: str, scratch: Path) -> tuple[dict[str, 
         f"{name}.{kind}.xml": _HEADER.sub("", (scratch / f"plain.{kind}.xml").read_text("utf-8"))
         for kind in PLAIN
     }
+    if "<edge " not in sources[f"{name}.edg.xml"]:
+        raise ScenarioError(f"{extract}: no streets for cars; expected some that are connected")
     marked = _marked_crossings(world, ElementTree.parse(network).getroot())
     connections = f"{name}.con.xml"
     sources[connections] = _with_priority(sources[connections], marked)

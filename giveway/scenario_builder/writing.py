@@ -1,6 +1,7 @@
 """The folder of a new scenario, which is written when all of it could be made."""
 
 import io
+import re
 import shutil
 import tempfile
 from contextlib import redirect_stderr
@@ -16,6 +17,7 @@ from giveway.scenario_builder.street import street_files
 from sumo_scenarios import BuildError
 from sumo_scenarios.build import build
 
+_UNSAFE: Final = re.compile(r"[^A-Za-z0-9_-]+")  # SUMO separates names of files by such characters
 _ENDINGS: Final = (
     *(".nod.xml", ".edg.xml", ".con.xml", ".tll.xml", ".typ.xml", ".netccfg", ".net.xml"),
     *(".rou.xml", ".cars.rou.xml", ".people.rou.xml", ".sumocfg", ".giveway.toml"),
@@ -39,7 +41,7 @@ def write_scenario(
     Raises:
         GivewayError: the source, its map or the folder cannot be used, or netconvert is missing.
     """
-    name = source.name.partition(".")[0]
+    name = _UNSAFE.sub("_", source.name.partition(".")[0]) or "scenario"
     folder = Path(name) if out is None else out
     ours = frozenset(name + ending for ending in _ENDINGS)
     check_folder(folder, force=force, ours=ours, writer="giveway new")

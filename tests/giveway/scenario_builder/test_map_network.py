@@ -55,3 +55,15 @@ def test_a_map_without_streets_is_refused(tmp_path: Path) -> None:
     empty.write_text("<osm></osm>")
     with pytest.raises(ScenarioError, match=r"empty\.osm: netconvert makes no network of it"):
         network_sources(empty, "empty", tmp_path)
+
+
+def test_a_map_of_footways_alone_is_refused(tmp_path: Path) -> None:
+    footways = tmp_path / "footways.osm"
+    text = re.sub(
+        r'k="highway" v="(residential|secondary|service)"',
+        r'k="highway" v="footway"',
+        MAP.read_text("utf-8"),
+    )
+    footways.write_text(text)
+    with pytest.raises(ScenarioError, match=r"footways\.osm: no streets for cars"):
+        network_sources(footways, "footways", tmp_path)

@@ -42,6 +42,16 @@ def test_the_network_can_be_built_again_from_its_sources(drawn: Path, tmp_path: 
     assert contents(folder) == before
 
 
+def test_a_name_that_sumo_would_split_is_mended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my, town & <I>.toml").write_text("")
+    folder, _ = write_scenario(tmp_path / "my, town & <I>.toml")
+    assert folder.name == "my_town_I_"
+    assert find(folder).config_file.name == "my_town_I_.sumocfg"
+
+
 def test_a_scenario_is_replaced_only_with_force(drawn: Path, tmp_path: Path) -> None:
     folder, _ = write_scenario(drawn, tmp_path / "town")
     with pytest.raises(ResultsError, match="--force"):
