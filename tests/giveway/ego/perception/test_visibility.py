@@ -4,13 +4,11 @@ from math import inf, pi
 
 import numpy as np
 import pytest
-import shapely
 
 from giveway.ego.perception.visibility import Eye, chords_of, fill_shares, walls_of
 from giveway.geometry.kernel import Array
 
 RADIUS = 0.27
-ALL_ROUND = pi
 TALL = 10.0
 
 
@@ -91,41 +89,3 @@ def test_the_own_body_hides_nothing() -> None:
     bodies = np.array([[5.0, 0.0, 0.0, 0.0, 2.0, 2.0, 1.8], [7.0, 5.0, 0.3, 0.0, 2.0, 2.0, 1.8]])
     assert len(walls_of(NONE, bodies, np.full(2, 1.5), 0)[0]) == 4
     assert len(walls_of(NONE, bodies, np.full(2, 1.5), -1)[0]) == 8
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_shares_are_those_of_rays_that_shapely_cuts(seed: int) -> None:
-    """Brute force: rays to the width of each body, at the height of its upper end."""
-    random, rays = np.random.default_rng(seed), 64
-    for _ in range(40):
-        k, n = int(random.integers(0, 12)), 4
-        ends = random.uniform(-12.0, 12.0, (k, 4))
-        walls = np.column_stack([ends, random.uniform(0.5, 3.0, k)])
-        position = random.uniform(-12.0, 12.0, (n, 2))
-        place, top = random.uniform(-12.0, 12.0, 2), float(random.uniform(1.0, 1.9))
-        height = float(random.uniform(1.0, 2.5))
-        seen = shares(Eye(*place, height, 0.0, 50.0, ALL_ROUND), position, walls, top)
-        for i, centre in enumerate(position):
-            counted = _by_rays(place, height, centre, top, walls, rays)
-            assert seen[i] == pytest.approx(counted, abs=(k + 1) / rays)
-
-
-def _by_rays(place: Array, z: float, centre: Array, top: float, walls: Array, rays: int) -> float:
-    way = centre - place
-    far = float(np.hypot(*way))
-    if far <= RADIUS:
-        return 1.0
-    left = np.array([-way[1], way[0]]) / far
-    free = 0
-    for t in (np.arange(rays) + 0.5) / rays * 2.0 - 1.0:
-        target = centre + t * RADIUS * left
-        ray = shapely.LineString([place, target])
-        length = float(np.hypot(*(target - place)))
-        blocked = False
-        for x0, y0, x1, y1, h in walls:
-            hit = ray.intersection(shapely.LineString([(x0, y0), (x1, y1)]))
-            if hit.geom_type == "Point":
-                share = float(np.hypot(hit.x - place[0], hit.y - place[1])) / length
-                blocked = blocked or (z + (top - z) * share <= h and share < 1.0)
-        free += not blocked
-    return free / rays
