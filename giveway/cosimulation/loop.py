@@ -279,7 +279,7 @@ class Loop:
                 recorder.outputs(ego.id, *ego.outputs())
             predicted = ego.expected(seen) if self._instants.looks else None
             if predicted is not None:
-                whom, relevant = seen.percept.person_ids, seen.relevant
+                whom, relevant = seen.ids, seen.relevant
                 whom = whom if relevant is None else whom[relevant]
                 self._instants.predictions(ego.id, predicted, whom)
             predicting += decide_at - look_at

@@ -70,11 +70,12 @@ class PeopleInFront:
         """
         corridor, perception, kerbs = self._corridor, self._perception, self._kerbs
         if perception is None:
-            percept = Percept(truth.people, person_ids)
+            percept, seen.ids = Percept(truth.people, person_ids), person_ids
         else:
             percept = perception.observe(truth, person_ids, own)
+            seen.ids = perception.ids(percept)
             if self._sights is not None:
-                seen.sights = self._sights.changes(percept, own)
+                seen.sights = self._sights.changes(seen.ids, percept.people.position, own)
             sensor = perception.tells_unseen
             if sensor is not None and self._hiding_places is not None:
                 seen.hidden = self._hiding_places.ahead(sensor, truth, own.row, front, own.speed)
@@ -84,9 +85,7 @@ class PeopleInFront:
             self._drift.remember(people, percept.person_ids)
         if kerbs is not None:
             seen.kerbs = kerbs.of(people.position, people.velocity, front)
-            seen.sudden_starts = self._sudden_starts.beyond(
-                percept.person_ids, people.velocity, seen.kerbs
-            )
+            seen.sudden_starts = self._sudden_starts.beyond(seen.ids, people.velocity, seen.kerbs)
         seen.pedestrian, reachable = corridor.closest_now(people.position, front)
         seen.closest = seen.pedestrian
         if perception is not None:

@@ -25,6 +25,7 @@ class Perceived:
 
     Attributes:
         percept: Pedestrians as the ego perceives them.
+        ids: Index (n,) of each of them in the roster, negative for false detections.
         pedestrian: Station [m] of the closest perceived pedestrian in front; inf without one.
         closest: Station [m] of the closest pedestrian of the truth in front, for the tables.
         leader: Vehicle in front.
@@ -47,6 +48,7 @@ class Perceived:
     """
 
     percept: Percept = field(default_factory=lambda: Percept(Crowd.empty(), NOBODY))
+    ids: NDArray[np.int64] = field(default_factory=lambda: NOBODY)
     pedestrian: float = inf
     closest: float = inf
     leader: Leader = NO_LEADER

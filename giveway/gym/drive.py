@@ -20,6 +20,8 @@ from giveway.config.files.layers import Layer
 from giveway.config.files.loading import as_layer, load
 from giveway.config.files.presets import parameters_of
 from giveway.cosimulation.preflight import preflight
+from giveway.ego.perception.false_detections import ids_of
+from giveway.ego.perception.plugged_in_sensor import sensor_of
 from giveway.errors import ConfigError, ControlError, InstallationError
 from giveway.geometry.kernel import Array
 from giveway.gym.picture import picture
@@ -63,7 +65,7 @@ class _Exchange:
         self.interrupt = DeferredInterrupt()
         self.setup: Setup | None = None
         self.seen: Observation | None = None
-        self.around: Array = np.empty((0, 4))  # people near the ego, from ``_around``
+        self.around: Array = np.empty((0, 5))  # people near the ego, from ``_around``
         self.share = 0.0
         self.over = False
         self.result: RunResult | None = None
@@ -238,7 +240,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
             return None
         path = exchange.seen.path
         way = np.zeros((1, 2)) if path is None else _in_frame(path.poses(_AHEAD))
-        return picture(self._body, self._radius, way, exchange.around)
+        return picture(self._body, self._radius, way, exchange.around[:, :4])
 
     def close(self) -> None:
         """End the run if there is one; its rows so far are in ``result``."""
@@ -268,6 +270,8 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         if len(egos) != 1:
             raise ConfigError(f"DriveEnv: {len(egos)} egos; expected exactly one")
         (own,) = egos
+        sensor = sensor_of(own, config.time_step or 1.0)
+        self._made_up = getattr(sensor, "false_detections", False)
         self._radius = parameters_of(config.crowd.preset).body_radius
         self._body = own.vehicle.length or 5.0, own.vehicle.width or 2.0
         self._half = self._body[1] / 2.0
@@ -291,7 +295,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         around = exchange.around = self._around(seen)
         if len(around):
             near = np.argsort((around[:, :2] ** 2).sum(axis=1), kind="stable")[: self._people]
-            people[: len(near), :4] = around[near]
+            people[: len(near), :4] = around[near, :4]
             people[: len(near), 4] = 1.0
         told = {
             "ego": np.array(ego, dtype=np.float32),
@@ -305,16 +309,22 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return told
 
     def _around(self, seen: Observation) -> Array:
-        """Return place [m] and velocity [m/s] (m, 4) of the people near the ego, ahead and left."""
+        """Return place [m] and velocity [m/s], ahead and left, of the people near the ego (m, 5).
+
+        The last column is 0 for false detections, and 1 for everybody else.
+        """
         if seen.people is None or seen.path is None or not len(seen.people.position):
-            return np.empty((0, 4))
+            return np.empty((0, 5))
         x, y, heading = seen.path.poses(np.zeros(1))[0]
         c, s = cos(heading), sin(heading)
         turn = np.array([[c, -s], [s, c]])
         place = np.einsum("ij,jk", seen.people.position - [x, y], turn)
         velocity = np.einsum("ij,jk", seen.people.velocity, turn)
         near = (place[:, 0] > _REAR) & (place[:, 0] < FAR) & (np.abs(place[:, 1]) < LATERAL)
-        around: Array = np.column_stack([place, velocity])[near]
+        there = np.ones(len(place), dtype=np.bool_)
+        if self._made_up and seen.person_ids is not None:
+            there = ids_of(seen.person_ids) >= 0
+        around: Array = np.column_stack([place, velocity, there])[near]
         return around
 
     def _hits(self, speed: float, around: Array) -> bool:
@@ -322,7 +332,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         beside = np.maximum(np.abs(around[:, 1]) - self._half, 0.0)
         touched = np.hypot(around[:, 0], beside) <= self._radius
         touched &= (around[:, 0] >= 0.0) | (beside == 0.0) & (around[:, 0] > -self._radius)
-        return bool(speed > _MOVES and touched.any())
+        return bool(speed > _MOVES and (touched & (around[:, 4] > 0.0)).any())
 
 
 def _in_frame(poses: Any) -> Array:

@@ -93,7 +93,7 @@ class DummyMetric:
         before = (since >= _SETTLES) & (track.time <= first.time)
         braking = before & (track.acceleration <= -BRAKES)
         sights = drive.sights
-        seen = np.flatnonzero(sights.seen & (sights.ego == drive.id))[:1]
+        seen = np.flatnonzero(sights.seen & (sights.ego == drive.id) & (sights.pedestrian >= 0))[:1]
         return self.Columns(
             first.speed,
             first.relative,

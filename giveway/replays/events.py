@@ -9,6 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig
+from giveway.run_data.tracks import FALSE
 
 _INFEASIBLE = {
     "infeasible: too close": "no plan: the next position is already inside the safe distance",
@@ -118,7 +119,8 @@ def _first_sights(sights: pd.DataFrame, departure: float) -> Iterator[dict[str, 
     first = sights.drop_duplicates("id")
     nearest = first[first["time"] > departure].nsmallest(_MOST_SIGHTS, "distance")
     for who, at, distance in nearest[["id", "time", "distance"]].to_numpy():
-        yield _event("sight", at, at, f"in sight, {distance:.1f} m from the front: {who}", str(who))
+        what = "false detection" if str(who).startswith(FALSE) else "in sight"
+        yield _event("sight", at, at, f"{what}, {distance:.1f} m from the front: {who}", str(who))
 
 
 def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dict[str, Any]:

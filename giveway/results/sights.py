@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
 from giveway.run_data.columns import SIGHT_COLUMNS
-from giveway.run_data.tracks import SightTrack
+from giveway.run_data.tracks import SightTrack, names_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,13 +23,14 @@ def sight_table(track: SightTrack, ids: tuple[str, ...]) -> "pd.DataFrame":
     import pandas as pd
 
     rows: list[list[object]] = []
-    open_rows: dict[tuple[str, int], int] = {}
-    changes = zip(track.time, track.ego, track.pedestrian, track.seen, track.distance, strict=True)
-    for time, ego, pedestrian, seen, distance in changes:
-        whom = str(ego), int(pedestrian)
+    open_rows: dict[tuple[str, str], int] = {}
+    names = names_of(track.pedestrian, ids)
+    changes = zip(track.time, track.ego, names, track.seen, track.distance, strict=True)
+    for time, ego, name, seen, distance in changes:
+        whom = str(ego), name
         if seen:
             open_rows[whom] = len(rows)
-            rows.append([ego, ids[pedestrian], time, np.nan, distance])
+            rows.append([ego, name, time, np.nan, distance])
         elif whom in open_rows:
             rows[open_rows.pop(whom)][3] = time
     return pd.DataFrame(rows, columns=[column.name for column in SIGHT_COLUMNS])

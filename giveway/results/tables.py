@@ -24,6 +24,7 @@ from giveway.run_data.tracks import (
     PredictionTrack,
     SightTrack,
     Timings,
+    names_of,
 )
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) ->
     columns = {
         "time": track.time,
         "ego": ego_id,
-        "id": np.array(ids, dtype=object)[track.pedestrian],
+        "id": names_of(track.pedestrian, ids),
         "look_ahead": track.look_ahead,
         "x": track.x,
         "y": track.y,

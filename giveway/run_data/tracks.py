@@ -251,9 +251,25 @@ class SightTrack:
 
     time: NDArray[np.float64]  # (S,) [s] time of the change
     ego: NDArray[np.str_]  # (S,) id of the ego
-    pedestrian: NDArray[np.int64]  # (S,) index into the crowd's ``ids``
+    pedestrian: NDArray[np.int64]  # (S,) index into the crowd's ``ids``; negative: nobody is there
     seen: NDArray[np.bool_]  # (S,) whether the person is in sight from then on
     distance: NDArray[np.float64]  # (S,) [m] from the front bumper; NaN for who is lost
+
+
+FALSE = "false:"
+"""The beginning of the names of false detections, which have the indices -1, -2, ..."""
+
+
+def names_of(pedestrian: NDArray[np.int64], ids: Sequence[str]) -> NDArray[np.object_]:
+    """Return the names (n,) of pedestrians, and of false detections.
+
+    Args:
+        pedestrian: Indices (n,) into ``ids``.
+        ids: Ids of the pedestrians.
+    """
+    names, false = np.array([*ids, ""], dtype=object)[np.maximum(pedestrian, -1)], pedestrian < 0
+    names[false] = [f"{FALSE}{-number}" for number in pedestrian[false].tolist()]
+    return names
 
 
 NO_SIGHTS = SightTrack(

@@ -46,3 +46,41 @@ def test_trajectories_of_cameras_that_have_met_nobody_yet_tell_of_nobody(run_onc
     result = run_once(scenario="parked_cars", time_limit=0.5)
     assert result.trajectories["seen"].isna().all()
     assert top_view_picture(result, result.egos[0]).axes
+
+
+GHOSTS = {"sensor_options.false_rate": 10.0, "sensor_options.false_speed": 1.4}
+WITH_CHILD = {"scenario": "parked_cars", "time_limit": 10.5, "record.near": 500.0}
+
+
+@pytest.mark.parametrize("controller", ["mpc", "pid-tuned", "careful-driver", "mpc-paper"])
+def test_false_detections_slow_every_controller_and_leave_the_truth_alone(
+    run_once, controller: str
+) -> None:
+    """Ten per second and camera: people, contacts and names of people are as without them."""
+    plain = run_once(**WITH_CHILD, controller=controller)
+    ghosts = run_once(**WITH_CHILD, controller=controller, **GHOSTS)
+    false = ghosts.sights[ghosts.sights.id.str.startswith("false:")]
+    assert len(false) > 100
+    assert false.id.is_unique
+    assert ghosts.ego.position.iloc[-1] < plain.ego.position.iloc[-1]
+    walks = [run.trajectories.query("id == 'child.1'") for run in (plain, ghosts)]
+    names = ["time", "x", "y", "angle", "speed", "vx", "vy"]
+    assert walks[0][names].to_csv(index=False) == walks[1][names].to_csv(index=False)
+    assert set(ghosts.pedestrians.id) == {"child.1"}
+    assert not ghosts.trajectories.id.str.startswith("false:").any()
+    assert ghosts.summary["overlaps"] == 0
+
+
+def test_false_detections_are_named_where_the_controller_expects_them(run_once) -> None:
+    crowd = {"crowd.pedestrians": 5, "perception.sensor": "sight", "time_limit": 1.5}
+    model = {"perception.model": "drift", "perception.desired_speeds": "typical"}
+    result = run_once(**crowd, **model, **GHOSTS, **{"record.predictions": 0.5})
+    expected = set(result.predictions.id)
+    assert any(name.startswith("false:") for name in expected)
+    assert expected <= set(result.sights.id)
+
+
+def test_drives_with_false_detections_repeat_byte_for_byte(run_once) -> None:
+    both = run_once(**WITH_CHILD, **GHOSTS), run_once(**WITH_CHILD, **GHOSTS, controller="mpc")
+    assert len({run.ego.to_csv() for run in both}) == 1
+    assert len({run.sights.to_csv() for run in both}) == 1

@@ -78,6 +78,7 @@ class _Copied:
 
     def __init__(self, sensor: object) -> None:
         self._observe = sensor.observe  # type: ignore[attr-defined]
+        self.false_detections = getattr(sensor, "false_detections", False)
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         everybody = np.ones(len(person_ids), dtype=np.bool_)
@@ -178,10 +179,11 @@ class _Battery(Battery[PluggedInSensor, _Perceived]):
             people, ids, _, bound, _ = sensor.observe(truth, scene.ids, own)
             if bound is None:
                 continue
-            true = truth.people.position[np.searchsorted(scene.ids, ids)]
-            off = np.hypot(*(people.position - true).T) - bound
+            there = ids >= 0
+            true = truth.people.position[np.searchsorted(scene.ids, ids[there])]
+            off = np.hypot(*(people.position[there] - true).T) - bound[there]
             if (off > _SAME).any():
-                who = int(ids[np.argmax(off)])
+                who = int(ids[there][np.argmax(off)])
                 return f"person {who} at step {step}: {off.max():.3g} m farther off than its bound"
         return ""
 

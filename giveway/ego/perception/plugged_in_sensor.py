@@ -76,6 +76,9 @@ def telling(sensor: Sensor | None) -> TellsUnseen | None:
     return sensor if tells and isinstance(sensor, TellsUnseen) else None
 
 
+_MOST_FALSE = 1_000_000  # number of false detections in a run
+
+
 class PluggedInSensor:
     """A sensor of another package, which the run asks like giveway's own.
 
@@ -135,6 +138,11 @@ class PluggedInSensor:
         return hasattr(self._sensor, "unseen")
 
     @property
+    def false_detections(self) -> bool:
+        """True if the sensor says that it also perceives people who are not there."""
+        return bool(getattr(self._sensor, "false_detections", False))
+
+    @property
     def delay(self) -> float:
         """The time [s] by which the sensor's answers are late."""
         return float(getattr(self._sensor, "delay", 0.0))
@@ -161,8 +169,10 @@ class PluggedInSensor:
         whole = isinstance(ids, np.ndarray) and ids.dtype == np.int64 and ids.shape == (n,)
         if not whole:
             raise self._unusable(ids, f"({n},) int64, one for each person", "returned person_ids")
-        strangers = ids[(ids < 0) | (ids >= len(self._known))]
-        strangers = strangers if len(strangers) else ids[~self._known[ids]]
+        least = -_MOST_FALSE if self.false_detections else 0
+        strangers = ids[(ids < least) | (ids >= len(self._known))]
+        there = ids[ids >= 0]
+        strangers = strangers if len(strangers) else there[~self._known[there]]
         if len(strangers):
             what = "those of people whom it was shown"
             raise self._unusable(int(strangers[0]), what, "returned person_ids with")

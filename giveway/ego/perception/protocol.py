@@ -24,7 +24,8 @@ class Percept(NamedTuple):
 
     Attributes:
         people: Perceived pedestrians (n,), at the positions where they are expected to be now.
-        person_ids: Id (n,) of each perceived person, which the person keeps during the run.
+        person_ids: Id (n,) of each perceived person, which the person keeps during the run. From
+            a sensor, false detections have the ids -1, -2, ...
         age: Time (n,) [s] since each person was last seen, or None if all are seen now.
         position_bound: Largest error (n,) [m] of each position, or None if the sensor claims none.
         velocity_bound: Largest error (n,) [m/s] of each velocity, or None in the same case.
@@ -84,7 +85,8 @@ class Sensor(Protocol):
 
     A sensor may also have the method ``unseen(points)``. It returns the marks (k,) of the points
     (k, 2) [m] at which a person would not be in sight now. The ego then allows for people who come
-    out there. A sensor whose answers are late also has the attribute ``delay`` [s].
+    out there. A sensor whose answers are late also has the attribute ``delay`` [s], and one that
+    perceives people who are not there the attribute ``false_detections``, which is true.
     """
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:

@@ -7,6 +7,7 @@ and metrics use the truth.
 from giveway.config import EgoRunConfig
 from giveway.crowd.motion.noise import BOUND
 from giveway.ego.perception.desired_speeds import Pace
+from giveway.ego.perception.false_detections import ids_of, tracks_of
 from giveway.ego.perception.plugged_in_sensor import sensor_of, telling
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, Refinement, Sensor
 from giveway.ego.perception.refinements import DesiredSpeeds, HeadingGoals, PositionNoise
@@ -58,6 +59,7 @@ class Perception:
         if seen.goals != "known":
             self._chain.append(HeadingGoals())
         self.exact = own is None and not self._chain
+        self._made_up = getattr(own, "false_detections", False)
         self.tells_unseen = telling(own)
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
@@ -69,6 +71,12 @@ class Perception:
             ego: State of the ego.
         """
         percept = self._sensor.observe(truth, person_ids, ego)
+        if self._made_up:
+            percept = percept._replace(person_ids=tracks_of(percept.person_ids))
         for member in self._chain:
             percept = member.refine(percept)
         return percept
+
+    def ids(self, percept: Percept) -> Ids:
+        """Return the id of each perceived person (n,), negative for false detections."""
+        return ids_of(percept.person_ids) if self._made_up else percept.person_ids

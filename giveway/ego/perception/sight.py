@@ -16,6 +16,7 @@ from pydantic import ConfigDict, Strict
 
 from controller.parameters import require, require_not_negative, require_positive
 from giveway.crowd.motion.noise import BOUND, planar_noise
+from giveway.ego.perception.false_detections import FalseDetections, joined
 from giveway.ego.perception.memory import Memory
 from giveway.ego.perception.protocol import Ids, OwnState, Percept, SensorSetup
 from giveway.ego.perception.truth import Truth
@@ -25,15 +26,13 @@ from giveway.ego.perception.visibility import (
     Eye,
     chords_of,
     eyes_of,
-    fill_shares,
+    in_sight,
     walls_of,
 )
 from giveway.geometry.kernel import Array
+from pedestrian_model import Crowd
 
-_ROUNDING = 1e-9
-_ENOUGH = 0.5 - _ROUNDING  # share of a body's width from which on it is seen
-
-
+_MOST_FALSE = 10.0  # largest rate [1/s] of false detections per camera
 _Number = Annotated[float, Strict()]  # true is none
 
 
@@ -101,6 +100,9 @@ class SightOptions:
         velocity_noise: Standard deviation [m/s] of velocities, per axis.
         acceleration: Largest acceleration [m/s^2] of people on which claimed bounds rely.
         people_hide: Whether people hide each other.
+        false_rate: Mean number per second of false detections of each camera [1/s].
+        false_time: Time [s] for which each of them is detected.
+        false_speed: Speed [m/s] of each of them.
 
     Raises:
         ParameterError: a value is not finite or out of range.
@@ -116,13 +118,19 @@ class SightOptions:
     velocity_noise: float = 0.0
     acceleration: float = 3.0
     people_hide: bool = False
+    false_rate: float = 0.0
+    false_time: float = 0.5
+    false_speed: float = 0.0
 
     def __post_init__(self) -> None:
         require(bool(self.mounts), "mounts", list(self.mounts), "at least one")
         for name, unit in _UNITS.items():
             require_not_negative(name, getattr(self, name), unit)
         require(self.missed < 1.0, "missed", self.missed, "a number from 0 to below 1")
-        require_positive("missed_time", self.missed_time, "s")
+        for name in ("missed_time", "false_time"):
+            require_positive(name, getattr(self, name), "s")
+        most = f"at most {_MOST_FALSE:g} [1/s]"
+        require(self.false_rate <= _MOST_FALSE, "false_rate", self.false_rate, most)
 
 
 _UNITS = {
@@ -133,6 +141,8 @@ _UNITS = {
     "noise_per_metre": "m/m",
     "velocity_noise": "m/s",
     "acceleration": "m/s^2",
+    "false_rate": "1/s",
+    "false_speed": "m/s",
 }
 
 
@@ -145,6 +155,7 @@ class Sight:
 
     Attributes:
         delay: Latency [s], in whole steps.
+        false_detections: Whether it perceives people who are not there.
     """
 
     Options = SightOptions
@@ -153,12 +164,16 @@ class Sight:
         self._options, self._time_step = options, setup.time_step
         self._random = setup.random()
         self._late = round(options.latency / setup.time_step)
-        self._past: list[tuple[Ids, Array, Array, NDArray[np.bool_], Array]] = []
-        turns = _WITHIN * options.velocity_noise
-        self._memory = Memory(options.memory, turns, options.acceleration)
         self.delay = self._late * setup.time_step
+        self._seen = _Recollection(options, self._random, self.delay, self._late)
         self._mounts = np.array([mount.row for mount in options.mounts])
         self._views: list[tuple[Array, Array]] = []
+        self.false_detections = options.false_rate > 0.0
+        if self.false_detections:
+            kept = self.delay + options.memory + setup.time_step
+            how = options.false_rate, options.false_time, options.false_speed
+            self._false = FalseDetections(setup, *how, kept)
+            self._false_seen = _Recollection(options, self._false.noise, self.delay, self._late)
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         """Return the people who are seen, or were seen a short time ago.
@@ -168,22 +183,21 @@ class Sight:
             person_ids: Id of each pedestrian in ``truth.people``, (n,).
             ego: State of the ego that carries the sensor.
         """
-        o, now, people = self._options, truth.time, truth.people
-        seen = self._look(truth, ego)
+        o, now, known = self._options, truth.time, self._seen.memory
+        eyes = eyes_of(self._mounts, *ego.pose)
+        walls, still = walls_of(truth.outlines, truth.vehicles, truth.vehicle_heights, ego.row)
+        self._views.append((eyes, walls[:still]))
+        del self._views[: -1 - self._late]
+        seen = self._look(truth, eyes, walls)
         if o.missed:
             begins = o.missed * self._time_step / (o.missed_time * (1.0 - o.missed))
-            draws = self._random.random(len(self._memory.rows(person_ids)))  # by id
-            seen &= self._memory.noticed(person_ids, draws, begins, now, o.missed_time)
-        spread = np.full(len(people), o.position_noise)
-        if o.noise_per_metre:
-            off = people.position - ego.pose[:2]
-            spread += o.noise_per_metre * np.hypot(off[:, 0], off[:, 1])
-        self._past.append(
-            (person_ids, people.position.copy(), people.velocity.copy(), seen, spread)
-        )
-        if len(self._past) > self._late:
-            self._learn(*self._past.pop(0), now - self.delay)
-        return self._memory.percept(people, person_ids, now, self.delay)
+            draws = self._random.random(len(known.rows(person_ids)))  # by id
+            seen &= known.noticed(person_ids, draws, begins, now, o.missed_time)
+        percept = self._seen.percept(truth.people, person_ids, seen, ego, now)
+        if not self.false_detections:
+            return percept
+        false = self._false_seen.percept(*self._false.at(now, eyes, walls, ego), ego, now)
+        return joined(percept, false)
 
     def unseen(self, points: Array) -> NDArray[np.bool_]:
         """Return at which points (k, 2) [m] a child could stand and not be in sight.
@@ -192,22 +206,58 @@ class Sight:
         hide nobody here: who is behind them comes on a visible way.
         """
         eyes, walls = self._views[0]
-        return ~_in_sight(eyes, walls, points, np.full(len(points), CHILD))
+        return ~in_sight(eyes, walls, points, np.full(len(points), CHILD))
 
-    def _look(self, truth: Truth, ego: OwnState) -> NDArray[np.bool_]:
-        """Return which people (n,) are in sight of a camera, and keep what hides others."""
-        eyes = eyes_of(self._mounts, *ego.pose)
-        walls, still = walls_of(truth.outlines, truth.vehicles, truth.vehicle_heights, ego.row)
-        self._views.append((eyes, walls[:still]))
-        del self._views[: -1 - self._late]
+    def _look(self, truth: Truth, eyes: Array, walls: Array) -> NDArray[np.bool_]:
+        """Return which people (n,) are in sight of a camera."""
         position, heights = truth.people.position, truth.person_heights
         if not self._options.people_hide:
-            return _in_sight(eyes, walls, position, heights)
+            return in_sight(eyes, walls, position, heights)
         seen = np.zeros(len(position), dtype=np.bool_)
         for k in range(len(eyes)):
             chords = chords_of(position, heights, Eye(*eyes[k]), RADIUS)
-            seen |= _in_sight(eyes[k : k + 1], np.concatenate([walls, chords]), position, heights)
+            seen |= in_sight(eyes[k : k + 1], np.concatenate([walls, chords]), position, heights)
         return seen
+
+
+class _Recollection:
+    """The people who were seen: perceived late and with noise, and remembered.
+
+    Args:
+        options: Options of the sensor.
+        random: Generator of the noise.
+        delay: Latency [s], and in steps.
+    """
+
+    def __init__(
+        self, options: SightOptions, random: np.random.Generator, delay: float, late: int
+    ) -> None:
+        self._options, self._random, self._delay, self._late = options, random, delay, late
+        turns = _WITHIN * options.velocity_noise
+        self.memory = Memory(options.memory, turns, options.acceleration)
+        self._past: list[tuple[Ids, Array, Array, NDArray[np.bool_], Array]] = []
+
+    def percept(
+        self, people: Crowd, ids: Ids, seen: NDArray[np.bool_], ego: OwnState, now: float
+    ) -> Percept:
+        """Return who of these people (n,) are perceived now.
+
+        Args:
+            people: People as they are.
+            ids: Their ids.
+            seen: Marks of who is seen at this instant.
+            ego: State of the ego.
+            now: Present time [s].
+        """
+        o, position, velocity = self._options, people.position.copy(), people.velocity.copy()
+        spread = np.full(len(people), o.position_noise)
+        if o.noise_per_metre:
+            off = position - ego.pose[:2]
+            spread += o.noise_per_metre * np.hypot(off[:, 0], off[:, 1])
+        self._past.append((ids, position, velocity, seen, spread))
+        if len(self._past) > self._late:
+            self._learn(*self._past.pop(0), now - self._delay)
+        return self.memory.percept(people, ids, now, self._delay)
 
     def _learn(
         self,
@@ -225,14 +275,7 @@ class Sight:
             rows = rows[np.argsort(person_ids[rows])]  # the order does not matter
             position[rows] += spread[rows, None] * planar_noise(self._random, len(rows))
             velocity[rows] += o.velocity_noise * planar_noise(self._random, len(rows))
-        self._memory.learn(person_ids, position, velocity, seen, _WITHIN * spread, then)
-
-
-def _in_sight(eyes: Array, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:
-    """Return which bodies (k,) at ``points`` are in sight of a camera."""
-    shares = np.empty(len(points))
-    fill_shares(eyes, (points, heights, RADIUS), walls, _ENOUGH, shares)
-    return shares >= _ENOUGH
+        self.memory.learn(person_ids, position, velocity, seen, _WITHIN * spread, then)
 
 
 _WITHIN = sqrt(2.0) * BOUND  # largest noise in standard deviations: cut off on each axis

@@ -11,6 +11,7 @@ these limits are linear in the plane, so that the part is found exactly by clipp
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller.driving_constants import STANDING
 from giveway.geometry.kernel import Array, inner, kernel
@@ -21,6 +22,7 @@ RADIUS = 0.27
 CHILD = 1.15
 """Height [m] of Euro NCAP's child target, a child of seven years."""
 
+_ENOUGH = 0.5 - 1e-9  # share of a body's width from which on it is seen
 _OWN = 1e-6  # share of the distance within which something is not in front of the body
 _ROUNDING = 1e-12  # of cosines of angles
 _NEXT_TO = 1e-9  # share of the distance within which something is at the sensor itself
@@ -98,6 +100,20 @@ def fill_shares(
                 continue
             share = _share((d_x, d_y, radius), height[i] - z, near[:count], hidden)
             shares[i] = max(shares[i], share)
+
+
+def in_sight(eyes: Array, walls: Array, points: Array, heights: Array) -> NDArray[np.bool_]:
+    """Return which bodies (k,) are in sight of a sensor: at least half of their width is.
+
+    Args:
+        eyes: Sensors (e, 6).
+        walls: Walls (m, 5).
+        points: Centres (k, 2) [m].
+        heights: Heights (k,) [m].
+    """
+    shares = np.empty(len(points))
+    fill_shares(eyes, (points, heights, RADIUS), walls, _ENOUGH, shares)
+    return shares >= _ENOUGH
 
 
 @inner

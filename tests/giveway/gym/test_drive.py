@@ -91,6 +91,17 @@ def test_who_does_not_brake_hits_somebody_and_pays_for_it():
     env.close()
 
 
+def test_a_false_detection_is_seen_and_not_hit():
+    sees = {"perception": {"sensor": "sight"}, "sensor_options": {"false_rate": 10.0}}
+    env = DriveEnv({"crowd": {"pedestrians": 0}} | sees)
+    observed, _, terminated, told = drive(env, 1, keep_pace)
+    assert terminated
+    assert not told["hit"]
+    closest = min(np.hypot(*step["people"][0, :2]) for step in observed if step["people"][0, 4])
+    assert closest < 0.5
+    env.close()
+
+
 def test_a_picture_shows_ego_and_people():
     env = DriveEnv({"scenario": "encounter"}, render_mode="rgb_array")
     assert env.render() is None

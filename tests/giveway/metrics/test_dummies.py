@@ -73,11 +73,11 @@ def test_braking_counts_from_1_m_s2_after_the_start_and_before_the_impact(drivin
 
 def test_the_first_sight_is_that_of_this_ego(driving, crowd, walking):
     sights = SightTrack(
-        np.array([0.2, 0.4]),
-        np.array(["other", "ego"]),
-        np.zeros(2, np.int64),
-        np.ones(2, np.bool_),
-        np.array([9.0, 7.0]),
+        np.array([0.2, 0.3, 0.4]),
+        np.array(["other", "ego", "ego"]),
+        np.array([0, -1, 0]),  # the second is a false detection
+        np.ones(3, np.bool_),
+        np.array([9.0, 8.0, 7.0]),
     )
     found = measured(driving(TIME, 4.0), crowd(walking(TIME, (8.0, 0.0), (0.0, 0.0))), sights)
     assert (found.first_sight_time, found.first_sight_distance) == (0.4, 7.0)

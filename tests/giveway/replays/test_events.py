@@ -99,3 +99,6 @@ def test_who_comes_in_sight_during_the_drive_is_an_event_once() -> None:
     (found,) = events(rows, pd.DataFrame(), EgoRunConfig(), sights)
     assert (found["kind"], found["from"], found["who"]) == ("sight", 1.0, "q")
     assert found["text"] == "in sight, 5.1 m from the front: q"
+    sights["id"] = sights["id"].replace("q", "false:1")
+    (found,) = events(rows, pd.DataFrame(), EgoRunConfig(), sights)
+    assert found["text"] == "false detection, 5.1 m from the front: false:1"

@@ -34,6 +34,14 @@ def test_a_row_is_a_stretch_of_time_in_sight() -> None:
     assert table["distance"].tolist() == [9.0, 20.0, 4.0]
 
 
+def test_false_detections_have_names_of_their_own() -> None:
+    changes = track(
+        (1.0, "ego", -1, True, 9.0), (1.5, "ego", 0, True, 9.0), (2.0, "ego", -12, True, 1)
+    )
+    assert sight_table(changes, ("anna",))["id"].tolist() == ["false:1", "anna", "false:12"]
+    assert perceived(changes, np.array([0, 0]), np.array([1.2, 1.6])).tolist() == [False, True]
+
+
 def test_nobody_in_sight_is_a_table_without_rows() -> None:
     table = sight_table(track(), ())
     assert list(table) == ["ego", "id", "time", "until", "distance"]

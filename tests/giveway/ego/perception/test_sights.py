@@ -6,6 +6,7 @@ import pytest
 from giveway.ego.perception import OwnState, Percept
 from giveway.ego.perception.sights import Sights
 from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
 from giveway.geometry.path import Pose
 from pedestrian_model import Crowd
 
@@ -22,9 +23,13 @@ def percept(**places: float) -> Percept:
 
 def test_who_comes_and_goes_is_told_once() -> None:
     sights = Sights()
-    assert sights.changes(percept(p3=11.0, p1=6.0), OWN).tolist() == [[3, 1, 10.0], [1, 1, 5.0]]
-    assert not len(sights.changes(percept(p1=6.0, p3=11.0), OWN))
-    both = sights.changes(percept(p2=4.0, p1=6.0), OWN)
+
+    def changes(seen: Percept) -> Array:
+        return sights.changes(seen.person_ids, seen.people.position, OWN)
+
+    assert changes(percept(p3=11.0, p1=6.0)).tolist() == [[3, 1, 10.0], [1, 1, 5.0]]
+    assert not len(changes(percept(p1=6.0, p3=11.0)))
+    both = changes(percept(p2=4.0, p1=6.0))
     assert both[:, :2].tolist() == [[2, 1], [3, 0]]
     assert both[:, 2] == pytest.approx([3.0, np.nan], nan_ok=True)
-    assert sights.changes(percept(), OWN)[:, :2].tolist() == [[1, 0], [2, 0]]
+    assert changes(percept())[:, :2].tolist() == [[1, 0], [2, 0]]
