@@ -79,7 +79,8 @@ def network_sources(extract: Path, name: str, scratch: Path) -> tuple[dict[str, 
     words += ["--plain-output-prefix", str(scratch / "plain"), "--output-file", str(network)]
     done = convert(words, typemaps=_TYPES)
     if done.returncode or not network.is_file():
-        reason = " ".join(done.stderr.split()) or f"exit code {done.returncode}"
+        errors = [line for line in done.stderr.splitlines() if line.startswith("Error:")]
+        reason = " ".join(errors) or f"exit code {done.returncode}"
         raise ScenarioError(f"{extract}: netconvert makes no network of it: {reason}")
     sources = {
         f"{name}.{kind}.xml": _HEADER.sub("", (scratch / f"plain.{kind}.xml").read_text("utf-8"))

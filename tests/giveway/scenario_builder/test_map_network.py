@@ -57,13 +57,13 @@ def test_a_map_without_streets_is_refused(tmp_path: Path) -> None:
         network_sources(empty, "empty", tmp_path)
 
 
-def test_a_map_of_footways_alone_is_refused(tmp_path: Path) -> None:
-    footways = tmp_path / "footways.osm"
+def test_a_map_without_streets_for_cars_is_refused(tmp_path: Path) -> None:
+    raceways = tmp_path / "raceways.osm"
     text = re.sub(
         r'k="highway" v="(residential|secondary|service)"',
-        r'k="highway" v="footway"',
+        r'k="highway" v="raceway"',
         MAP.read_text("utf-8"),
     )
-    footways.write_text(text)
-    with pytest.raises(ScenarioError, match=r"footways\.osm: no streets for cars"):
-        network_sources(footways, "footways", tmp_path)
+    raceways.write_text(text)
+    with pytest.raises(ScenarioError, match=r"raceways\.osm: (no streets for cars|.* No edges loaded)"):
+        network_sources(raceways, "raceways", tmp_path)
