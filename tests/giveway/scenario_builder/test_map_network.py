@@ -65,5 +65,6 @@ def test_a_map_without_streets_for_cars_is_refused(tmp_path: Path) -> None:
         MAP.read_text("utf-8"),
     )
     raceways.write_text(text)
-    with pytest.raises(ScenarioError, match=r"raceways\.osm: (no streets for cars|.* No edges loaded)"):
+    refusal = r"raceways\.osm: (no streets for cars|.* No edges loaded)"
+    with pytest.raises(ScenarioError, match=refusal):
         network_sources(raceways, "raceways", tmp_path)
