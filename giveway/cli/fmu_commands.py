@@ -56,9 +56,10 @@ def _run(
             help="fcd (SUMO replays it), pedpy, jupedsim, geojson, trj (SSAM), mp4 or gif.",
             autocompletion=_formats,
         ),
-    ],
+    ] = "",
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="File to write (default: here, named so).")
+        Path | None,
+        typer.Option("--out", "-o", help="File to write (default: beside the folder, named so)."),
     ] = None,
     step: Annotated[
         float | None,

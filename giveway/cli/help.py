@@ -4,11 +4,14 @@ Names are never cut: a long name has a line of its own (as click writes definiti
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+
+from giveway.plug_ins.finding import declared_names
+from giveway.plug_ins.sockets import SOCKETS
 
 JsonFlag = Annotated[
     bool, typer.Option("--json", help="Print what was found as JSON, for scripts, and no more.")
@@ -67,7 +70,8 @@ class _Command(TyperCommand):
             is_option = parameter.param_type_name == "option"
             panel = getattr(parameter, "rich_help_panel", None)
             group = panel or ("Options" if is_option else "Arguments")
-            groups.setdefault(group, []).append((_KIND.sub(_kind, record[0]), record[1]))
+            head = _KIND.sub(_kind, record[0]) + _installed(parameter.opts)
+            groups.setdefault(group, []).append((head, record[1]))
         for name, records in groups.items():
             if records and (self.everything or name in {"Arguments", "Options"}):
                 with formatter.section(name):
@@ -87,6 +91,12 @@ class _Group(TyperGroup):
         ]
         with formatter.section("Commands"):
             formatter.write_dl(rows)
+
+
+def _installed(flags: Sequence[str]) -> str:
+    """Return the names that installed packages add to those of a flag, as in "|idm"."""
+    sockets = [socket for socket in SOCKETS if socket.flag in flags]
+    return "".join(f"|{name}" for socket in sockets for name in declared_names(socket))
 
 
 def _kind(match: re.Match[str]) -> str:

@@ -54,7 +54,7 @@ def export_run_command(
     Args:
         folder: Results folder.
         to: Format, one of ``FORMATS``.
-        out: File to write, or None for one in the working folder, named after the results folder.
+        out: File to write, or None for one beside the results folder, named after it.
         step: Time [s] between two instants, or None for one that suits the format.
         force: True to replace an existing file.
         unsealed: True to use tables that are not what the run wrote.
@@ -64,10 +64,11 @@ def export_run_command(
     """
     found = FORMATS.get(to)
     if found is None:
-        raise ConfigError(f"--format {to}: no such format; {suggestion(to, FORMATS)}")
+        wrong = f"--format {to}: no such format" if to else "--format: missing"
+        raise ConfigError(f"{wrong}; {suggestion(to, FORMATS)}")
     run = RunFolder.read(folder, unsealed=unsealed)
     print_notes(run.seal_note)
-    file = out or Path(f"{folder.absolute().name}{found.suffix}")
+    file = out or beside(folder, found.suffix)
     _check(file, found.suffix, force=force)
     samples = sampled(run, found.step if step is None else step)
     try:
@@ -79,6 +80,12 @@ def export_run_command(
     console = Console()
     print_place(console, "Written", file)
     console.print(told, highlight=False, markup=False, soft_wrap=True)
+
+
+def beside(folder: Path, suffix: str) -> Path:
+    """Return the file beside a folder that has its name, and a suffix."""
+    whole = folder.absolute() if folder.name in {"", ".."} else folder
+    return whole.with_name(f"{whole.name}{suffix}")
 
 
 def _check(file: Path, suffix: str, *, force: bool) -> None:

@@ -41,6 +41,11 @@ def test_all_options_are_there_whole(
         assert re.search(f"^{heading}$", text, re.M)
 
 
+def test_controllers_of_installed_packages_are_named(type_here: Type) -> None:
+    text = type_here("run", "--help").stdout
+    assert re.search(r"--controller mpc\|.*\|idm\|speed-holder$", text, re.M)
+
+
 def test_commands_are_listed_with_whole_sentences(type_here: Type) -> None:
     text = type_here("--help").stdout
     assert "..." not in text.partition("Commands:")[2]

@@ -19,21 +19,24 @@ def made(tmp_path_factory):
     return folder
 
 
-def test_a_file_named_after_the_run_is_written_here(made, type_here, tmp_path, monkeypatch):
+def test_a_file_named_after_the_run_is_written_beside_it(made, type_here, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     typed = type_here("export", "run", made, "--format", "pedpy")
     assert typed.returncode == 0, typed.stderr
     assert "4 people at 20 frames/s, for PedPy" in typed.stdout
-    assert (tmp_path / "drive.txt").is_file()
+    assert (made.parent / "drive.txt").is_file()
+    assert list(tmp_path.iterdir()) == []
     again = type_here("export", "run", made, "--format", "pedpy")
     assert again.returncode != 0
     assert "drive.txt: exists; replace it with --force" in again.stderr
     assert type_here("export", "run", made, "-f", "pedpy", "--force").returncode == 0
+    (made.parent / "drive.txt").unlink()
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
+        ([], "--format: missing; expected one of fcd, pedpy"),
         (["--format", "mp5"], "--format mp5: no such format; did you mean 'mp4'?"),
         (["--format", "gif", "--out", "film.mp4"], "expected the name of a .gif file"),
         (["--format", "pedpy", "--step", "0"], "--step 0: expected 0.001 to 10 [s]"),
@@ -54,6 +57,7 @@ def test_what_cannot_be_is_one_line_and_leaves_nothing(
     assert said in typed.stderr
     assert len(typed.stderr.strip().splitlines()) == 1
     assert list(tmp_path.iterdir()) == []
+    assert list(made.parent.iterdir()) == [made]
 
 
 def test_a_folder_without_a_run(type_here, tmp_path):
