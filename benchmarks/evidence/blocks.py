@@ -1,11 +1,14 @@
 """Blocks of measured text in pages, between marks that name them; each says its version.
 
 A block begins with ``<!-- evidence: NAME -->`` and ends with ``<!-- end -->``. Its first line says
-of which commit, day and sample it is.
+of which commit, day and sample it is. ``docs/blocks.json`` has a digest of each block as its
+command wrote it, by its name, so that a number that is changed by hand is found.
 """
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -13,6 +16,7 @@ from pathlib import Path
 from digests import HOUSE
 
 BLOCK = re.compile(r"<!-- evidence: (?P<name>[^>]+?) -->\n(?P<text>.*?)<!-- end -->", re.DOTALL)
+DIGESTS = HOUSE / "docs" / "blocks.json"
 PACKAGES = ("giveway", "controller", "pedestrian_model", "fmus", "sumo_scenarios")
 
 
@@ -52,7 +56,22 @@ def present_version() -> tuple[str, str]:
     return commit + "+" * bool(same.returncode), date
 
 
-def write_block(file: Path, name: str, lines: list[str], version: str) -> None:
-    """Write the lines of one block into its page."""
-    page = filled(file.read_text(encoding="utf-8"), name, lines, version)
+def digests_of(page: str) -> list[tuple[str, str]]:
+    """The name and digest of each block of a page."""
+    return [
+        (match["name"], hashlib.sha256(match["text"].encode()).hexdigest()[:16])
+        for match in BLOCK.finditer(page)
+    ]
+
+
+def write_block(
+    file: Path, name: str, lines: list[str], version: str, digests: Path = DIGESTS
+) -> None:
+    """Write the lines of one block into its page, and its digest in the place of the former one."""
+    before = file.read_text(encoding="utf-8")
+    page = filled(before, name, lines, version)
     file.write_text(page, encoding="utf-8")
+    entries = json.loads(digests.read_text(encoding="utf-8"))
+    former, new = dict(digests_of(before))[name], dict(digests_of(page))[name]
+    entries[name] = sorted({*entries.get(name, ()), new} - ({former} - {new}))
+    digests.write_text(json.dumps(dict(sorted(entries.items())), indent=1) + "\n", encoding="utf-8")

@@ -102,6 +102,24 @@ def test_other_code_with_the_same_drives_can_be_confirmed(
     assert "same drives at" in ledger.listing({"pid": page}, ledger.read_ledger(file))[1]
 
 
+def test_each_block_is_as_its_command_wrote_it() -> None:
+    written = json.loads(blocks.DIGESTS.read_text(encoding="utf-8"))
+    for place, text in measured().items():
+        ((name, digest),) = blocks.digests_of(f"<!-- evidence: {place} -->\n{text}<!-- end -->")
+        assert digest in written[name.partition(": ")[2]], f"{place}: changed by hand?"
+
+
+def test_a_block_that_is_written_replaces_its_digest(tmp_path: Path) -> None:
+    page, kept = tmp_path / "page.md", tmp_path / "blocks.json"
+    page.write_text("<!-- evidence: a -->\n1\n<!-- end -->\n", encoding="utf-8")
+    ((_, before),) = blocks.digests_of(page.read_text(encoding="utf-8"))
+    kept.write_text(json.dumps({"a": [before, "another page's"]}), encoding="utf-8")
+    blocks.write_block(page, "a", ["2"], "Commit abc.", kept)
+    ((_, after),) = blocks.digests_of(page.read_text(encoding="utf-8"))
+    assert json.loads(kept.read_text(encoding="utf-8")) == {"a": sorted([after, "another page's"])}
+    assert after != before
+
+
 def test_only_the_named_block_of_a_page_is_written() -> None:
     page = "a\n<!-- evidence: x -->\nold\n<!-- end -->\n<!-- evidence: y -->\nkept\n<!-- end -->\n"
     text = blocks.filled(page, "x", ["new"], "Commit 1.")
