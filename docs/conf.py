@@ -24,7 +24,7 @@ DOCS = Path(__file__).parent
 MENU = tomllib.loads((DOCS / "menu.toml").read_text(encoding="utf-8"))
 PROJECT = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
-sys.path.insert(0, str(DOCS))  # field_comments, glossary_links
+sys.path.insert(0, str(DOCS))  # field_comments, glossary_links, notebook_pages
 
 project = "giveway"
 author = "the giveway engineers"
@@ -37,6 +37,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "field_comments",
     "glossary_links",
+    "notebook_pages",
 ]
 root_doc = "docs/index"
 include_patterns = [
@@ -45,6 +46,7 @@ include_patterns = [
     "CONTRIBUTING.md",
     "docs/*.md",
     "docs/**/*.md",
+    "docs/notebooks/*.ipynb",
     "fmus/README.md",
     "sumo_scenarios/README.md",
 ]

@@ -272,6 +272,12 @@ PAGES: dict[str, Page] = {
             ("pyproject.toml", "benchmarks/speed/install_cost.py"),
         ),
         Page(
+            "notebooks",
+            "docs/notebooks.md",
+            (_told("notebooks", "../docs/notebooks/execute.py", "seed 4; junction: seed 1"),),
+            (*DRIVING, "giveway/cli", "docs/notebooks"),
+        ),
+        Page(
             "benchmark",
             "docs/benchmark.md",
             (
