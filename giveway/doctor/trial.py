@@ -75,7 +75,7 @@ def judged(
         text = f"SUMO refuses the scenario: {_reasons(result.stderr, seen['refused'])}"
         return [error("SUMO", text, f"correct it; sumo -c {config_file} says the same")]
     findings = [*_loaded(seen), *_warnings(result.stderr, seen["copies"]), *_outputs(seen)]
-    findings += [*_remarks(seen), *_egos(seen)]
+    findings += [*_remarks(seen), *_egos(config_file, seen)]
     if people:
         return findings + meetings(config_file, seen)
     return findings + _people_of_your_own(config_file, seen, net_file)
@@ -129,18 +129,27 @@ def _remarks(seen: dict[str, Any]) -> list[Finding]:
     return [note(option, text) for option, _, text in parted if option not in said]
 
 
-def _egos(seen: dict[str, Any]) -> list[Finding]:
+def _egos(config_file: Path, seen: dict[str, Any]) -> list[Finding]:
     """Return the vehicles that can be taken over, and a route for an inserted ego."""
     vehicles: dict[str, list[str]] = seen["vehicles"]
     if not vehicles:
         text = f"no road vehicle departs before {seen['time']:g} s"
-        return [warning("ego", text, "insert one with --ego-route EDGE,EDGE")]
+        return [warning("ego", text, _run(config_file, seen) or "no edges for cars are connected")]
     named = ", ".join(f"{name} ({facts[0]})" for name, facts in vehicles.items())
     first, (_, *edges) = next(iter(vehicles.items()))
     route = ",".join(edges[:_SHOWN])
     return [
         note("ego", f"first to depart: {named}", f"--ego={first}, or --ego-route={route}"),
     ]
+
+
+def _run(config_file: Path, seen: dict[str, Any]) -> str:
+    """Return the command that drives the first vehicle, or along the proposed edges."""
+    run = f"giveway run {shlex.quote(str(config_file))}"
+    if seen["vehicles"]:
+        return f"{run} --ego={shlex.quote(next(iter(seen['vehicles'])))}"
+    route = ",".join(seen["route"])
+    return f"{run} --ego-route={shlex.quote(route)}" if route else ""
 
 
 def _people_of_your_own(
@@ -153,7 +162,6 @@ def _people_of_your_own(
         place = beside(np.array(seen["way"]), WalkNetwork.read(net_file))
     except GivewayError:
         return []  # the finding on the network reports the fault
-    first = next(iter(seen["vehicles"]))
-    text = f"added pedestrians can cross the way of {first}"
-    remedy = f"giveway run {shlex.quote(str(config_file))} --ego={shlex.quote(first)}"
-    return [note("spawn area", text, f"{remedy} --pedestrians 20 {place.flags}")]
+    text = f"added pedestrians can cross the way of {next(iter(seen['vehicles']), 'this route')}"
+    remedy = f"{_run(config_file, seen)} --pedestrians 20 {place.flags}"
+    return [note("spawn area", text, remedy)]

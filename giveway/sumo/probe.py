@@ -3,8 +3,10 @@
 It runs in a process of its own, because SUMO may crash or hang, and a process holds one simulation.
 """
 
+import itertools
 import json
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -16,12 +18,16 @@ from giveway.sumo.encounters import Encounters
 from giveway.sumo.library import import_libsumo
 from giveway.sumo.network.lanes import Lanes
 from giveway.sumo.scratch import PREFIX
+from giveway.sumo.stderr import NativeStderr
 from giveway.sumo.types import ROAD_CLASSES
 
 _LOOK = 3.0  # Wall-clock time [s] of the trial: vehicles have departed by then in most scenarios
 _ENOUGH = 3  # Number of vehicles after which the trial ends
 _WATCH = 10.0  # Wall-clock time [s] in which encounters with people are counted
 _LONGEST_WATCH = 600.0  # Longest time [s] in the scenario
+_CAR = "passenger"
+_TRIED = 30  # Number of edges between which a drive is searched
+_LONGEST_DRIVE = 1000.0  # Longest drive [m] that is proposed
 
 
 def look(config_file: Path, people: bool = False) -> dict[str, Any]:
@@ -59,10 +65,12 @@ def look(config_file: Path, people: bool = False) -> dict[str, Any]:
             enough = len(vehicles) >= _ENOUGH
             if people:
                 encounters.look()
+        route = [] if vehicles else _route(sumo)
         answer = {
             "loaded_in": loaded,
             "meetings": {"from": begins, **encounters.ranking},
-            "way": _way(Lanes(sumo, config_file), vehicles),
+            "way": _way(Lanes(sumo, config_file), [*vehicles.values()] or [[_CAR, *route]]),
+            "route": route,
             "time": sumo.simulation.getTime(),
             "vehicles": vehicles,
             "persons": persons,
@@ -75,9 +83,34 @@ def look(config_file: Path, people: bool = False) -> dict[str, Any]:
     return answer
 
 
-def _way(lanes: Lanes, vehicles: dict[str, list[str]]) -> list[list[float]]:
-    """Return the path x, y [m] of the first vehicle that departed; empty without a vehicle."""
-    for kind, *route in vehicles.values():
+def _route(sumo: Any) -> list[str]:
+    """Return the edges of the longest drive of at most 1 km between some of the network's edges."""
+    edges = [
+        edge
+        for edge in sumo.edge.getIDList()
+        if not edge.startswith(":") and _takes_cars(sumo, edge)
+    ]
+    tried = edges[:: max(1, len(edges) // _TRIED)]
+    longest: tuple[float, list[str]] = (0.0, [])
+    unheard = NativeStderr()  # a warning for each pair that is not connected
+    with unheard:
+        for start, goal in itertools.permutations(tried, 2):
+            found = sumo.simulation.findRoute(start, goal)
+            if found.edges and found.length <= _LONGEST_DRIVE:
+                longest = max(longest, (found.length, list(found.edges)))
+    unheard.close()
+    return longest[1]
+
+
+def _takes_cars(sumo: Any, edge: str) -> bool:
+    lanes = [f"{edge}_{index}" for index in range(sumo.edge.getLaneNumber(edge))]
+    allowed = [sumo.lane.getAllowed(lane) for lane in lanes]  # nothing stands for everything
+    return any(not classes or _CAR in classes for classes in allowed)
+
+
+def _way(lanes: Lanes, drives: Iterable[list[str]]) -> list[list[float]]:
+    """Return the path x, y [m] of the first drive (kind of vehicle, edges) that has one."""
+    for kind, *route in drives:
         try:
             points: list[list[float]] = lanes.along(route, None, kind=kind).points.tolist()
         except GivewayError:

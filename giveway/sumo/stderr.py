@@ -44,9 +44,9 @@ class NativeStderr:
 
     The object itself is the context manager, for one call at a time. Call ``close`` at the end.
 
-    path: Path of the file, which can be read after this process has died, or None for a temporary
-    file without a name.
-            without a name.
+    Args:
+        path: Path of the file, which can be read after this process has died, or None for a
+            temporary file without a name.
     """
 
     def __init__(self, path: Path | None = None) -> None:

@@ -37,6 +37,7 @@ def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
             of_scenario = examine_scenario(scenario)
         console.print(_table("Scenario", of_scenario))
         findings += of_scenario
+    _print_commands(console, findings)
     errors = sum(finding.level == "error" for finding in findings)
     warnings = sum(finding.level == "warning" for finding in findings)
     console.print(_verdict(errors, warnings), highlight=False)
@@ -52,8 +53,24 @@ def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
 
 
 def _table(title: str, findings: Sequence[Finding]) -> Table:
-    rows = ((found.level, found.subject, found.text, found.remedy) for found in findings)
+    rows = (
+        (found.level, found.subject, found.text, found.remedy)
+        for found in findings
+        if not _is_command(found)
+    )
     return findings_table(title, STYLES, rows)
+
+
+def _is_command(finding: Finding) -> bool:
+    return finding.remedy.startswith("giveway ")
+
+
+def _print_commands(console: Console, findings: Sequence[Finding]) -> None:
+    """Print the commands among the remedies whole, each on a line, so that they can be copied."""
+    for finding in filter(_is_command, findings):
+        style = STYLES[finding.level] if finding.level == "warning" else "dim"
+        console.print(f"{finding.subject}: {finding.text}", style=style, markup=False)
+        console.print(f"  {finding.remedy}", highlight=False, markup=False, soft_wrap=True)
 
 
 def _verdict(errors: int, warnings: int) -> str:

@@ -30,6 +30,7 @@ _SPEAKING: Final = frozenset(
 )
 _OF_FILES: Final = frozenset({"record", "metrics"})  # They change no drive
 _MOST: Final = 3  # Number of differences that a name tells
+_LONGEST_VALUE: Final = 24  # Number of letters of a value
 _LONGEST: Final = 60  # Number of letters of each part of a folder's name
 
 
@@ -65,7 +66,8 @@ def default_folder(config: RunConfig, scenario: str) -> Path:
     added = f"_{config.crowd.pedestrians}ped" if config.crowd.pedestrians else ""
     name = f"{scenario}_{controllers}{_safe(taken)[:_LONGEST]}{words[:_LONGEST]}{added}"
     name += f"_seed{config.seed}"
-    if len(differing) > _MOST or len(words) > _LONGEST or not _are_all(differing, config):
+    whole = len(differing) <= _MOST and not any(map(_is_long, differing.values()))
+    if not (whole and len(words) <= _LONGEST and _are_all(differing, config)):
         name += f"_{sha256(dump_toml(config).encode()).hexdigest()[:6]}"
     return Path("results") / name
 
@@ -131,9 +133,16 @@ def _word(location: Location, value: Any) -> str:
         return name if value else f"no {name}"
     if location in _SPEAKING and isinstance(value, str):
         return Path(value).name if value.endswith(".fmu") else value
+    if _is_long(value):
+        return f"own {name}"
     if isinstance(value, list | tuple):
         value = ",".join(f"{one:g}" if isinstance(one, float) else str(one) for one in value)
     return f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
+
+
+def _is_long(value: Any) -> bool:
+    """Return whether a value has no room in a name, as a route of many edges."""
+    return len(str(value)) > _LONGEST_VALUE
 
 
 def _are_all(differing: dict[Location, Any], config: RunConfig) -> bool:

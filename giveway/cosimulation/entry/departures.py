@@ -293,7 +293,7 @@ class Departures:
             raise ConfigError(
                 f"{self._config_file}: no ego; take a vehicle of the scenario with --ego ID, "
                 f"insert one with --ego-route EDGE,EDGE or in {name}.giveway.toml, [ego] route, "
-                "or drive none with --no-ego"
+                f"or drive none with --no-ego; giveway doctor {self._config_file} proposes some"
             )
         lane_path = self._session.lanes.along(
             settings.route, settings.lane, start=settings.depart_position

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import giveway
 from giveway.doctor import Finding, examine_scenario
 
 if TYPE_CHECKING:
@@ -32,6 +33,24 @@ def test_a_scenario_without_people_gets_a_place_for_some(
     words = shlex.split(finding.remedy)
     assert words[3:6] == ["--ego=car", "--pedestrians", "20"]
     assert [word.partition("=")[0] for word in words[6:]] == ["--spawn-area", "--walk"]
+
+
+def test_a_scenario_without_vehicles_gets_a_route_that_can_be_driven(
+    small_scenario: Callable[..., Path],
+) -> None:
+    config = small_scenario()
+    (config.parent / "car.rou.xml").write_text("<routes/>")
+    findings = examine_scenario(config)
+    finding = about(findings, "ego")
+    assert finding.level == "warning"
+    *run, flag = shlex.split(finding.remedy)
+    assert run == ["giveway", "run", str(config)]
+    route = flag.removeprefix("--ego-route=")
+    place = about(findings, "spawn area")
+    assert "the way of this route" in place.text
+    assert flag in place.remedy
+    settings = {"scenario": str(config), "time_limit": 0.2, "ego.route": route.split(",")}
+    assert len(giveway.run(settings, pictures=False).time) == 5
 
 
 @pytest.mark.parametrize(("step", "level"), [("1", "note"), ("0.5", "ok"), ("0.1", "ok")])

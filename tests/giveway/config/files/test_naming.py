@@ -57,6 +57,14 @@ def test_more_than_three_differences_are_counted_and_hashed():
     assert folder != named(**many | {"ego": {"initial_speed": 2.1}})[1]
 
 
+def test_a_long_value_is_called_own_and_hashed():
+    told, folder = named(crowd={"zone": "0,0 100,0 100,100 0,100 0,50"}, twin=True)
+    assert told == "shared_space: MPC, twin, own zone, 10 pedestrians, seed 1"
+    start, _, digits = folder.rpartition("_")
+    assert start == "shared_space_mpc_twin_own-zone_10ped_seed1"
+    assert len(digits) == 6
+
+
 def test_what_is_recorded_is_no_part_of_the_title_but_tells_folders_apart():
     told, folder = named(record={"near": 20.0})
     assert told == named()[0]
