@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import shutil
 import tomllib
@@ -27,6 +28,15 @@ SHORT = {"time_limit": 2.0, "crowd": {"pedestrians": 3}}
 
 def test_the_package_is_short():
     assert len(printed("file: careful_driver.py").splitlines()) <= 60
+
+
+def test_the_guides_shortest_controller_is_sound_and_drives(installed, require_sound_controller):
+    points = tomllib.loads(printed("file: gentle pyproject.toml"))["project"]["entry-points"]
+    ((name, value),) = points["giveway.controllers"].items()
+    installed("gentle", printed("file: gentle.py"), declares=f"{name} = {value}")
+    result = giveway.run({"scenario": "encounter", "controller": name, "time_limit": 4.0})
+    assert 0.0 < result.egos[0].track.speed[-1] < 2.1
+    require_sound_controller(importlib.import_module("gentle").Gentle)
 
 
 def test_the_guides_controller_drives_as_its_settings_say(careful, tmp_path):
