@@ -85,6 +85,7 @@ def study_of(
     runs: list[Planned],
     car: Mapping[str, Any],
     courses: Mapping[str, Path],
+    out: Path,
     seed: int,
 ) -> StudyDefinition:
     """Return the study whose cells are the runs of a table.
@@ -94,7 +95,8 @@ def study_of(
         protocol: Protocol.
         runs: Runs.
         car: Settings of the car, as in a run's TOML file.
-        courses: Scenario of each road, by its name.
+        courses: Scenario of each road, by its name, relative to the study's folder.
+        out: Folder of the study.
         seed: Seed of the runs.
     """
     width = width_of(car)
@@ -113,6 +115,7 @@ def study_of(
     values = {
         "name": name,
         "description": f"{protocol.title}: pedestrians by day",
+        "folder": str(out.absolute()),
         "replications": 1,
         "first_seed": seed,
         "run": merge([common, Layer("car", shared)]),

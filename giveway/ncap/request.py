@@ -106,9 +106,8 @@ def requested_ncap(request: NcapRequest) -> NcapPlan:
     width = width_of(car)
     slug = re.sub(r"[^\w.-]+", "-", f"ncap_{Path(request.car).stem}_{_protocol_name(request)}")
     out = request.out or Path("results") / slug[:_LONGEST]
-    definition = study_of(
-        slug[:_LONGEST], protocol, runs, car, courses_of(out, protocol, width), request.seed
-    )
+    courses = courses_of(out, protocol, width)
+    definition = study_of(slug[:_LONGEST], protocol, runs, car, courses, out, request.seed)
     return NcapPlan(protocol, runs, definition, width, out, measured)
 
 
@@ -170,14 +169,17 @@ def _placed(car: str) -> str:
 
 
 def courses_of(out: Path, protocol: Protocol, width: float) -> dict[str, Path]:
-    """Write the roads of a protocol's tests beside a study, and return their scenarios.
+    """Write the roads of a protocol's tests into a study's folder.
+
+    Returns:
+        The scenario of each road, relative to the folder.
 
     Args:
         out: Folder of the study.
         protocol: Protocol.
         width: Width [m] of the car.
     """
-    folder = (out / COURSE).absolute()
+    folder = out / COURSE
     found = {OPEN: write_course(folder / "open", "open", width)}
     hidden = [test for test in protocol.tests if test.parked]
     if hidden:
@@ -189,7 +191,7 @@ def courses_of(out: Path, protocol: Protocol, width: float) -> dict[str, Path]:
         if turn is not None and course not in found:
             path, name = path_of(turn, cell.speed), course.replace(" ", "-")
             found[course] = write_course(folder / name, name, width, path=path)
-    return found
+    return {road: scenario.relative_to(out) for road, scenario in found.items()}
 
 
 def forget_course(request: NcapRequest, out: Path) -> None:

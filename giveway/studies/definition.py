@@ -203,13 +203,16 @@ def _holds_file_of(folder: Path, values: Any) -> bool:
         return False
 
 
-def dump_definition(definition: StudyDefinition) -> str:
+def dump_definition(definition: StudyDefinition, out: Path | None = None) -> str:
     """Return the study as TOML, from which :func:`parse_definition` makes the same cells.
 
-    Factors keep their order, on which the numbers of the cells depend. TOML demands tables after
-    plain lists, which would change that order; therefore each level is an inline table.
+    Files in the study's own folder ``out`` move with it. Factors keep their order, on which the
+    numbers of the cells depend. TOML demands tables after plain lists, which would change that
+    order; therefore each level is an inline table.
     """
     values = definition.model_dump(mode="json", exclude_none=True)
+    if out is not None and Path(definition.folder) == out.absolute():
+        values["folder"] = "."
     document = tomlkit.document()
     for key, value in values.items():
         if not isinstance(value, dict):

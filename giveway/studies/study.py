@@ -110,7 +110,7 @@ class _Session:
         self._out = out
         self._options = options
         self._watcher = watcher
-        self._keeper = Keeper(out, DEFINITION, dump_definition(planned.definition), tell)
+        self._keeper = Keeper(out, DEFINITION, dump_definition(planned.definition, out), tell)
         self._records: dict[str, RunRecord] = {}
         self._kept = self._made = self._failed = 0
         self._seeds = planned.seeds

@@ -21,8 +21,8 @@ def outcome(folder, key, car, nobody=False):
     width = car.get("vehicle", {}).get("width", 2.0)
     run = Planned(cell.label, HOLDER, road_of(cell), cell.speed, None if nobody else cell)
     courses = courses_of(folder, protocol, width)
-    study = study_of("x", protocol, [run], car, courses, 1)
-    layers = [Layer("", study.run), Layer("", study.factors["test"][cell.label])]
+    study = study_of("x", protocol, [run], car, courses, folder, 1)
+    layers = [Layer("", study.run), Layer("", study.placed(study.factors["test"][cell.label]))]
     result = giveway.run(merge(layers))
     record = RunRecord("c1-s1", "", str(result.ending), tuple(result.summary_rows))
     return outcome_of(protocol, run, "c1-s1", record, width)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import cos, inf, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -105,10 +106,10 @@ def test_a_turn_has_another_course_at_each_speed():
 def test_the_layer_of_the_tests_knows_nobody_in_hiding_unless_the_user_says_so(tmp_path):
     protocol = read_protocol("r152")
     runs = runs_of(protocol.cells[:1], (HOLDER, "mpc"))
-    courses = {"open road": tmp_path / "open.sumocfg"}
+    courses = {"open road": Path("open.sumocfg")}
 
     def speeds(car):
-        levels = study_of("x", protocol, runs, car, courses, 1).factors["test"].values()
+        levels = study_of("x", protocol, runs, car, courses, tmp_path, 1).factors["test"].values()
         return [level.get("safety", {}).get("hidden_speed") for level in levels]
 
     assert speeds({}) == [0.0, 0.0, None, None]
