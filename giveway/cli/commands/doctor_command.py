@@ -27,17 +27,16 @@ def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
     console = Console(quiet=as_json)
     with console.status("Examining the environment ..."):
         findings = examine_environment()
-    console.print(_table("Environment", findings))
+    print_findings(console, "Environment", findings)
     if scenario is not None and is_results(Path(scenario)):
         of_results = examine_results(Path(scenario))
-        console.print(_table("Results", of_results))
+        print_findings(console, "Results", of_results)
         findings += of_results
     elif scenario is not None:
         with console.status("SUMO tries the scenario ..."):
             of_scenario = examine_scenario(scenario)
-        console.print(_table("Scenario", of_scenario))
+        print_findings(console, "Scenario", of_scenario)
         findings += of_scenario
-    _print_commands(console, findings)
     errors = sum(finding.level == "error" for finding in findings)
     warnings = sum(finding.level == "warning" for finding in findings)
     console.print(_verdict(errors, warnings), highlight=False)
@@ -52,25 +51,19 @@ def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
     return 1 if errors else 0
 
 
-def _table(title: str, findings: Sequence[Finding]) -> Table:
+def print_findings(console: Console, title: str, findings: Sequence[Finding]) -> None:
+    """Print findings as a table, and commands among their remedies whole, so as to be copied."""
+    commands = [found for found in findings if found.remedy.startswith("giveway ")]
     rows = (
         (found.level, found.subject, found.text, found.remedy)
         for found in findings
-        if not _is_command(found)
+        if found not in commands
     )
-    return findings_table(title, STYLES, rows)
-
-
-def _is_command(finding: Finding) -> bool:
-    return finding.remedy.startswith("giveway ")
-
-
-def _print_commands(console: Console, findings: Sequence[Finding]) -> None:
-    """Print the commands among the remedies whole, each on a line, so that they can be copied."""
-    for finding in filter(_is_command, findings):
-        style = STYLES[finding.level] if finding.level == "warning" else "dim"
-        console.print(f"{finding.subject}: {finding.text}", style=style, markup=False)
-        console.print(f"  {finding.remedy}", highlight=False, markup=False, soft_wrap=True)
+    console.print(findings_table(title, STYLES, rows))
+    for found in commands:
+        style = STYLES[found.level] if found.level == "warning" else "dim"
+        console.print(f"{found.subject}: {found.text}", style=style, markup=False)
+        console.print(f"  {found.remedy}", highlight=False, markup=False, soft_wrap=True)
 
 
 def _verdict(errors: int, warnings: int) -> str:

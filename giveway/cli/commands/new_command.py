@@ -5,8 +5,8 @@ from typing import Final
 
 from rich.console import Console
 
-from giveway.cli.commands.doctor_command import STYLES
-from giveway.cli.screen.printing import escape, findings_table, print_place, writing
+from giveway.cli.commands.doctor_command import print_findings
+from giveway.cli.screen.printing import escape, print_place, writing
 from giveway.doctor import examine_scenario
 from giveway.errors import ResultsError
 from giveway.scenario_builder import EXAMPLE, Demand, write_scenario
@@ -58,5 +58,5 @@ def _examine(console: Console, folder: Path) -> None:
     """Print the remarks of the doctor; findings without a remark are left out."""
     with console.status("SUMO tries the scenario ..."):
         findings = examine_scenario(folder)
-    rows = [(f.level, f.subject, f.text, f.remedy) for f in findings if f.level != "ok"]
-    console.print(findings_table("Remarks of the doctor", STYLES, rows))
+    remarks = [finding for finding in findings if finding.level != "ok"]
+    print_findings(console, "Remarks of the doctor", remarks)
