@@ -5,7 +5,6 @@ from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
-from rich.table import Table
 
 from giveway.cli.screen.printing import findings_table, print_json
 from giveway.doctor import Finding, examine_environment, examine_scenario
