@@ -13,6 +13,7 @@ from giveway.ego.perception.protocol import Ids, OwnState, Percept, Refinement, 
 from giveway.ego.perception.refinements import DesiredSpeeds, HeadingGoals, PositionNoise
 from giveway.ego.perception.tracking import Tracker
 from giveway.ego.perception.truth import Truth
+from giveway.ego.perception.walked_away import WalkedAway
 
 _STREAM = 0x5EE  # key of the random stream of position noise, which differs from all others
 
@@ -61,6 +62,8 @@ class Perception:
         self.exact = own is None and not self._chain
         self._made_up = getattr(own, "false_detections", False)
         self.tells_unseen = telling(own)
+        sensor = self.tells_unseen if config.safety.hidden_speed else None
+        self._walked_away = None if sensor is None else WalkedAway(sensor)
 
     def observe(self, truth: Truth, person_ids: Ids, ego: OwnState) -> Percept:
         """Return what the ego perceives; the next call overwrites it.
@@ -71,6 +74,8 @@ class Perception:
             ego: State of the ego.
         """
         percept = self._sensor.observe(truth, person_ids, ego)
+        if self._walked_away is not None:
+            percept = self._walked_away.left_out(percept, ego)
         if self._made_up:
             percept = percept._replace(person_ids=tracks_of(percept.person_ids))
         for member in self._chain:
