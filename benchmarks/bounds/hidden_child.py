@@ -74,18 +74,7 @@ def drive(driver: str, changes: dict[str, object], begin: float, offset: float) 
     """One drive with the child, and what came of it."""
     result = run(changes, begin)
     ego, rows = result.ego, result.trajectories
-    child = rows[rows["id"].str.startswith("child")]
-    both = child.merge(ego, on="time", suffixes=("", "_ego"))
-    shape = result.shape
-    along, across = both["x"] - both["x_ego"], (both["y"] - both["y_ego"]).abs() - shape.width / 2
-    near_x = np.maximum(np.maximum(along, -shape.length - along), 0.0)
-    touched = np.hypot(near_x, np.maximum(across, 0.0)) < RADIUS
-    contact, impact = "", np.nan
-    if touched.any():
-        first = touched.idxmax()
-        moves = both["speed_ego"][first] > MOVES
-        contact = "side" if along[first] <= -0.05 else "front" if moves else "stands"
-        impact = both["speed_ego"][first] if contact == "front" else np.nan
+    contact, impact = contact_of(rows[rows["id"].str.startswith("child")], result)
     seen = result.sights
     if not len(seen):
         return Drive(driver, offset, np.nan, np.nan, contact, impact, np.nan)
@@ -94,6 +83,26 @@ def drive(driver: str, changes: dict[str, object], begin: float, offset: float) 
     left = max(distance - speed * (ego["time"].iloc[1] - ego["time"].iloc[0]), 0.0)
     allowed = float(np.sqrt(max(speed * speed - 2.0 * HARDEST * left, 0.0)))
     return Drive(driver, offset, float(distance), speed, contact, float(impact), allowed)
+
+
+def contact_of(child: pd.DataFrame, result: giveway.RunResult) -> tuple[str, float]:
+    """Return what a child touched first, and the speed [m/s] of a front that moved into it.
+
+    Args:
+        child: Rows of the child in ``trajectories.csv``.
+        result: Drive along the x axis.
+    """
+    both, shape = child.merge(result.ego, on="time", suffixes=("", "_ego")), result.shape
+    along, across = both["x"] - both["x_ego"], (both["y"] - both["y_ego"]).abs() - shape.width / 2
+    near_x = np.maximum(np.maximum(along, -shape.length - along), 0.0)
+    touched = np.hypot(near_x, np.maximum(across, 0.0)) < RADIUS
+    if not touched.any():
+        return "", np.nan
+    first = touched.idxmax()
+    speed = float(both["speed_ego"][first])
+    if along[first] <= -0.05:
+        return "side", np.nan
+    return ("front", speed) if speed > MOVES else ("stands", np.nan)
 
 
 def main() -> None:

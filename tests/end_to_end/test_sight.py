@@ -1,8 +1,12 @@
 """Drives with cameras, past parked cars from behind which a child runs out."""
 
+import tomllib
+
+import numpy as np
 import pytest
 
 from giveway.results.pictures import top_view_picture
+from sumo_scenarios import find
 
 
 def frontal(result) -> int:
@@ -46,6 +50,45 @@ def test_trajectories_of_cameras_that_have_met_nobody_yet_tell_of_nobody(run_onc
     result = run_once(scenario="parked_cars", time_limit=0.5)
     assert result.trajectories["seen"].isna().all()
     assert top_view_picture(result, result.egos[0]).axes
+
+
+def school_run(run_once, file: str):
+    """A drive past the school, with the children of one of the scenario's files."""
+    text = (find("school_run").folder / file).read_text(encoding="utf-8")
+    children = tomllib.loads(text)["crowd"]["scripted"]
+    return children, run_once(**{"scenario": "school_run", "crowd.scripted": children})
+
+
+@pytest.mark.parametrize(
+    ("file", "slowest", "fastest"),
+    [("school_run.giveway.toml", 0.0, 0.3), ("running.toml", 1.38, 1.39)],
+)
+def test_children_before_a_school_come_in_sight_within_the_assumption_or_beyond_it(
+    run_once, file: str, slowest: float, fastest: float
+) -> None:
+    children, result = school_run(run_once, file)
+    speeds = result.trajectories.set_index(["id", "time"]).speed
+    first = result.sights.drop_duplicates("id").set_index("id").time
+    for child in children:
+        if child["y"] < 0.0:  # 0.3 s is the latency
+            now = speeds[child["name"], round(first[child["name"]] - 0.3, 2)]
+            assert slowest <= now <= fastest, child["name"]
+
+
+@pytest.mark.parametrize(
+    ("file", "hardest"), [("school_run.giveway.toml", 3.5), ("running.toml", 9.0)]
+)
+def test_children_who_cross_in_groups_before_a_school_are_spared(
+    run_once, file: str, hardest: float
+) -> None:
+    """All ten cross; those who have walked away behind the parked cars stop nobody any more."""
+    _, result = school_run(run_once, file)
+    assert result.summary["completed"]
+    assert result.summary["overlaps"] == 0
+    assert result.summary["peak_deceleration"] < hardest
+    crossed = result.trajectories.query("type == 'pedestrian'").groupby("id").y.agg(np.ptp)
+    assert len(crossed) == 10
+    assert (crossed > 10.5).all()
 
 
 GHOSTS = {"sensor_options.false_rate": 10.0, "sensor_options.false_speed": 1.4}

@@ -24,13 +24,14 @@ def message(name_or_path: str | Path) -> str:
     return str(caught.value)
 
 
-def test_seven_scenarios_are_bundled() -> None:
+def test_eight_scenarios_are_bundled() -> None:
     known = (
         "crossings",
         "encounter",
         "junction",
         "parked_cars",
         "recorded",
+        "school_run",
         "shared_space",
         "street",
     )
@@ -106,15 +107,15 @@ def test_a_linked_config_is_taken_where_the_link_is(my_folder: Path, tmp_path: P
 def test_a_mistyped_name_is_answered_with_the_right_one(typo: str) -> None:
     assert message(typo) == (
         f"unknown scenario {typo!r}; did you mean 'shared_space'? "
-        "(bundled: crossings, encounter, junction, parked_cars, recorded, shared_space, street; "
-        "or a folder, or a .sumocfg file)"
+        "(bundled: crossings, encounter, junction, parked_cars, recorded, school_run, "
+        "shared_space, street; or a folder, or a .sumocfg file)"
     )
 
 
 @pytest.mark.parametrize("nonsense", ["", "   ", "xyzzy", "a\0b"])
 def test_nonsense_is_answered_with_what_there_is(nonsense: str) -> None:
     answer = message(nonsense)
-    assert "crossings, encounter, junction, parked_cars, recorded, shared_space, street" in answer
+    assert ", ".join(available()) in answer
     assert "did you mean" not in answer
     assert "\n" not in answer
 
