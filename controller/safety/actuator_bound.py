@@ -2,7 +2,19 @@
 
 A description has a dead time, a lag and a rate. An actuator is as good if its dead time and lag
 are no longer and its rate is no lower, all of which may vary. Whether driving and braking are two
-actuators or one does not matter. docs/safety.md has the proof.
+actuators or one does not matter.
+
+*Theorem.* The force that acts is at most G - H: X bounds the force behind the rate limit, G bounds
+the driving force from above, and H bounds the braking force from below.
+
+*Proof.* Let f be the force of one actuator for both signs, f' = (c(t) - f)/tau', with tau' no
+longer than the lag that applies and c(t) <= X. Where f = G - H, G has reached its target or falls
+with (max(X, 0) - G)/tau, and H likewise, so that f' <= G' - H'. The deviations have the sign that
+makes a longer lag the larger bound: f cannot pass G - H. With two actuators, f_d <= G and f_b >= H
+in the same way. A rate limit before or behind the lag lets the force fall no slower than X and then
+the lag. In a step the bounds are integrated exactly. As the force falls within it, the speed is
+above the straight line between its ends by no more than the fall times dt/(8 M), and this is added
+to the distance.
 """
 
 from typing import NamedTuple

@@ -1,8 +1,14 @@
 """The speed of a vehicle whose speed output lags behind its motion.
 
 The output follows the speed with a first-order lag that is no longer than a known one. What the
-last two outputs and the forces that may have acted allow is an interval of speeds. docs/safety.md
-has the proof.
+last two outputs and the forces that may have acted allow is an interval of speeds
+(docs/safety.md has its ends).
+
+*Proof.* Let the output change from y to y' in a step. If its lag is the known one, the speed had
+the mean w in this step, with weights that favour its end. If the lag is shorter, the mean lies
+between y' and w. This bounds the speed at the end for every output that is as late, or less. The
+interval of the step before, moved on by the largest force and by full braking, is the motion that
+was tested then, so that the state at k + 1 is never worse than the one tested at k.
 """
 
 from math import expm1
