@@ -1,9 +1,8 @@
 """Counts the prose of README and docs, and the minutes to a stranger's first result.
 
-Code, tables, headings and comments do not count; a table's cell of more than 25 words does. A way
-leads through README to one of its doors, and through the linked page to its first result: the
-comment ``<!-- first result -->``, or the first section. 200 words, or 200 characters typed, take
-a minute.
+Code, tables, headings, comments and what the evidence command writes do not count; a table's cell
+of more than 25 words does. A way leads through README to one of its doors, and through the linked
+page to ``<!-- first result -->``, or its first section, at 200 words or typed characters a minute.
 
     python .ci/prose.py --pages      # of each page: words, words per sentence, sentences over 40
     python .ci/prose.py --words 30000 --mean 17 --long 1 --minutes 5    # fails above a limit
@@ -23,13 +22,14 @@ _WAYS = {
     "I have a question for a paper": "docs/studies.md",
 }
 _CODE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+_COMMENT = re.compile(r"<!-- evidence.*?<!-- end -->|<!--.*?-->", re.DOTALL)
 _RESULTS = ("<!-- first result -->", "\n## ")
 _TYPED = ("sh", "python", "toml", "xml")
 
 
 def sentences(text: str) -> list[int]:
     """Return the number of words of each sentence; inline code counts as one word."""
-    text = re.sub(r"<!--.*?-->", "", _CODE.sub("", text), flags=re.DOTALL)
+    text = _COMMENT.sub("", _CODE.sub("", text))
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"`[^`]*`", "X", text))
     lines = [line.strip() for line in text.splitlines() if not line.startswith("#")]
     cells = [cell for line in lines if line.startswith("|") for cell in line.split("|")]

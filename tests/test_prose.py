@@ -43,6 +43,7 @@ _LONG = " ".join(["word"] * 26)
         ("Two words. Then three words.", 5, 2.5),
         ("# A heading\n\nTwo words.\n\n```sh\nsome code\n```\n", 2, 2.0),
         ("<!-- a comment\nof two lines -->\nTwo words.", 2, 2.0),
+        ("<!-- evidence: a -->\n*Commit.*\n\n| a |\n<!-- end -->\nTwo words.", 2, 2.0),
         ("[Two words](page.md) and `some inline code`.", 4, 4.0),
         ("* one\n* two words\n1. three words here", 6, 2.0),
         ("| a short | cell |\n|---|---|\n", 0, 0.0),
