@@ -83,6 +83,22 @@ class ResultsError(GivewayError):
     exit_code = 2
 
 
+@contextmanager
+def as_request() -> Iterator[None]:
+    """Give the errors in this context the exit code of a request that cannot be run.
+
+    Before a run begins, a missing FMU is a user's mistake as a wrong key is. What the installation
+    lacks is not.
+    """
+    try:
+        yield
+    except InstallationError:
+        raise
+    except GivewayError as error:
+        error.exit_code = ConfigError.exit_code
+        raise
+
+
 _REMEDIES: Final = (
     ("free the disk", ("ENOSPC", "EDQUOT", "EFBIG")),
     ("the folder has gone: make it again, or name another one", ("ENOENT", "ENOTDIR", "ESTALE")),

@@ -10,7 +10,7 @@ from giveway.config.files.presets import require_steady_preset
 from giveway.crowd.zone import Zone
 from giveway.ego.vehicle import require_vehicles
 from giveway.ego.vehicle_model import with_coarse_model
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, as_request
 from giveway.measures import require_pedpy
 from giveway.metrics.plugged_in import metric_columns
 from giveway.scenario_files import ScenarioFiles, read_scenario
@@ -40,6 +40,7 @@ class CheckedRun:
     time_step: float
 
 
+@as_request()
 def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     """Check everything that can be known before SUMO or a vehicle FMU is loaded.
 

@@ -9,7 +9,14 @@ import pytest
 from pydantic import BaseModel, Field, ValidationError
 
 import giveway
-from giveway.errors import ResultsError, in_words, remedy
+from giveway.errors import (
+    InstallationError,
+    ResultsError,
+    VehicleError,
+    as_request,
+    in_words,
+    remedy,
+)
 from giveway.results.folder import write_results
 
 
@@ -63,3 +70,13 @@ def test_a_run_whose_folder_is_removed_says_so(tmp_path: Path) -> None:
     folder.rmdir()
     with pytest.raises(ResultsError, match="the folder has gone"):
         write_results(result, folder)
+
+
+@pytest.mark.parametrize(("kind", "code"), [(VehicleError, 2), (InstallationError, 1)])
+def test_before_a_run_an_error_is_one_of_the_request(
+    kind: type[giveway.GivewayError], code: int
+) -> None:
+    with pytest.raises(kind) as refused, as_request():
+        raise kind("no such file")
+    assert refused.value.exit_code == code
+    assert kind("in a step").exit_code == 1

@@ -10,10 +10,11 @@ from typing import Any
 
 from giveway.config.files.layers import Layer, merge, read_toml
 from giveway.config.tables.basics import BUNDLED_VEHICLES
-from giveway.errors import VehicleError, retold
+from giveway.errors import VehicleError, as_request, retold
 from giveway.plug_ins.finding import is_fmu
 
 
+@as_request()
 def require_archives(config: Path | None, settings: Mapping[str, Any]) -> None:
     """Check the archives of the FMUs that a file and the flags name.
 

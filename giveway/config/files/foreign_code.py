@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from giveway.config.files.controller_fmu import fmu_described, fmu_hash, prepared
 from giveway.config.run_config import PAPER_STEP, EgoRunConfig, RunConfig
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, as_request
 from giveway.plug_ins.finding import find, is_fmu, load_class, shown
 from giveway.plug_ins.options import plain
 from giveway.plug_ins.sockets import (
@@ -117,6 +117,7 @@ def named_in(failure: str, config: RunConfig) -> str:
     return failure
 
 
+@as_request()
 def require_code(config: RunConfig, time_step: float = PAPER_STEP) -> None:
     """Make sure, before anything runs, that every plug-in is there and takes its options.
 

@@ -191,7 +191,7 @@ def test_a_profile_that_does_not_fit_is_refused_before_the_run(headway, tmp_path
     out = tmp_path / "out"
     words = ["--controller", headway["controller"], "--controller-profile", profile]
     done = type_here("run", *words, "--out", out, "-q")
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert said in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert not out.exists()
@@ -199,7 +199,7 @@ def test_a_profile_that_does_not_fit_is_refused_before_the_run(headway, tmp_path
 
 def test_without_a_profile_what_is_open_is_asked(headway, type_here):
     done = type_here("run", "--controller", headway["controller"], "-q")
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "needs a controller profile (--controller-profile FILE.toml)" in done.stderr
     assert "'limit'" in done.stderr
 

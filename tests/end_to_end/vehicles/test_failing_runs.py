@@ -215,7 +215,7 @@ def test_a_vehicle_that_cannot_stop_or_is_another_is_refused(zoo, giveway, optio
 
 def test_a_force_limit_that_cannot_stop_the_mass_is_refused(giveway):
     done = giveway("run", "encounter", "--vehicle-mass", 40_000, "--vehicle-force-limit", 2000)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "expected 3 m/s2 or more: write --vehicle-force-limit 320000" in done.stderr
 
 
