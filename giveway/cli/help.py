@@ -10,9 +10,6 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from giveway.plug_ins.finding import declared_names
-from giveway.plug_ins.sockets import SOCKETS
-
 JsonFlag = Annotated[
     bool, typer.Option("--json", help="Print what was found as JSON, for scripts, and no more.")
 ]
@@ -95,6 +92,9 @@ class _Group(TyperGroup):
 
 def _installed(flags: Sequence[str]) -> str:
     """Return the names that installed packages add to those of a flag, as in "|idm"."""
+    from giveway.plug_ins.finding import declared_names  # these take half a second to import
+    from giveway.plug_ins.sockets import SOCKETS
+
     sockets = [socket for socket in SOCKETS if socket.flag in flags]
     return "".join(f"|{name}" for socket in sockets for name in declared_names(socket))
 
