@@ -1,7 +1,7 @@
 """Counts the prose of README and docs, and the minutes to a stranger's first result.
 
-Code, tables, headings, comments and what the evidence command writes do not count; a table's cell
-of more than 25 words does. A way leads through README to one of its doors, and through the linked
+Code, tables, headings, pictures, comments and evidence blocks do not count; a table's cell of more
+than 25 words does. A way leads through README to one of its doors, and through the linked
 page to ``<!-- first result -->``, or its first section, at 200 words or typed characters a minute.
 
     python .ci/prose.py --pages      # of each page: words, words per sentence, sentences over 40
@@ -29,8 +29,8 @@ _TYPED = ("sh", "python", "toml", "xml")
 
 def sentences(text: str) -> list[int]:
     """Return the number of words of each sentence; inline code counts as one word."""
-    text = _COMMENT.sub("", _CODE.sub("", text))
-    text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"`[^`]*`", "X", text))
+    text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", _COMMENT.sub("", _CODE.sub("", text)))
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"`[^`]*`", "X", text))
     lines = [line.strip() for line in text.splitlines() if not line.startswith("#")]
     cells = [cell for line in lines if line.startswith("|") for cell in line.split("|")]
     prose = "\n".join("" if line.startswith("|") else line for line in lines)

@@ -45,6 +45,7 @@ _LONG = " ".join(["word"] * 26)
         ("<!-- a comment\nof two lines -->\nTwo words.", 2, 2.0),
         ("<!-- evidence: a -->\n*Commit.*\n\n| a |\n<!-- end -->\nTwo words.", 2, 2.0),
         ("[Two words](page.md) and `some inline code`.", 4, 4.0),
+        ("![A picture](picture.png)\n\nTwo words.", 2, 2.0),
         ("* one\n* two words\n1. three words here", 6, 2.0),
         ("| a short | cell |\n|---|---|\n", 0, 0.0),
         (f"| {_LONG} | cell |\n|---|---|\n", 26, 26.0),
