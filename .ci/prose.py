@@ -21,7 +21,7 @@ _WAYS = {
     "I have a controller": "docs/plugins.md",
     "I have a question for a paper": "docs/studies.md",
 }
-_CODE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+_CODE = re.compile(r"^ *```(\w*)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 _COMMENT = re.compile(r"<!-- evidence.*?<!-- end -->|<!--.*?-->", re.DOTALL)
 _RESULTS = ("<!-- first result -->", "\n## ")
 _TYPED = ("sh", "python", "toml", "xml")
