@@ -73,11 +73,16 @@ def convert(words: Sequence[str], typemaps: Sequence[str] = ()) -> subprocess.Co
         typemaps: Files of SUMO's folder ``data/typemap``, from which it takes types of edges.
 
     Raises:
-        BuildError: there is no netconvert, or it cannot be run.
+        BuildError: there is no netconvert, it cannot be run, or it lacks its files.
     """
     program, home = netconvert_and_home()
     if typemaps:
         folder = home / "data" / "typemap"
+        if not folder.is_dir():
+            raise BuildError(
+                f"{folder}: no such folder; set SUMO_HOME to that of {program}, or pip install "
+                "'giveway[new]'"
+            )
         words = [*words, "--type-files", ",".join(str(folder / name) for name in typemaps)]
     environment = os.environ | {"SUMO_HOME": str(home)}
     try:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from sumo_scenarios import BuildError, Scenario, available, find
-from sumo_scenarios.build import build, main
+from sumo_scenarios.build import build, convert, main, netconvert_and_home
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,6 +78,24 @@ def test_without_netconvert_the_message_says_what_to_install(
     monkeypatch.setenv("PATH", "")
     with pytest.raises(BuildError, match=r"pip install 'giveway\[new\]'"):
         build("street")
+
+
+def test_a_netconvert_of_the_search_path_serves_but_for_its_tables(
+    own_copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that lies apart from SUMO's data builds drawn networks, but knows no map's tags."""
+    program, home = netconvert_and_home()
+    (tmp_path / "bin").mkdir()
+    link = tmp_path / "bin" / program.name
+    link.write_text(f'#!/bin/sh\nSUMO_HOME={home} exec {program} "$@"\n')
+    link.chmod(0o755)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.delenv("SUMO_HOME", raising=False)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:/usr/bin:/bin")
+    network = build(str(own_copy))
+    assert network.read_bytes() == (find("street").folder / network.name).read_bytes()
+    with pytest.raises(BuildError, match="no such folder; set SUMO_HOME"):
+        convert([], typemaps=["osmNetconvert.typ.xml"])
 
 
 def test_the_command_line_prints_what_it_wrote(
