@@ -15,7 +15,7 @@ GLOSSARY = "docs/glossary"
 ROW = re.compile(r"^\| ([^|`]+?) +\|", re.MULTILINE)
 TEXT = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
 TERMS = sorted({term for term in ROW.findall(TEXT) if term != "term"}, key=len, reverse=True)
-USE = re.compile(rf"\b({'|'.join(map(re.escape, TERMS))})(?:e?s)?\b", re.IGNORECASE)
+USE = re.compile(rf"\b({'|'.join(map(re.escape, TERMS))})(?:e?s)?\b")
 # Parts of a page that keep their words as they are.
 KEPT = (nodes.reference, nodes.literal, nodes.title, nodes.entry, nodes.FixedTextElement)
 
@@ -53,7 +53,7 @@ def link_terms(app: Sphinx, page: nodes.document, name: str) -> None:
     for text in [text for text in page.findall(nodes.Text) if id(text) not in kept]:
         pieces, end = [], 0
         for use in USE.finditer(text):
-            if (term := use[1].lower()) not in linked:
+            if (term := use[1]) not in linked:
                 linked.add(term)
                 link = nodes.reference("", use[0], internal=True, classes=["term"])
                 link["refuri"] = f"{glossary}#{anchor(term)}"

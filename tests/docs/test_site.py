@@ -148,6 +148,8 @@ def test_links_between_pages_lead_somewhere(site: Path) -> None:
 def test_pages_link_the_glossary_at_the_first_use_of_a_term(site: Path) -> None:
     text = (site / "docs" / "plugins.html").read_text(encoding="utf-8")
     assert text.count('href="glossary.html#term-safety-layer"') == 1
+    people = (site / "docs" / "pedestrians.html").read_text(encoding="utf-8")
+    assert "Gates et al." in people  # a name, no gate
 
 
 def test_the_title_has_the_version(site: Path) -> None:
