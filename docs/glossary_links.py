@@ -12,9 +12,8 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
 GLOSSARY = "docs/glossary"
-ROW = re.compile(r"^\| ([^|`]+?) +\|", re.MULTILINE)
 TEXT = (Path(__file__).parent / "glossary.md").read_text(encoding="utf-8")
-TERMS = sorted({term for term in ROW.findall(TEXT) if term != "term"}, key=len, reverse=True)
+TERMS = sorted(set(re.findall(r"^\| (?!term )([^|`]+?) +\|", TEXT, re.M)), key=len, reverse=True)
 USE = re.compile(rf"\b({'|'.join(map(re.escape, TERMS))})(?:e?s)?\b")
 # Parts of a page that keep their words as they are.
 KEPT = (nodes.reference, nodes.literal, nodes.title, nodes.entry, nodes.FixedTextElement)
@@ -34,10 +33,9 @@ def anchor(term: str) -> str:
 
 def name_rows(app: Sphinx, page: nodes.document) -> None:
     """Give each row of the glossary the id of its term."""
-    if app.env.docname == GLOSSARY:
-        for body in page.findall(nodes.tbody):
-            for row in body.children:
-                row["ids"].append(anchor(row.children[0].astext()))
+    bodies = page.findall(nodes.tbody) if app.env.docname == GLOSSARY else []
+    for row in (row for body in bodies for row in body.children):
+        row["ids"].append(anchor(row.children[0].astext()))
 
 
 def link_terms(app: Sphinx, page: nodes.document, name: str) -> None:
@@ -45,11 +43,8 @@ def link_terms(app: Sphinx, page: nodes.document, name: str) -> None:
     if not name.startswith("docs/") or name.startswith("docs/api/") or name == GLOSSARY:
         return
     glossary, linked = app.builder.get_relative_uri(name, GLOSSARY), set()
-    kept = {
-        id(text)
-        for part in page.findall(lambda node: isinstance(node, KEPT))
-        for text in part.findall(nodes.Text)
-    }
+    parts = page.findall(lambda node: isinstance(node, KEPT))
+    kept = {id(text) for part in parts for text in part.findall(nodes.Text)}
     for text in [text for text in page.findall(nodes.Text) if id(text) not in kept]:
         pieces, end = [], 0
         for use in USE.finditer(text):
