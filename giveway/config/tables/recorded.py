@@ -82,6 +82,12 @@ class RecordedConfig(Section):
         None,
         "Kind of its people, as in [crowd.people]. Children are smaller, for sensors",
     )
+    judged: bool = option(
+        False,
+        None,
+        "Contacts with its people count as those with others do, though they walk as recorded: "
+        "they are the dummies of a test",
+    )
     vehicle: str = option(
         "",
         None,

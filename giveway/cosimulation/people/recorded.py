@@ -40,5 +40,9 @@ def recorded_people(
         require_inside(entry, people, network.boundary)
         follow = config.crowd.model == RECORDED
         kind = "" if entry.kind == ADULT else entry.kind
-        sources.append(RecordedPeople(people, roster, time_step, follow=follow, kind=kind))
+        sources.append(
+            RecordedPeople(
+                people, roster, time_step, follow=follow, kind=kind, judged=entry.judged
+            )
+        )
     return sources

@@ -53,6 +53,7 @@ class RecordedPeople:
         time_step: Time step of the co-simulation [s].
         follow: True if they walk as recorded, False if a model moves them at once.
         kind: Kind of these people; empty for adults.
+        judged: True to judge their contacts as those of people who react.
     """
 
     def __init__(
@@ -63,11 +64,12 @@ class RecordedPeople:
         *,
         follow: bool,
         kind: str = "",
+        judged: bool = False,
     ) -> None:
         self._people = tuple(people)
         self._roster = roster
         self._time_step = time_step
-        self._follow, self._kind = follow, kind
+        self._follow, self._kind, self._judged = follow, kind, judged
         self._coming = sorted(self._people, key=lambda person: (float(person.time[0]), person.name))
         self._step = -1
         self._entered: list[str] = []  # ids of people who react from the next call on
@@ -80,7 +82,12 @@ class RecordedPeople:
     def afresh(self, roster: Roster) -> Self:
         """Return the same people from their beginning, for another crowd."""
         return type(self)(
-            self._people, roster, self._time_step, follow=self._follow, kind=self._kind
+            self._people,
+            roster,
+            self._time_step,
+            follow=self._follow,
+            kind=self._kind,
+            judged=self._judged,
         )
 
     def enter(self, step: int) -> list[list[str]]:
@@ -120,9 +127,10 @@ class RecordedPeople:
         for person, walk in zip(people, walks, strict=True):
             if self._follow:
                 roster.written.add(person.name, walk)
-            else:  # nobody can react to a vehicle in whose place the recording puts them
-                roster.written.note(person.name, reacts=False)
+            elif not self._judged:  # nobody can react to a vehicle in whose place they are put
                 self._entered.append(person.name)
+            if not self._judged:
+                roster.written.note(person.name, reacts=False)
             if np.hypot(*(walk.position[-1] - walk.position[0])) < _NOWHERE:
                 roster.stay(person.name, step + len(walk.position) - 1)
 

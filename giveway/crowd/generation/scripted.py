@@ -64,5 +64,4 @@ class ScriptedPeople:
         )
         for entry in entries:
             roster.written.scripts[entry.name] = ScriptedWalk(entry)
-            roster.written.note(entry.name, reacts=False)
         return [names]

@@ -55,7 +55,6 @@ class WrittenWalks:
         """Let a person who joins the crowd at the first instant of ``walk`` follow it."""
         self._walks[name] = walk
         self._reached[name] = 0
-        self.note(name, reacts=False)
 
     def note(self, name: str, *, reacts: bool) -> None:
         """Note that a person reacts to vehicles from now on, or does not yet."""

@@ -84,6 +84,15 @@ def test_people_without_a_hand_over_walk_as_recorded(run: Callable) -> None:
     assert result.summary["handed_over"] == 0
 
 
+def test_who_drives_into_a_scripted_person_has_a_frontal_contact() -> None:
+    person = {"name": "dummy", "x": 12.0, "y": -3.0, "heading": 90.0, "speed": 1.4}
+    crowd = {"pedestrians": 0, "model": "recorded", "scripted": [person]}
+    drive = {"controller": "speed-holder", "safety": {"enabled": False}, "time_limit": 5.0}
+    run = giveway.run({"scenario": "shared_space", "crowd": crowd, **drive}, pictures=False)
+    assert run.pedestrians["contact"].tolist() == ["frontal"]
+    assert run.summary["recorded_contacts"] == 0
+
+
 def test_contacts_with_people_who_do_not_react_count_apart(run: Callable) -> None:
     """A person walks into the side of the car, which cannot help it."""
     blind = run("recorded", NEVER)
@@ -93,6 +102,10 @@ def test_contacts_with_people_who_do_not_react_count_apart(run: Callable) -> Non
     kinds = blind.pedestrians["contact"]
     assert (kinds == "recorded").sum() == summary["recorded_contacts"]
     assert (blind.pedestrians["severity"] != "collision").all()
+    judged = run("recorded", NEVER, entry={"judged": True}).summary
+    assert judged["overlaps"] == summary["overlaps"]
+    assert judged["frontal_contacts"] + judged["side_contacts"] == judged["overlaps"]
+    assert judged["recorded_contacts"] == judged["handed_over"] == 0
     aware = run("recorded").summary
     assert aware["recorded_contacts"] == 0
     assert aware["handed_over"] >= 4
