@@ -41,8 +41,6 @@ def recorded_people(
         follow = config.crowd.model == RECORDED
         kind = "" if entry.kind == ADULT else entry.kind
         sources.append(
-            RecordedPeople(
-                people, roster, time_step, follow=follow, kind=kind, judged=entry.judged
-            )
+            RecordedPeople(people, roster, time_step, follow=follow, kind=kind, judged=entry.judged)
         )
     return sources
