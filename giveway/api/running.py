@@ -5,6 +5,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, TypedDict
 
+from fmus import processes_reused
 from giveway.api.simulation import simulate
 from giveway.config import RunConfig
 from giveway.config.files.layers import dump_toml
@@ -39,6 +40,7 @@ class Outputs(TypedDict):
     pictures: bool  # True to draw the pictures
 
 
+@processes_reused()
 def run(
     config: RunConfig | dict[str, Any] | str | Path,
     *,

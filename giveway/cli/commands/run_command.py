@@ -7,6 +7,7 @@ from typing import Any
 
 from rich.console import Console
 
+from fmus import processes_reused
 from giveway.cli.exit import fail
 from giveway.cli.option_groups import RunOutputs
 from giveway.cli.screen.printing import escape, print_json
@@ -31,6 +32,7 @@ def layers_of(
     return [*layers, Layer("command line", {**named, **settings}, from_flags=True)]
 
 
+@processes_reused()
 def run_command(
     scenario: str | None,
     config: Path | None,
