@@ -1,7 +1,6 @@
 """The one-time compilation of the numerical kernels, with a message for the user."""
 
 import contextlib
-import gc
 import os
 import shutil
 import subprocess
@@ -17,6 +16,7 @@ from controller import LongitudinalModel, Mpc, MpcParameters
 from controller.kernels import branch_off
 from giveway._kernels.cache import FOLDERS, MARKERS, kernel_cache, marker
 from giveway.processes.child import die_with
+from giveway.processes.garbage import rarely_collected
 from giveway.processes.interpreter import command
 from giveway.processes.interrupts import DeferredInterrupt, ended_by
 from giveway.processes.processors import processors
@@ -26,8 +26,6 @@ from pedestrian_model.vci.model import THREADS_FROM
 _KEPT = 30 * 86400.0  # [s] time since the last run after which old kernels are removed
 _MESSAGE = "Compiling the numerical kernels (once after installation, about a minute) ..."
 _MESSAGE_THREADS = "Compiling the kernels of several threads (once, some ten seconds) ..."
-# Numbers of new objects after which Python collects garbage, for its three generations
-_SELDOM: Final = (50_000, 20, 100)
 _LONGEST: Final = 600.0  # Longest wait [s] for the other process
 _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*arguments)"
 
@@ -87,7 +85,7 @@ def _once(
     with contextlib.nullcontext() if console is None else console.status(message):
         if console is not None and not console.is_terminal:
             console.print(message)
-        with _rarely_collected():
+        with rarely_collected():
             compile_them()
     with contextlib.suppress(OSError):
         mark.touch()
@@ -104,17 +102,6 @@ def forget_old_kernels(folder: Path) -> None:
         used = [file.stat().st_mtime for file in (other, *other.glob(f"{MARKERS}*"))]
         if other != folder and time.time() - max(used) > _KEPT:
             shutil.rmtree(other, ignore_errors=True)
-
-
-@contextlib.contextmanager
-def _rarely_collected() -> Iterator[None]:
-    """Collect garbage rarely in this context, since most objects of a compiler stay."""
-    before = gc.get_threshold()
-    gc.set_threshold(*_SELDOM)
-    try:
-        yield
-    finally:
-        gc.set_threshold(*before)
 
 
 def _compile_all() -> None:
@@ -159,7 +146,7 @@ def _started() -> subprocess.Popen[bytes]:
 def help_compiling(parent: int) -> None:
     """Compile in the process beside ``parent``."""
     die_with(parent)
-    with _rarely_collected():
+    with rarely_collected():
         for settings in _WALKS:
             _run(settings, measured=False)
 

@@ -17,7 +17,7 @@ from fmus.isolation.exit_report import PrintedTail
 IMPORT_TIMEOUT: Final = 120.0  # [s] time for the imports on the busiest machine
 END_TIMEOUT: Final = 10.0  # [s] time for a killed process to end, on any sound system
 _BOOT: Final = (
-    "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
+    "import gc, json, sys; gc.disable(); sys.path[:], arguments = json.loads(sys.argv[1]); "
     "from fmus.isolation.{module} import main; main(*arguments)"
 )
 

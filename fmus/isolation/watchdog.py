@@ -84,6 +84,7 @@ class _Watchdog:
         self._poll.register(control, select.POLLIN)
         self._poll.register(self._wake, select.POLLIN)
         gc.freeze()  # garbage collection in a worker then leaves memory pages shared
+        gc.enable()  # only imports, which make no garbage, went without it
 
     def run(self) -> None:
         """Serve requests until the vehicle's process has ended."""

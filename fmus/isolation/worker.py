@@ -1,6 +1,7 @@
 """The FMU's own process: it runs one FMU for one episode, as requested through a socket."""
 
 import ctypes
+import gc
 import os
 import pickle
 import signal
@@ -69,6 +70,7 @@ def main(port: int, token: str, folder: str) -> NoReturn:
         token: Proof that this is the expected worker.
         folder: Temporary folder.
     """
+    gc.enable()  # after the imports, as in the watchdog
     parent = os.getppid()
 
     def watch() -> None:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from giveway._start.environment import out_of_memory
 from giveway.cli.exit import fail
 from giveway.errors import GivewayError
+from giveway.processes.garbage import rarely_collected
 from giveway.processes.interrupts import (
     DeferredInterrupt,
     RaisedSignals,
@@ -33,7 +34,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     signals = RaisedSignals()
     signals.__enter__()
     try:
-        code = _code_of(words, signals)
+        with rarely_collected():
+            code = _code_of(words, signals)
     finally:
         if arguments is not None:
             signals.__exit__()

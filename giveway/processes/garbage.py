@@ -5,7 +5,20 @@ import gc
 from collections.abc import Iterator
 from typing import Final
 
+# Numbers of new objects after which Python collects garbage, for its three generations
+_SELDOM: Final = (50_000, 20, 100)
 _NEVER: Final = 1 << 30  # Number of collections of the middle generation before a full one
+
+
+@contextlib.contextmanager
+def rarely_collected() -> Iterator[None]:
+    """Collect garbage rarely in this context: of what imports and a compiler make, most stays."""
+    before = gc.get_threshold()
+    gc.set_threshold(*_SELDOM)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 @contextlib.contextmanager

@@ -5,7 +5,7 @@ import weakref
 
 import pytest
 
-from giveway.processes.garbage import full_collections_put_off
+from giveway.processes.garbage import full_collections_put_off, rarely_collected
 
 
 class Knot:
@@ -47,7 +47,17 @@ def test_in_the_meantime_only_what_is_new_is_looked_at(often):
     assert full_collections() > before
 
 
-def test_an_error_ends_it(often):
-    with pytest.raises(ValueError, match="run"), full_collections_put_off():
+def test_imports_are_looked_through_rarely_and_garbage_goes_all_the_same(often):
+    with rarely_collected():
+        new = weakref.ref(Knot())
+        kept = [[] for _ in range(5000)]
+        assert new() is not None
+        kept += [[] for _ in range(100_000)]
+        assert new() is None
+
+
+@pytest.mark.parametrize("schedule", [full_collections_put_off, rarely_collected])
+def test_an_error_ends_it(often, schedule):
+    with pytest.raises(ValueError, match="run"), schedule():
         raise ValueError("run")
     assert gc.get_threshold() == (50, 1, 1)
