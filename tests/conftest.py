@@ -29,6 +29,8 @@ hypothesis.settings.load_profile("unhurried")
 # Half of what numpy's import costs is the start of threads that nothing here uses.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.dont_write_bytecode = False
+# Of what is imported and collected, all stays.
+gc.set_threshold(50_000, 20, 100)
 
 
 def _load_support() -> None:
