@@ -4,7 +4,8 @@ Each level is the criticality that a tenth of the runs exceeds. Chains walk beyo
 preconditioned Crank-Nicolson proposal v = sqrt(1 - s²) u + s w, which leaves the normal
 distribution as it is (Cotter, Roberts, Stuart & White 2013; Papaioannou, Betz, Zwirglmaier &
 Straub 2015). The states of a chain resemble one another. Therefore the interval comes from
-independent repeats, and not from the number of runs. A level that is chosen from n runs makes the
+independent repeats, and not from the number of runs. Few repeats may agree by luck: their spread is
+then that of the shares of single chains. A level that is chosen from n runs makes the
 product too large by the factor 1 + (1 - p0)/(n p0), by which it is divided (Cérou, Del Moral, Furon
 & Guyader 2012, "Sequential Monte Carlo for rare event estimation", Statistics and Computing 22).
 """
@@ -39,6 +40,7 @@ class _Repeat:
 
     number: int
     probability: float = 1.0
+    variance: float = 0.0  # of the logarithm of the probability, from the spread between chains
     flat: bool = False
     events: int = 0
     failed: int = 0
@@ -102,12 +104,13 @@ def _simulate(
     vectors = random.standard_normal((size, dimension))
     found = _told(repeat, (yield vectors))
     repeat.first = int(np.count_nonzero(found >= 0.0)), size
-    step, accepted, made = _FIRST_STEP, 1.0, size
+    step, accepted, made, walks = _FIRST_STEP, 1.0, size, size
     for stage in range(1, _LEVELS + 1):
         seeds = max(1, round(SHARE * size))
         level = min(0.0, float(np.partition(found, -seeds)[-seeds]))
         beyond = found >= level
         share = float(beyond.mean())
+        repeat.variance += variance_between(beyond, walks) / share**2
         repeat.probability *= share if level >= 0.0 else share / (1.0 + (1.0 - share) / seeds)
         moved = 0.0 if stage == 1 else step
         repeat.stages.append(
@@ -120,10 +123,22 @@ def _simulate(
             break
         chains = random.permutation(np.flatnonzero(beyond))
         walk = _Walk(vectors[chains], found[chains], level, step, random, held)
-        made = size - len(chains)
+        made, walks = size - len(chains), len(chains)
         vectors, found = yield from walk.states(repeat, size)
         step, accepted = walk.step, walk.accepted
     repeat.probability, repeat.flat = 0.0, True
+
+
+def variance_between(beyond: NDArray[np.bool_], walks: int) -> float:
+    """Return the variance of the share of states beyond a level, from the shares of the chains.
+
+    Args:
+        beyond: Marks (n,) of the states; those of one chain are ``walks`` apart.
+        walks: Number of chains.
+    """
+    chain = np.arange(len(beyond)) % walks
+    shares = np.bincount(chain, weights=beyond) / np.bincount(chain)
+    return float(shares.var(ddof=1)) / walks if walks > 1 else 0.0
 
 
 def _told(repeat: _Repeat, criticality: Array) -> Array:
@@ -216,7 +231,8 @@ def _estimate(
     if flat:
         probability, low, high = float(each.mean()), 0.0, plain
     else:
-        probability, low, high = interval_of_repeats(each, confidence)
+        least = float(np.mean([repeat.variance for repeat in repeats]))
+        probability, low, high = interval_of_repeats(each, confidence, least)
         if high > _SPAN * low:
             high = min(high, plain)
             doubts.append(
@@ -254,7 +270,9 @@ def _sample(repeats: Sequence[_Repeat]) -> EventSample | None:
     return EventSample(vectors, np.repeat(weights, counts), np.repeat(numbers, counts))
 
 
-def interval_of_repeats(each: Array, confidence: float) -> tuple[float, float, float]:
+def interval_of_repeats(
+    each: Array, confidence: float, least: float = 0.0
+) -> tuple[float, float, float]:
     """Return the mean of independent estimates (n,), and its interval.
 
     Estimates by subset simulation are about lognormal. The interval is that of Cox for the mean of
@@ -264,9 +282,10 @@ def interval_of_repeats(each: Array, confidence: float) -> tuple[float, float, f
     Args:
         each: Estimates above 0.
         confidence: Confidence of the interval.
+        least: Smallest variance of the logarithm of an estimate.
     """
     logs, n = np.log(each), len(each)
-    square = float(logs.var(ddof=1))
+    square = max(least, float(logs.var(ddof=1)))
     centre = float(logs.mean()) + square / 2.0
     quantile = float(stats.t.ppf(0.5 + confidence / 2.0, n - 1))
     half = quantile * np.sqrt(square / n + square**2 / (2.0 * (n - 1)))

@@ -8,7 +8,7 @@ from scipy import stats
 
 from giveway.risk.estimators import run_sampler, subset_simulation
 from giveway.risk.estimators.scouts import Scouted, scouts
-from giveway.risk.estimators.subset import interval_of_repeats
+from giveway.risk.estimators.subset import interval_of_repeats, variance_between
 
 
 def beyond(distance):
@@ -104,6 +104,28 @@ def test_the_interval_of_lognormal_estimates_covers_their_mean():
         _, low, high = interval_of_repeats(each, 0.95)
         covered += low <= 1.0 <= high
     assert covered >= 0.92 * 400
+
+
+def test_repeats_that_agree_by_luck_are_no_closer_than_their_chains():
+    each = np.full(10, 1e-3) * np.exp(np.linspace(-0.01, 0.01, 10))
+    _, low, high = interval_of_repeats(each, 0.95)
+    assert high < 1.01 * low * 1.02
+    mean, low, high = interval_of_repeats(each, 0.95, 0.5)
+    assert low < 0.8 * mean
+    assert high > 1.7 * mean
+    apart = np.geomspace(1e-4, 1e-2, 10)
+    assert interval_of_repeats(apart, 0.95, 0.5) == interval_of_repeats(apart, 0.95)
+
+
+def test_the_spread_of_a_share_is_that_between_chains():
+    random = np.random.default_rng(5)
+    independent = random.random(1000) < 0.1
+    share = independent.mean()
+    assert variance_between(independent, 1000) == pytest.approx(share * (1.0 - share) / 999.0)
+    stuck = np.tile(random.random(100) < 0.1, 10)  # ten states of each chain, all the same
+    share = stuck.mean()
+    assert variance_between(stuck, 100) == pytest.approx(share * (1.0 - share) / 99.0)
+    assert variance_between(stuck[:1], 1) == 0.0
 
 
 def test_scouts_with_degenerate_weights_see_nothing():
