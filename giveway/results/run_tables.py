@@ -269,12 +269,8 @@ class RunTables:
         return self.head | (self._row(self.egos[0]) if self.egos else {})
 
     def _row(self, ego: EgoResult) -> dict[str, Any]:
-        head = {
-            "controller": ego.config.described_controller,
-            "ending": str(ego.ending),
-            "ego": ego.id,
-        }
-        return self.head | head | ego.summary
+        own = {"controller": ego.config.described_controller, "ending": str(ego.ending)}
+        return self.head | own | {"ego": ego.id} | ego.summary
 
     @property
     def summary_rows(self) -> list[dict[str, Any]]:
