@@ -234,11 +234,11 @@ def _estimate(
         least = float(np.mean([repeat.variance for repeat in repeats]))
         probability, low, high = interval_of_repeats(each, confidence, least)
         if high > _SPAN * low:
-            high = min(high, plain)
             doubts.append(
-                f"the repeats disagree: the upper bound is {high / low:.0f} times the lower one; "
-                "raise the budget"
+                f"the repeats disagree: by them alone the upper bound is {high / low:.0f} times "
+                "the lower one; raise the budget"
             )
+            high = min(high, plain)
     if scouted.low > high:
         doubts.append(
             f"scouts far from the usual inputs find {scouted.probability:.2g}: the chains missed "
