@@ -11,6 +11,8 @@ from pathlib import Path
 HOUSE = Path(__file__).resolve().parents[2]
 DATA = (".toml", ".xml", ".sumocfg", ".c", ".h", ".fmu")
 """Suffixes of files that count byte by byte."""
+PRINTED = (".md", ".ipynb")
+"""Those of files in docs that do, too: they are run as they are printed."""
 
 
 def digest_of(rooms: Iterable[str], settings: str) -> str:
@@ -47,7 +49,7 @@ def _room_digest(room: Path) -> str:
         if path.suffix == ".py":
             tree = ast.parse(path.read_bytes())
             content = "\n".join(_statements(tree)).encode()
-        elif path.suffix in DATA:
+        elif path.suffix in DATA or (path.suffix in PRINTED and HOUSE / "docs" in path.parents):
             content = path.read_bytes()
         else:
             continue

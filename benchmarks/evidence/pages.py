@@ -278,6 +278,12 @@ PAGES: dict[str, Page] = {
             (*DRIVING, "giveway/cli", "docs/notebooks"),
         ),
         Page(
+            "tutorials",
+            "docs/evidence.md",
+            (_told("tutorials", "../docs/tutorials/run.py", "in an empty folder each"),),
+            (*DRIVING, "giveway/cli", "giveway/scenario_builder", "docs/tutorials"),
+        ),
+        Page(
             "benchmark",
             "docs/benchmark.md",
             (

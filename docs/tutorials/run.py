@@ -3,7 +3,8 @@
 A page is gone through from top to bottom in an empty folder. Blocks of ``sh`` are run by bash,
 blocks of ``python`` by Python, and what stands below ``<!-- file: NAME -->`` is written to that
 file. ``<!-- beside: NAME -->`` copies a file of this folder. After ``<!-- prints -->`` the block
-shows what the commands before it have printed, with ``...`` for what is left out.
+shows what the commands before it have printed, with ``...`` for what is left out. In the end a
+table tells how many blocks ran, and how many lines the pages show that were printed.
 """
 
 from __future__ import annotations
@@ -70,8 +71,9 @@ def blocks(page: str) -> Iterator[Block]:
             raise TutorialError(f"line {number}: no block follows <!-- {mark} -->")
 
 
-def play(name: str, folder: Path, *, show: bool = True) -> None:
-    """Go through one tutorial in a folder."""
+def play(name: str, folder: Path, *, show: bool = True) -> tuple[int, int]:
+    """Go through one tutorial in a folder; return the number of blocks and of lines that agree."""
+    ran = agreed = 0
     page = (HERE / f"{name}.md").read_text(encoding="utf-8")
     environment = surroundings(folder)
     printed = ""
@@ -85,10 +87,13 @@ def play(name: str, folder: Path, *, show: bool = True) -> None:
             file.write_text(block.text, encoding="utf-8")
         elif block.mark == "prints":
             compare(block.text, printed, place)
+            agreed += len(block.text.splitlines())
         elif not block.mark and block.language in {"sh", "python"}:
             if show:
-                print(f"  {place}", flush=True)
+                print(f"  {place}", file=sys.stderr, flush=True)
             printed = execute(block, folder, environment, place)
+            ran += 1
+    return ran, agreed
 
 
 def surroundings(folder: Path) -> dict[str, str]:
@@ -144,19 +149,20 @@ def main() -> int:
     if strange := set(arguments.names) - set(tutorials()):
         parser.error(f"no tutorial {sorted(strange)[0]!r}: there are {', '.join(tutorials())}")
     failed = 0
+    print("| tutorial | blocks that ran | lines that were printed as shown |\n|---|---|---|")
     for name in arguments.names or tutorials():
         began = time.perf_counter()
-        print(name, flush=True)
         with tempfile.TemporaryDirectory() as temporary:
             folder = (arguments.keep / name).resolve() if arguments.keep else Path(temporary)
             folder.mkdir(parents=True, exist_ok=True)
             try:
-                play(name, folder)
+                ran, agreed = play(name, folder)
             except (TutorialError, subprocess.TimeoutExpired) as error:
-                print(f"{name} failed: {error}")
+                print(f"{name} failed: {error}", file=sys.stderr)
                 failed += 1
                 continue
-        print(f"  done in {time.perf_counter() - began:.0f} s")
+        print(f"| [{name}](tutorials/{name}.md) | {ran} | {agreed} |", flush=True)
+        print(f"{name}: {time.perf_counter() - began:.0f} s", file=sys.stderr)
     return 1 if failed else 0
 
 
