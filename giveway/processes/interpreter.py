@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-_PATHS: Final = "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
+_PATHS: Final = (
+    "import gc, json, sys; gc.set_threshold(50_000, 20, 100); "  # of imports, most stays
+    "sys.path[:], arguments = json.loads(sys.argv[1]); "
+)
 
 
 def command(code: str, arguments: Sequence[float | str]) -> list[str]:
