@@ -44,9 +44,9 @@ def test_a_crash_is_a_record_that_tells_cause_and_place(records, fault):
 
 
 def test_a_run_that_goes_on_for_too_long_is_ended(faulty):
-    with local_executor(jobs=1, run_limit=2.0) as executor:
+    with local_executor(jobs=1, run_limit=0.5) as executor:
         (record,) = executor.run([faulty("slow", time_limit=60.0)])
-    assert record.failure.startswith("not finished within 2 s, the limit of a run, ")
+    assert record.failure.startswith("not finished within 0.5 s, the limit of a run, ")
     assert record.computing.attempts == 2
 
 
