@@ -1,48 +1,9 @@
 """Vehicle FMUs, shipped and foreign, the code that runs them, and the controller as an FMU."""
 
-from fmus.description.model import FmuDescription
-from fmus.description.reading import describe
-from fmus.driving.kept_folder import keep_unpacked
-from fmus.driving.vehicle import VehicleFmu
-from fmus.errors import (
-    FmuArchiveError,
-    FmuBuildError,
-    FmuCrashError,
-    FmuError,
-    FmuFileError,
-    FmuInterfaceError,
-    FmuOutputError,
-    FmuPlatformError,
-    FmuProfileError,
-    FmuStartCrashError,
-    FmuStartError,
-    FmuStateError,
-    FmuStepError,
-    FmuUnsuitableError,
-    FmuVariableError,
-)
-from fmus.interfaces.vehicle import Vehicle
-from fmus.isolation import (
-    IsolatedController,
-    IsolatedVehicle,
-    open_vehicle,
-    processes_reused,
-)
-from fmus.profile.bundled import bundled_fmu, is_bundled
-from fmus.profile.controllers.controller_preparation import (
-    PreparedController,
-    choose_controller_profile,
-    prepare_controller,
-)
-from fmus.profile.controllers.controller_profile import (
-    ControllerProfile,
-    make_controller_profile,
-    read_controller_profile,
-)
-from fmus.profile.preparation import choose_profile, prepare
-from fmus.profile.vehicle_profile import VehicleProfile, make_profile, read_profile
-from fmus.sources.export import bundled_controller, export_controller
-from fmus.sources.parameters import ControllerParameters
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fmus.names import *
 
 __all__ = [
     "ControllerParameters",
@@ -86,3 +47,12 @@ __all__ = [
     "read_controller_profile",
     "read_profile",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Import all that has a public name at the first use of one: one module alone needs less."""
+    if name not in __all__:
+        raise AttributeError(f"module 'fmus' has no attribute '{name}'")
+    from fmus import names
+
+    return getattr(names, name)
