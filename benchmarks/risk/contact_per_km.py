@@ -46,7 +46,7 @@ SETTINGS = (
     # the child runs out at a fixed time, and the ego is elsewhere on the road each time
     Setting(
         "parked_cars",
-        25,
+        100,
         {"scenario": "parked_cars"},
         {"ego.depart_position": {"uniform": [0.0, 28.0]}},
     ),

@@ -28,6 +28,7 @@ _SPEAKING: Final = frozenset(
         ("perception", "sensor"),
     }
 )
+_FMU: Final = ("vehicle", "fmu")
 _OF_FILES: Final = frozenset({"record", "metrics"})  # They change no drive
 _MOST: Final = 3  # Number of differences that a name tells
 _LONGEST_VALUE: Final = 24  # Number of letters of a value
@@ -45,7 +46,7 @@ def title(config: RunConfig, scenario: str, people: str = "", ego: str = "") -> 
     """
     driver = "no ego" if config.ego.none else config.driver
     units = {option.location: option.unit for option in options()}
-    words = _words(_differing(config), units)
+    words = _words(_telling(_differing(config)), units)
     parts = [ego or driver, *words, people, f"seed {config.seed}"]
     return f"{scenario}: {', '.join(part for part in parts if part)}"
 
@@ -62,11 +63,12 @@ def default_folder(config: RunConfig, scenario: str) -> Path:
     controllers = _safe("_".join(dict.fromkeys(ego.controller_name for ego in egos))) or "no_ego"
     taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
     differing = _differing(config)
-    words = _safe("".join(f"_{word}" for word in _words(differing, {})))
+    telling = _telling(differing)
+    words = _safe("".join(f"_{word}" for word in _words(telling, {})))
     added = f"_{config.crowd.pedestrians}ped" if config.crowd.pedestrians else ""
     name = f"{scenario}_{controllers}{_safe(taken)[:_LONGEST]}{words[:_LONGEST]}{added}"
     name += f"_seed{config.seed}"
-    whole = len(differing) <= _MOST and not any(map(_is_long, differing.values()))
+    whole = len(differing) == len(telling) <= _MOST and not any(map(_is_long, telling.values()))
     if not (whole and len(words) <= _LONGEST and _are_all(differing, config)):
         name += f"_{sha256(dump_toml(config).encode()).hexdigest()[:6]}"
     return Path("results") / name
@@ -102,6 +104,16 @@ def _differing(config: RunConfig) -> dict[Location, Any]:
         if ours.get(location) != theirs.get(location)
         and location not in _NAMED_APART
         and location[0] not in _OF_FILES
+    }
+
+
+def _telling(differing: dict[Location, Any]) -> dict[Location, Any]:
+    """Return the differences without those that belong to an FMU that is named."""
+    return {
+        location: value
+        for location, value in differing.items()
+        if location != ("controller_profile",)
+        and not (location[0] == "vehicle" and location != _FMU and _FMU in differing)
     }
 
 

@@ -44,6 +44,13 @@ def test_a_setting_that_differs_is_in_title_and_folder(settings, words, part):
     )
 
 
+def test_an_fmu_is_told_by_its_name_and_not_by_what_was_found_of_it():
+    told, folder = named(vehicle={"fmu": "fmi3", "mass": 1402.69, "friction": 15.0, "width": 1.8})
+    assert told == "shared_space: MPC, fmi3, 10 pedestrians, seed 1"
+    assert folder.rpartition("_")[0] == "shared_space_mpc_fmi3_10ped_seed1"
+    assert named(vehicle={"mass": 1500.0})[0].startswith("shared_space: MPC, mass 1500 kg, ")
+
+
 def test_more_than_three_differences_are_counted_and_hashed():
     many = {
         "controller_options": {"style": "careful"},
