@@ -46,3 +46,15 @@ def test_the_table_has_all_parts_of_the_reference_in_its_first_row(tmp_path):
     )
     assert float(reference["probability"]) == 0.002
     assert 0.001 < float(reference["low"]) < 0.002 < float(reference["high"]) < 0.003
+
+
+def test_the_page_tells_how_many_intervals_cover_the_reference():
+    reference, *estimates = rows(KEPT)
+    p = float(reference["probability"])
+    covered = sum(float(one["low"]) <= p <= float(one["high"]) for one in estimates)
+    told = f"their intervals cover 0.0018 in {covered} of {len(estimates)}"
+    page = (KEPT.parents[2] / "docs" / "risk.md").read_text(encoding="utf-8")
+    assert told in " ".join(page.split())
+    assert f"{int(reference['runs']):,} plain runs have {reference['events']} contacts" in " ".join(
+        page.split()
+    )
