@@ -30,4 +30,4 @@ def test_a_run_that_fails_and_then_dies_has_failed(tmp_path):
         timeout=120,
     )
     assert "not a zip archive" in done.stderr
-    assert done.returncode == 1
+    assert done.returncode == 2
