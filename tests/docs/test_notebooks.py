@@ -29,6 +29,7 @@ def test_no_output_is_stored_that_could_become_old(file: Path) -> None:
 
 
 def test_cells_become_markdown() -> None:
+    pytest.importorskip("myst_parser", reason="myst_parser: giveway[docs] has it")
     pages = runpy.run_path(str(DOCS / "notebook_pages.py"))
     cells = [
         {"cell_type": "markdown", "source": ["# A title\n", "Words."]},
@@ -41,6 +42,9 @@ def test_cells_become_markdown() -> None:
 
 
 def test_a_notebook_is_executed_by_jupyter(tmp_path: Path) -> None:
+    pytest.importorskip(
+        "hatchling", reason="hatchling: giveway[dev] has it, and builds the plug-in"
+    )
     script = DOCS / "notebooks" / "execute.py"
     done = subprocess.run(
         [sys.executable, script, "controller", "--keep", tmp_path],
