@@ -32,7 +32,7 @@ KEPT = Path(__file__).with_suffix(".csv")
 
 @dataclass(frozen=True)
 class Scene:
-    """What a scene holds; cameras, walls and vehicles as in the package."""
+    """The content of a scene; cameras, walls and vehicles as in the package."""
 
     cameras: Array  # (e, 6)
     people: Array  # (4, 2) [m]

@@ -24,7 +24,8 @@ sys.path.extend(
 from blocks import present_version, write_block
 from digests import HOUSE, digest_of, file_digest
 from ledger import confirm, enter, is_stale, listing, read_ledger
-from pages import PAGES, Page
+from page import Page
+from pages import PAGES
 from work import Command, Study
 
 SECONDS = "seconds.txt"

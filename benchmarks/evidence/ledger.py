@@ -16,7 +16,7 @@ from typing import Any
 import fingerprints
 from blocks import present_version
 from digests import HOUSE, digest_of
-from pages import DRIVING, Page
+from page import DRIVING, Page
 
 LEDGER = HOUSE / "docs" / "evidence.json"
 

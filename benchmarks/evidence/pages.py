@@ -6,8 +6,6 @@ its data are not in the repository.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import comparisons
 import samples
 from makers import (
@@ -21,24 +19,15 @@ from makers import (
     ROAD_COLUMNS,
     TIME,
     WAIT,
-    Maker,
     code,
     drives_told,
     less,
     means,
     part,
-    printed,
 )
+from page import DRIVING, Block, Page, shell, told
 from tables import FRONTAL, SIDE, Column
-from work import Command, Study
-
-DRIVING = (
-    "controller", "fmus", "pedestrian_model", "sumo_scenarios",
-    "giveway/config", "giveway/cosimulation", "giveway/crowd", "giveway/ego", "giveway/geometry",
-    "giveway/metrics", "giveway/journal", "giveway/run_data", "giveway/studies/bundled",
-    "giveway/studies/statistics", "giveway/sumo", "giveway/walkways",
-)  # fmt: skip
-"""Rooms that decide how an ego drives and how that is measured."""
+from work import Command
 
 CLAIRVOYANT = tuple(
     f"benchmarks/bounds/clairvoyant{part}.py"
@@ -46,62 +35,24 @@ CLAIRVOYANT = tuple(
 )
 
 
-class Block(NamedTuple):
-    """A block of a page: what is run for it, and how its lines are made of that."""
-
-    name: str
-    work: Study | Command
-    make: Maker
-
-
-class Page(NamedTuple):
-    """A page, or a kept table of one.
-
-    Attributes:
-        name: Name on the command line.
-        file: Path relative to the repository.
-        blocks: Blocks that are filled.
-        rooms: Code on which the numbers depend.
-        kept: Whether it is made only when ``--kept`` names it.
-        junctions: Whether it has drives on roads that meet.
-    """
-
-    name: str
-    file: str
-    blocks: tuple[Block, ...]
-    rooms: tuple[str, ...] = DRIVING
-    kept: bool = False
-    junctions: bool = False
-
-
-def _told(name: str, *command: str) -> Block:
-    """A block of what a command printed."""
-    return Block(name, Command(*command), printed)
-
-
-def _shell(name: str, words: str, quick: str = "") -> Block:
-    command = f"speed/{words}"
-    return Block(name, Command(command, "one machine", quick), code(command))
-
-
 SPEED = (
-    _shell("bench_loop.py", "bench_loop.py", "--pairs 1"),
-    _shell("bench_scenario.py", "bench_scenario.py", "--walkers 100 --window 1"),
-    _shell("bench_crowd.py", "bench_crowd.py"),
-    _shell("bench_crowd_threads.py", "bench_crowd_threads.py"),
-    _shell("bench_models.py", "bench_models.py", "--people 5 --steps 3"),
-    _shell("bench_qp.py", "bench_qp.py"),
-    _shell("bench_fmu.py", "bench_fmu.py", "--ticks 50 --rounds 1"),
-    _shell("bench_controller.py", "bench_controller.py"),
-    _shell(
+    shell("bench_loop.py", "bench_loop.py", "--pairs 1"),
+    shell("bench_scenario.py", "bench_scenario.py", "--walkers 100 --window 1"),
+    shell("bench_crowd.py", "bench_crowd.py"),
+    shell("bench_crowd_threads.py", "bench_crowd_threads.py"),
+    shell("bench_models.py", "bench_models.py", "--people 5 --steps 3"),
+    shell("bench_qp.py", "bench_qp.py"),
+    shell("bench_fmu.py", "bench_fmu.py", "--ticks 50 --rounds 1"),
+    shell("bench_controller.py", "bench_controller.py"),
+    shell(
         "bench_study.py",
         "bench_study.py --runs 60 --crowds 60 --memory 1000",
         "--runs 2 --crowds 2 --memory 10",
     ),
-    _shell("bench_start.py", "bench_start.py --cold", "--rounds 1"),
-    _shell("bench_metrics.py", "bench_metrics.py", "--repetitions 1"),
-    _shell("bench_sight.py", "bench_sight.py"),
-    _told("machine", "speed/performance.py --machine", "", "--machine"),
+    shell("bench_start.py", "bench_start.py --cold", "--rounds 1"),
+    shell("bench_metrics.py", "bench_metrics.py", "--repetitions 1"),
+    shell("bench_sight.py", "bench_sight.py"),
+    told("machine", "speed/performance.py --machine", "", "--machine"),
 )
 
 PAGES: dict[str, Page] = {
@@ -177,10 +128,10 @@ PAGES: dict[str, Page] = {
             "bounds",
             "docs/bounds.md",
             (
-                _told(
+                told(
                     "clairvoyant", "bounds/clairvoyant.py --seeds 60", "seeds 1 to 60", "--seeds 2"
                 ),
-                _told(
+                told(
                     "front",
                     "bounds/clairvoyant_front.py --seeds 30 --rows {out}.csv",
                     "seeds 551 to 580",
@@ -192,7 +143,7 @@ PAGES: dict[str, Page] = {
         Page(
             "encounter",
             "docs/encounters.md",
-            (_told("densities", "bounds/encounters.py --seeds 40", "seeds 1 to 40", "--seeds 2"),),
+            (told("densities", "bounds/encounters.py --seeds 40", "seeds 1 to 40", "--seeds 2"),),
             (*DRIVING, *CLAIRVOYANT, "benchmarks/bounds/encounters.py"),
         ),
         Page(
@@ -200,14 +151,14 @@ PAGES: dict[str, Page] = {
             "docs/law.md",
             (
                 Block("law", samples.LAW, means(*LAW_COLUMNS)),
-                _told(
+                told(
                     "drawn networks",
                     "law/road_campaign.py --drawn 1-12 --drives 8 --brief "
                     "--out {out} --jobs {jobs}",
                     "12 networks, 8 drives each",
                     "--drawn 1 --drives 1 --out {out}",
                 ),
-                _told(
+                told(
                     "meeting roads",
                     "law/road_campaign.py --roads 1-3 --brief --out {out} --jobs {jobs}",
                     "seeds 1 to 3",
@@ -243,14 +194,14 @@ PAGES: dict[str, Page] = {
         Page(
             "gym",
             "docs/gym.md",
-            (_told("policy", "evidence/gym_policy.py --seeds 20", "seeds 1 to 20", "--seeds 1"),),
+            (told("policy", "evidence/gym_policy.py --seeds 20", "seeds 1 to 20", "--seeds 1"),),
             (*DRIVING, "giveway/gym", "benchmarks/evidence/gym_policy.py"),
         ),
         Page(
             "controller-fmu",
             "docs/controller_fmu.md",
             (
-                _told(
+                told(
                     "same motion",
                     "evidence/controller_fmu_runs.py --runs 20",
                     "seeds 1 to 20",
@@ -274,20 +225,20 @@ PAGES: dict[str, Page] = {
         Page(
             "notebooks",
             "docs/notebooks.md",
-            (_told("notebooks", "../docs/notebooks/execute.py", "seed 4; junction: seed 1"),),
+            (told("notebooks", "../docs/notebooks/execute.py", "seed 4; junction: seed 1"),),
             (*DRIVING, "giveway/cli", "docs/notebooks"),
         ),
         Page(
             "tutorials",
             "docs/evidence.md",
-            (_told("tutorials", "../docs/tutorials/run.py", "in an empty folder each"),),
+            (told("tutorials", "../docs/tutorials/run.py", "in an empty folder each"),),
             (*DRIVING, "giveway/cli", "giveway/scenario_builder", "docs/tutorials"),
         ),
         Page(
             "benchmark",
             "docs/benchmark.md",
             (
-                _told(
+                told(
                     "rivals",
                     "evidence/rivals.py --out {out} --jobs {jobs}",
                     "seeds 701 to 800",
@@ -301,7 +252,7 @@ PAGES: dict[str, Page] = {
             "front",
             "docs/cookbook.md",
             (
-                _told(
+                told(
                     "front",
                     "evidence/rivals.py --out {out} --front",
                     "seeds 701 to 800",
@@ -327,7 +278,7 @@ PAGES: dict[str, Page] = {
             "foreign-law",
             "docs/law.md",
             (
-                _told(
+                told(
                     "foreign networks",
                     "law/road_campaign.py {data} --drives 8 --brief --out {out} --jobs {jobs}",
                     "8 drives in each",
