@@ -32,7 +32,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     """Return the typer application that ``arguments`` need.
 
     The flags of the configuration take a tenth of a second to load. They are loaded only if a
-    command that has them is named.
+    command that has them is named. A command that is named is the only one.
     """
     command = next((word for word in arguments if not word.startswith("-")), None)
     app = Commands(HELP, completion=True)
@@ -52,6 +52,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     app.add_typer(build_export(lambda f: _with_flags(f, command, "export")), name="export")
     app.add_typer(build_check(), name="check")
     app.add_typer(_build_plot(), name="plot")
+    app.keep(command)
     return app
 
 

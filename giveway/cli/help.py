@@ -42,6 +42,13 @@ class Commands(typer.Typer):
         """Add the command ``name``, whose help is the function's docstring."""
         self.command(name, cls=_Command)(function)
 
+    def keep(self, name: str | None) -> None:
+        """Leave only the command or group ``name``, if it is one: typer builds each of them."""
+        commands = [command for command in self.registered_commands if command.name == name]
+        groups = [group for group in self.registered_groups if group.name == name]
+        if commands or groups:
+            self.registered_commands, self.registered_groups = commands, groups
+
 
 def show_all_options(ctx: typer.Context, wanted: bool) -> None:
     """Print the help with all options; the callback of ``--help-all``."""

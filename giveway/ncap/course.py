@@ -11,7 +11,7 @@ import numpy as np
 
 from giveway.geometry.path import EgoPath
 from giveway.ncap.protocol import ParkedCars
-from giveway.scenario_files.path_network import configuration_of
+from giveway.scenario_files.configuration_text import configuration_of
 from giveway.studies.folder.atomic_files import write_atomically
 
 LENGTH: Final = 1000.0
@@ -118,7 +118,7 @@ def write_course(
     written = {
         f"{name}.net.xml": _NET.format(bounds=bounds, edges=edges, junctions=junctions),
         f"{name}.rou.xml": f"<routes>\n{''.join(reversed(cars))}</routes>\n",
-        f"{name}.sumocfg": configuration_of(name, 200.0, routes=True),
+        f"{name}.sumocfg": configuration_of(name, 200.0, routes=[f"{name}.rou.xml"]),
     }
     for file, text in written.items():
         write_atomically(folder / file, text)

@@ -8,7 +8,8 @@ from giveway.errors import ConfigError, DatasetError, suggestion
 from giveway.geometry.kernel import Array
 from giveway.recordings.describing import parked
 from giveway.recordings.recording import Recording
-from giveway.scenario_files.path_network import DRIVE, GATE, configuration_of, network_along
+from giveway.scenario_files.configuration_text import configuration_of
+from giveway.scenario_files.path_network import DRIVE, GATE, network_along
 
 _SMOOTHED = 0.5  # Time [s] over which the places of the vehicle are averaged
 _APART = 2.0  # Distance [m] between the points of its path

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import tomlkit
 
 from giveway.errors import ScenarioError
-from giveway.scenario_builder.street import CONFIGURATION
+from giveway.scenario_files.configuration_text import configuration_of
 from sumo_scenarios.build import netconvert_and_home
 
 _BUILD: Final = """<?xml version="1.0" encoding="UTF-8"?>
@@ -59,10 +59,10 @@ class Demand(NamedTuple):
 
 def map_configuration(name: str, demand: Demand) -> dict[str, str]:
     """Return the configurations of netconvert and of SUMO, by the names of their files."""
-    routes, end = ",".join(_kinds(name, demand)), demand.duration + _LATE
+    end, routes = demand.duration + _LATE, [*_kinds(name, demand)]
     return {
         f"{name}.netccfg": _BUILD.format(name=name),
-        f"{name}.sumocfg": CONFIGURATION.format(name=name, routes=routes, end=end),
+        f"{name}.sumocfg": configuration_of(name, end, step=0.1, routes=routes),
     }
 
 

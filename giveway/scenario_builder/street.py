@@ -8,6 +8,7 @@ from typing import Any, Final
 import tomlkit
 
 from giveway.scenario_builder.description import KMH, Crossing, Street
+from giveway.scenario_files.configuration_text import configuration_of
 
 _REACH: Final = 40.0  # Longest way [m] of people along a pavement, before or after a crossing
 _BESIDE: Final = 15.0  # Half of the length [m] along which people cross where nothing is marked
@@ -15,25 +16,6 @@ _VERGE: Final = 2.0  # Width [m] of the strip beside a road without pavements
 _DEPARTS: Final = [30.0, 60.0]  # Window [s] in which the ego's departure is drawn
 _XML: Final = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
-CONFIGURATION: Final = (
-    _XML
-    + """<configuration>
-    <input>
-        <net-file value="{name}.net.xml"/>
-        <route-files value="{routes}"/>
-    </input>
-    <time>
-        <begin value="0"/>
-        <end value="{end:g}"/>
-        <step-length value="0.1"/>
-    </time>
-    <processing>
-        <pedestrian.model value="striping"/>
-    </processing>
-</configuration>
-"""
-)
-"""SUMO's configuration: {name}, {routes} and {end} are to be filled in."""
 _BUILD: Final = (
     _XML
     + """<configuration>
@@ -77,8 +59,8 @@ def street_files(street: Street, name: str) -> dict[str, str]:
         f"{name}.tll.xml": _programmes(street),
         f"{name}.netccfg": _BUILD.format(name=name),
         f"{name}.rou.xml": _routes(street),
-        f"{name}.sumocfg": CONFIGURATION.format(
-            name=name, routes=f"{name}.rou.xml", end=street.demand.duration
+        f"{name}.sumocfg": configuration_of(
+            name, street.demand.duration, step=0.1, routes=[f"{name}.rou.xml"]
         ),
         f"{name}.giveway.toml": _settings(street),
     }

@@ -35,21 +35,6 @@ shape="{gate_west_shape}"/>
 
 </net>
 """
-_CONFIGURATION = """<?xml version="1.0" encoding="UTF-8"?>
-<configuration>
-    <input>
-        <net-file value="{name}.net.xml"/>
-{routes}    </input>
-    <time>
-        <begin value="0"/>
-        <end value="{end:g}"/>
-        <step-length value="0.05"/>
-    </time>
-    <processing>
-        <pedestrian.model value="striping"/>
-    </processing>
-</configuration>
-"""
 
 
 def network_along(path: Array, limit: float) -> str:
@@ -80,15 +65,6 @@ def network_along(path: Array, limit: float) -> str:
         **junctions,
         **shapes,
     )
-
-
-def configuration_of(name: str, end: float, *, routes: bool = False) -> str:
-    """Return the text of the configuration ``NAME.sumocfg``, which ends at a time [s].
-
-    With ``routes`` it reads ``NAME.rou.xml``, too.
-    """
-    file = f'        <route-files value="{name}.rou.xml"/>\n' if routes else ""
-    return _CONFIGURATION.format(name=name, end=end, routes=file)
 
 
 def _points(points: Array) -> str:

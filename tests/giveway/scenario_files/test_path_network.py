@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import giveway
-from giveway.scenario_files.path_network import configuration_of, network_along
+from giveway.scenario_files.configuration_text import configuration_of
+from giveway.scenario_files.path_network import network_along
 
 if TYPE_CHECKING:
     from pathlib import Path

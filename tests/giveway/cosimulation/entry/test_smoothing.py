@@ -16,7 +16,8 @@ from giveway.cosimulation.entry.smoothing import smoothed
 from giveway.ego.rules.speed_profile import in_bends
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.scenario_files.path_network import configuration_of, network_along
+from giveway.scenario_files.configuration_text import configuration_of
+from giveway.scenario_files.path_network import network_along
 from giveway.sumo.network.lane_path import LanePath, LaneWidth, Light, Passage, SpeedLimit
 
 if TYPE_CHECKING:

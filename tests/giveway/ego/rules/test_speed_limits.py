@@ -12,7 +12,8 @@ from giveway.ego.rules.protocol import Situation
 from giveway.ego.rules.speed_limits import SpeedLimits, VariableSpeedLimits
 from giveway.ego.rules.speed_profile import SpeedProfile
 from giveway.geometry.path import EgoPath
-from giveway.scenario_files.path_network import configuration_of, network_along
+from giveway.scenario_files.configuration_text import configuration_of
+from giveway.scenario_files.path_network import network_along
 from giveway.sumo.network.lane_path import SpeedLimit
 
 if TYPE_CHECKING:
