@@ -1,23 +1,26 @@
 """Blocks of measured text in pages, between marks that name them; each says its version.
 
 A block begins with ``<!-- evidence: NAME -->`` and ends with ``<!-- end -->``. Its first line says
-of which commit, day and sample it is. ``docs/blocks.json`` has a digest of each block as its
-command wrote it, by its name, so that a number that is changed by hand is found.
+of which commit, day and sample it is. What follows is stored in ``docs/measured`` as well, each
+table as a CSV and all else as text, so that a number that is changed by hand is found.
 """
 
 from __future__ import annotations
 
-import hashlib
-import json
+import csv
+import io
 import re
 import subprocess
+from collections.abc import Iterable
+from itertools import groupby
 from pathlib import Path
 
 from digests import HOUSE
 
 BLOCK = re.compile(r"<!-- evidence: (?P<name>[^>]+?) -->\n(?P<text>.*?)<!-- end -->", re.DOTALL)
-DIGESTS = HOUSE / "docs" / "blocks.json"
+MEASURED = HOUSE / "docs" / "measured"
 PACKAGES = ("giveway", "controller", "pedestrian_model", "fmus", "sumo_scenarios")
+_BORDER = re.compile(r"[|: -]+")  # The line between the head and the rows of a table
 
 
 def block_names(page: str) -> list[str]:
@@ -56,22 +59,42 @@ def present_version() -> tuple[str, str]:
     return commit + "+" * bool(same.returncode), date
 
 
-def digests_of(page: str) -> list[tuple[str, str]]:
-    """The name and digest of each block of a page."""
-    return [
-        (match["name"], hashlib.sha256(match["text"].encode()).hexdigest()[:16])
-        for match in BLOCK.finditer(page)
-    ]
+def stored_files(page: str, name: str, lines: Iterable[str]) -> dict[str, str]:
+    """The files that store a block: the name of each and its text.
+
+    Args:
+        page: Name of the page, without its ending.
+        name: Name of the block.
+        lines: Its lines, without the first one.
+    """
+    stem = re.sub(r"[^a-z0-9]+", "_", f"{page} {name}".lower()).strip("_")
+    parts = [(table, list(part)) for table, part in groupby(lines, lambda line: line[:1] == "|")]
+    tables = [_csv(part) for table, part in parts if table]
+    ends = [""] if len(tables) == 1 else [f"_{number}" for number in range(1, len(tables) + 1)]
+    files = {f"{stem}{end}.csv": text for end, text in zip(ends, tables, strict=True)}
+    rest = [line for table, part in parts if not table for line in part if line]
+    return files | ({f"{stem}.txt": "\n".join(rest) + "\n"} if rest else {})
+
+
+def _csv(lines: Iterable[str]) -> str:
+    """The cells of a Markdown table as CSV, without the marks of code and of bold letters."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    for line in lines:
+        if not _BORDER.fullmatch(line):
+            cells = re.split(r"(?<!\\)\|", line.strip().strip("|"))
+            writer.writerow([re.sub(r"[`*\\]", "", cell).strip() for cell in cells])
+    return text.getvalue()
 
 
 def write_block(
-    file: Path, name: str, lines: list[str], version: str, digests: Path = DIGESTS
+    file: Path, name: str, lines: list[str], version: str, measured: Path = MEASURED
 ) -> None:
-    """Write the lines of one block into its page, and its digest in the place of the former one."""
+    """Write the lines of one block into its page, and the files that store it."""
     before = file.read_text(encoding="utf-8")
-    page = filled(before, name, lines, version)
-    file.write_text(page, encoding="utf-8")
-    entries = json.loads(digests.read_text(encoding="utf-8"))
-    former, new = dict(digests_of(before))[name], dict(digests_of(page))[name]
-    entries[name] = sorted({*entries.get(name, ()), new} - ({former} - {new}))
-    digests.write_text(json.dumps(dict(sorted(entries.items())), indent=1) + "\n", encoding="utf-8")
+    file.write_text(filled(before, name, lines, version), encoding="utf-8")
+    former = next(match["text"] for match in BLOCK.finditer(before) if match["name"] == name)
+    for gone in stored_files(file.stem, name, former.splitlines()[1:]):
+        (measured / gone).unlink(missing_ok=True)
+    for stored, text in stored_files(file.stem, name, lines).items():
+        (measured / stored).write_text(text, encoding="utf-8")

@@ -102,22 +102,29 @@ def test_other_code_with_the_same_drives_can_be_confirmed(
     assert "same drives at" in ledger.listing({"pid": page}, ledger.read_ledger(file))[1]
 
 
-def test_each_block_is_as_its_command_wrote_it() -> None:
-    written = json.loads(blocks.DIGESTS.read_text(encoding="utf-8"))
+def test_each_number_of_a_block_is_in_a_stored_file_as_its_command_wrote_it() -> None:
+    expected: dict[str, str] = {}
     for place, text in measured().items():
-        ((name, digest),) = blocks.digests_of(f"<!-- evidence: {place} -->\n{text}<!-- end -->")
-        assert digest in written[name.partition(": ")[2]], f"{place}: changed by hand?"
+        page, _, name = place.partition(": ")
+        files = blocks.stored_files(Path(page).stem, name, text.splitlines()[1:])
+        assert files, f"{place}: nothing in it"
+        assert not files.keys() & expected.keys(), f"{place}: another block's file"
+        expected |= files
+    stored = {file.name: file.read_text("utf-8") for file in blocks.MEASURED.iterdir()}
+    differ = {name for name, text in expected.items() if stored.get(name) != text}
+    assert not differ, "changed by hand?"
+    assert stored.keys() == expected.keys()
 
 
-def test_a_block_that_is_written_replaces_its_digest(tmp_path: Path) -> None:
-    page, kept = tmp_path / "page.md", tmp_path / "blocks.json"
-    page.write_text("<!-- evidence: a -->\n1\n<!-- end -->\n", encoding="utf-8")
-    ((_, before),) = blocks.digests_of(page.read_text(encoding="utf-8"))
-    kept.write_text(json.dumps({"a": [before, "another page's"]}), encoding="utf-8")
-    blocks.write_block(page, "a", ["2"], "Commit abc.", kept)
-    ((_, after),) = blocks.digests_of(page.read_text(encoding="utf-8"))
-    assert json.loads(kept.read_text(encoding="utf-8")) == {"a": sorted([after, "another page's"])}
-    assert after != before
+def test_a_block_that_is_written_replaces_its_files(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("<!-- evidence: a -->\n*1*\n1\n<!-- end -->\n", encoding="utf-8")
+    (tmp_path / "page_a.txt").write_text("1\n", encoding="utf-8")
+    table = ["| car | time, s |", "|---|---|", "| `mpc` | 2.5 **+** |", "| a \\| b | |"]
+    blocks.write_block(page, "a", [*table, "", "and more"], "Commit abc.", tmp_path)
+    stored = {file.name: file.read_text("utf-8") for file in tmp_path.iterdir() if file != page}
+    rows = 'car,"time, s"\nmpc,2.5 +\na | b,\n'
+    assert stored == {"page_a.csv": rows, "page_a.txt": "and more\n"}
 
 
 def test_only_the_named_block_of_a_page_is_written() -> None:
