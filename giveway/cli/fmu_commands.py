@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli.help import Commands
+from giveway.cli.help import Commands, JsonFlag
 from giveway.cli.option_groups import DryRun, ReplaceFile, StepTests, Unsealed
 from giveway.cli.ungrouping import ungrouped
 from giveway.errors import ConfigError
@@ -83,11 +83,14 @@ def _inspect(
     controller: Annotated[
         bool, typer.Option("--controller", help="It is a controller, and no vehicle.")
     ] = False,
+    as_json: JsonFlag = False,
 ) -> None:
     """Tell what an FMU is, without loading it, and draft its profile."""
     from giveway.cli.commands.fmu_tools.fmu_inspect import inspect_command
 
-    raise typer.Exit(inspect_command(fmu, draft, everything=everything, controller=controller))
+    raise typer.Exit(
+        inspect_command(fmu, draft, everything=everything, controller=controller, as_json=as_json)
+    )
 
 
 def _check(

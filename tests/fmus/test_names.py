@@ -13,7 +13,7 @@ from fmus import names
 
 def test_they_are_those_of_the_package():
     brought: dict[str, object] = {}
-    exec("from fmus import *", brought)  # noqa: S102
+    exec("from fmus import *", brought)
     assert {name: brought.get(name) for name in names.__all__} == {
         name: getattr(names, name) for name in names.__all__
     }

@@ -9,6 +9,7 @@ from typing import Any
 import typer
 
 from giveway.cli.flags import set_options
+from giveway.cli.screen.printing import print_json
 from giveway.config import RunConfig
 from giveway.config.files.foreign_code import foreign_code, require_code
 from giveway.config.files.layers import Layer, build_config
@@ -31,6 +32,8 @@ def check_command(
     limit: float = LIMIT,
     time_step: float | None = None,
     profile: str = "",
+    *,
+    as_json: bool = False,
 ) -> int:
     """Print the findings and return the exit code: 1 if a rule is broken.
 
@@ -43,6 +46,7 @@ def check_command(
         limit: Time limit [s] for one rule.
         time_step: Time step [s] of the scenes, or None for that of a run which sets none.
         profile: Profile of a controller FMU.
+        as_json: True to print the findings as JSON.
 
     Raises:
         GivewayError: the plug-in cannot be found, imported or given its options.
@@ -54,11 +58,15 @@ def check_command(
         raise ConfigError(msg)
     require_code(config, time_step or PAPER_STEP)
     findings = _in_a_process(config, socket, limit)
+    broken = sum(bool(problem) for _, problem in findings)
+    if as_json:
+        told = [{"rule": rule, "problem": problem} for rule, problem in findings]
+        print_json({socket.what: name, "broken": broken, "rules": told})
+        return 1 if broken else 0
     for rule, problem in findings:
         typer.echo(f"{'broken' if problem else 'kept':7} {rule}")
         if problem:
             typer.echo(f"        {problem}")
-    broken = sum(bool(problem) for _, problem in findings)
     typer.echo(f"{name}: {broken} of {len(findings)} rules broken" if broken else f"{name}: sound")
     return 1 if broken else 0
 

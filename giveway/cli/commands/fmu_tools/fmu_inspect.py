@@ -4,8 +4,9 @@ Nothing of the FMU is unpacked, loaded or run.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Column, Table
@@ -24,6 +25,7 @@ from fmus.profile.draft import Draft
 from fmus.profile.draft_profile import draft_profile
 from fmus.text import printable
 from giveway.cli.exit import fail
+from giveway.cli.screen.printing import print_json
 from giveway.config.files.schema_names import PROFILE, with_schema
 
 SHOWN: Final = 12  # Number of rows shown of a list
@@ -39,7 +41,12 @@ INNER: Final = (("Local variables", frozenset({"local", "calculatedParameter"}))
 
 
 def inspect_command(
-    path: Path, draft: Path | None = None, *, everything: bool = False, controller: bool = False
+    path: Path,
+    draft: Path | None = None,
+    *,
+    everything: bool = False,
+    controller: bool = False,
+    as_json: bool = False,
 ) -> int:
     """Print the description of an FMU and a drafted profile.
 
@@ -48,6 +55,7 @@ def inspect_command(
         draft: File for the drafted profile, which must not exist, or None.
         everything: True for whole lists instead of their beginnings.
         controller: True if the FMU is a controller and no vehicle.
+        as_json: True to print all of this as JSON.
 
     Returns:
         0, or 2 for an FMU that is refused or a file that exists already.
@@ -60,7 +68,7 @@ def inspect_command(
     drafted: Draft | ControllerDraft
     drafted = draft_controller(model) if controller else draft_profile(model)
     text = drafted.toml if controller else with_schema(drafted.toml, PROFILE)
-    console = Console()
+    console = Console(quiet=as_json)
     for part in _parts(model, archive.sha256, everything=everything):
         console.print(part)
         console.print()
@@ -74,7 +82,26 @@ def inspect_command(
         except OSError as error:
             return fail(f"{draft}: cannot be written: {error.strerror}", REFUSED)
     console.print(_verdict(drafted, draft), soft_wrap=True)
+    if as_json:
+        told = {"sha256": archive.sha256, "profile": text, "questions": _questions(drafted)}
+        print_json(_described(model) | told)
     return 0
+
+
+def _described(model: Model) -> dict[str, Any]:
+    """Return the description of an FMU for a script."""
+    return {
+        "fmu": str(model.path),
+        "model": model.name,
+        "description": model.description,
+        "generation_tool": model.generation_tool,
+        "fmi_version": model.fmi_version,
+        "interfaces": {kind.value: dict(one.flags) for kind, one in model.interfaces.items()},
+        "platforms": list(model.platforms),
+        "default_step": model.default_step,
+        "variables": [asdict(variable) for variable in model.variables.values()],
+        "remarks": _remarks(model),
+    }
 
 
 def _parts(model: Model, sha256: str, *, everything: bool) -> Iterator[Table]:
@@ -88,10 +115,15 @@ def _parts(model: Model, sha256: str, *, everything: bool) -> Iterator[Table]:
     units = dict.fromkeys(v.unit for v in shown if v.unit)
     if units:
         yield _units(model, list(units), len(units) if everything else SHOWN)
-    validated = len(model.variables) <= VALIDATED and model.system is None
-    found = findings(model.path) if validated else []
+    found = _remarks(model)
     if found:
         yield _findings(found, len(found) if everything else SHOWN_FINDINGS)
+
+
+def _remarks(model: Model) -> list[str]:
+    """Return what is not as the standard wants it; validation is left out where it is slow."""
+    validated = len(model.variables) <= VALIDATED and model.system is None
+    return findings(model.path) if validated else []
 
 
 # ---- the description ----
@@ -253,10 +285,8 @@ def _profile(toml: str) -> Text:
 
 
 def _verdict(drafted: Draft | ControllerDraft, draft: Path | None) -> Text:
-    if isinstance(drafted, Draft):
-        doubts, open_lines = list(drafted.doubts), bool(drafted.open_lines)
-    else:
-        doubts, open_lines = [doubt for _, doubt in drafted.open], False
+    doubts = _questions(drafted)
+    open_lines = isinstance(drafted, Draft) and drafted.open_lines
     where = f"Draft written to {draft}" if draft is not None else "Draft above"
     if not doubts:
         rest = "; what is marked '# ?' may stay so" if open_lines else ""
@@ -265,3 +295,10 @@ def _verdict(drafted: Draft | ControllerDraft, draft: Path | None) -> Text:
     for doubt in doubts:
         text.append(f"\n  {printable(doubt)}", style="not bold default")
     return text
+
+
+def _questions(drafted: Draft | ControllerDraft) -> list[str]:
+    """Return the open questions of a draft."""
+    if isinstance(drafted, Draft):
+        return list(drafted.doubts)
+    return [doubt for _, doubt in drafted.open]

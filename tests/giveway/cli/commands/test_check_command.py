@@ -1,5 +1,6 @@
 """The check of a plug-in in a process of its own, which only the command itself may end."""
 
+import json
 import os
 import signal
 import subprocess
@@ -57,3 +58,10 @@ def test_control_c_from_the_terminal_gives_one_line(later):
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
     assert said == "error: interrupted\n"
+
+
+def test_for_a_script(type_here):
+    told = json.loads(type_here("check", "controller", "idm", "--json").stdout)
+    assert {"rule": "can be made", "problem": ""} in told["rules"]
+    assert told["broken"] == sum(bool(rule["problem"]) for rule in told["rules"])
+    assert told["controller"] == "idm"

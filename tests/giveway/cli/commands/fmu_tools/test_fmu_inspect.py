@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 import zipfile
 
@@ -47,6 +48,16 @@ def test_as_a_user_types_it(type_here):
     assert done.returncode == 0
     assert "LongitudinalVehicle" in done.stdout
     assert "[inputs.force]" in done.stdout
+
+
+def test_for_a_script(type_here, zoo):
+    done = type_here("fmu", "inspect", zoo.car(role="acceleration"), "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    told = json.loads(done.stdout)
+    assert told["fmi_version"] == "2.0"
+    assert "output" in {variable["causality"] for variable in told["variables"]}
+    assert "inputs" in tomllib.loads(told["profile"])
+    assert told["questions"] == []
 
 
 def test_what_an_fmu_is(inspect, zoo):
