@@ -15,6 +15,7 @@ import argparse
 from pathlib import Path
 
 import pandas as pd
+from markdown_table import markdown
 
 import giveway
 from sumo_scenarios import find
@@ -51,11 +52,11 @@ def drive(scenario: str, kind: str, seed: int) -> dict[str, object]:
         "scenario": scenario,
         "false detections": kind,
         "seed": seed,
-        "number": int(result.sights["id"].astype(str).str.startswith("false:").sum()),
+        "per drive": int(result.sights["id"].astype(str).str.startswith("false:").sum()),
         "time [s]": float(summary["completion_time"]),
-        "layer [%]": 100.0 * float(summary["safety_share"]),
-        "braked for nothing": int(summary["hard_brakes_without_cause"]),
-        "frontal": int(summary["frontal_contacts"]),
+        "layer acts [%]": 100.0 * float(summary["safety_share"]),
+        "hard brakings for nothing": int(summary["hard_brakes_without_cause"]),
+        "frontal contacts": int(summary["frontal_contacts"]),
     }
 
 
@@ -68,11 +69,11 @@ def summarised(rows: pd.DataFrame) -> pd.DataFrame:
         - free.loc[list(zip(rows["scenario"], rows["seed"], strict=True))].to_numpy()
     )
     by = rows.groupby(keys, sort=False)
-    table = by[["number", "time [s]", "layer [%]", "braked for nothing"]].mean()
-    table.insert(2, "lost [s]", by["lost"].mean())
-    table.insert(3, "at most [s]", by["lost"].max())
-    table["frontal"] = by["frontal"].sum()
-    return table.round(1).reset_index()
+    table = by[["per drive", "time [s]", "layer acts [%]", "hard brakings for nothing"]].mean()
+    table.insert(2, "lost, mean [s]", by["lost"].mean())
+    table.insert(3, "lost, most [s]", by["lost"].max())
+    table["frontal contacts"] = by["frontal contacts"].sum()
+    return table.reset_index()
 
 
 def main() -> None:
@@ -87,7 +88,7 @@ def main() -> None:
         for kind in KINDS
         for seed in range(1, options.seeds + 1)
     )
-    print(summarised(rows).to_string(index=False))
+    print(markdown(summarised(rows)))
     if options.out is not None:
         options.out.mkdir(parents=True, exist_ok=True)
         rows.to_csv(options.out / "false_detections.csv", index=False)

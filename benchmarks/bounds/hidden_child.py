@@ -21,6 +21,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
+from markdown_table import markdown
 
 import giveway
 from sumo_scenarios import find
@@ -124,15 +125,15 @@ def main() -> None:
         rows.append(
             {
                 "driver": driver,
-                "time [s]": round(float(free["time"].iloc[-1] - free["time"].iloc[0]), 1),
-                "past the cars [km/h]": round(3.6 * float(past["speed"].median()), 1),
-                "frontal": len(front),
-                "side": sum(one.contact == "side" for one in mine),
+                "time without the child [s]": float(free["time"].iloc[-1] - free["time"].iloc[0]),
+                "past the cars [km/h]": 3.6 * float(past["speed"].median()),
+                "hit by the moving front": len(front),
+                "into its side": sum(one.contact == "side" for one in mine),
                 "fastest impact [km/h]": _most(d.impact for d in front),
                 "above physics [km/h]": _most(d.impact - d.allowed for d in front),
             }
         )
-    print(pd.DataFrame(rows).to_string(index=False))
+    print(markdown(pd.DataFrame(rows)))
     if options.out is not None:
         options.out.mkdir(parents=True, exist_ok=True)
         table = pd.DataFrame([asdict(one) for one in drives])
@@ -141,8 +142,8 @@ def main() -> None:
 
 
 def _most(speeds: Iterable[float]) -> float:
-    """The highest of some speeds [m/s] in km/h, or 0 without any."""
-    return round(3.6 * max(speeds, default=0.0), 1)
+    """The highest of some speeds [m/s] in km/h, or NaN without any."""
+    return 3.6 * max(speeds, default=np.nan)
 
 
 def _draw(table: pd.DataFrame, file: Path) -> None:

@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from hidden_child import DRIVERS, contact_of
+from markdown_table import markdown
 
 import giveway
 from sumo_scenarios import find
@@ -56,9 +57,10 @@ def drive(variant: str, driver: str, shift: float) -> dict[str, object]:
         "shift": shift,
         "time [s]": float(result.summary["completion_time"]),
         "past the cars [km/h]": 3.6 * float(ego[ego["x"].between(*ROW)]["speed"].median()),
-        "hardest braking [m/s^2]": float(result.summary["peak_deceleration"]),
+        "hardest braking [m/s²]": float(result.summary["peak_deceleration"]),
         "by the front": sum(contact == "front" for contact, _ in met),
-        "fastest [km/h]": 3.6 * max((v for contact, v in met if contact == "front"), default=0.0),
+        "fastest [km/h]": 3.6
+        * max((v for contact, v in met if contact == "front"), default=np.nan),
         "into a side": sum(contact == "side" for contact, _ in met),
     }
 
@@ -67,12 +69,13 @@ def summarised(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the table by variant and driver, of one row per drive."""
     by = rows.groupby(["children", "driver"], sort=False)
     table = by[["time [s]", "past the cars [km/h]"]].median()
-    table["hardest braking [m/s^2]"] = by["hardest braking [m/s^2]"].max()
-    table["drives that hit"] = by["by the front"].agg(lambda hit: int((hit > 0).sum()))
-    table["by the front"] = by["by the front"].sum()
+    table["hardest braking [m/s²]"] = by["hardest braking [m/s²]"].max()
+    table["drives"] = by.size()
+    table["that hit a child"] = by["by the front"].agg(lambda hit: int((hit > 0).sum()))
+    table["children hit by the front"] = by["by the front"].sum()
     table["fastest [km/h]"] = by["fastest [km/h]"].max()
     table["into a side"] = by["into a side"].sum()
-    return table.round(1).reset_index()
+    return table.reset_index()
 
 
 def main() -> None:
@@ -88,7 +91,7 @@ def main() -> None:
         for driver in NAMES
         for shift in shifts
     )
-    print(summarised(rows).to_string(index=False))
+    print(markdown(summarised(rows)))
     if options.out is not None:
         options.out.mkdir(parents=True, exist_ok=True)
         rows.to_csv(options.out / "school_run.csv", index=False)

@@ -1,10 +1,10 @@
 """How people really move near a car.
 
-Run: python benchmarks/bounds/worst_motion.py FOLDER --dataset citr [--sites]
+Run: python benchmarks/bounds/worst_motion.py FOLDER --dataset citr dut [--window 0.5] [--sites]
 
-Percentiles of the accelerations, of what these come to over some time, of turning, and of how fast
-an acceleration sets in, of recorded people about a vehicle. They are what ``[safety] people`` rests
-on; docs/safety.md says what the columns mean.
+Percentiles of the accelerations, of what these come to over some time, of speed and of turning, of
+recorded people about a vehicle. They are what ``[safety] people`` rests on; docs/safety.md says
+what the columns mean. Each data set is in FOLDER, or in a folder there that has its name.
 """
 
 from __future__ import annotations
@@ -25,19 +25,18 @@ from giveway.validation import dataset_of, read_clips
 from giveway.validation.clips import Clip
 from giveway.validation.protocol import Protocol, distance_to_bodies, vehicle_rows
 
-WINDOWS = (0.0, 0.3, 0.5, 0.8)  # [s] of the smoothing; 0: differences of the data's own velocities
+WINDOW = 0.5  # [s] of the smoothing; 0: differences of the data's own velocities
 ORDER = 3  # of the polynomials
 NEAR = 5.0  # [m] from a centre to a vehicle's body
 MOVING = 0.3  # [m/s] of the vehicle at least
 TURNING = 0.5  # [m/s] who is slower has no heading
 AHEAD = (0.5, 1.0, 1.5)  # [s] over which people depart from a straight line
-CALM, BRISK = 0.3, 1.0  # [m/s^2] between which an acceleration sets in
 WITHIN = (NEAR, 10.0)  # [m] from a centre to a vehicle's body, of the people in the table of sites
 REACHES = (0.25, 0.5, 1.0, 1.5, 2.0)  # [s] after which people are in the layer's reachable sets
 LATE = 0.25  # [s] over which positions give a velocity without smoothing
 MARGIN = SafetyParameters().margin  # [m] by which the layer keeps farther from a body
 RESAMPLES = 1000  # of the clips
-PERCENTILES = (50.0, 95.0, 99.0, 99.9, 100.0)
+PERCENTILES = (95.0, 99.0, 99.9, 100.0)
 Array = NDArray[np.float64]
 
 
@@ -110,55 +109,39 @@ def departures(found: list[Track], ahead: float, dt: float) -> Array:
     return np.concatenate(parts)
 
 
-def onsets(found: list[Track], dt: float) -> Array:
-    """[s] from the last instant of calm walking to the first of a brisk acceleration."""
-    times: list[float] = []
-    for track in found:
-        size = np.hypot(track.acceleration[:, 0], track.acceleration[:, 1])
-        begins = np.flatnonzero((size[1:] >= BRISK) & (size[:-1] < BRISK)) + 1
-        for k in begins:
-            calm = np.flatnonzero(size[:k] < CALM)
-            if len(calm) and track.near[k]:
-                times.append(dt * (k - calm[-1]))
-    return np.array(times)
-
-
-def show(name: str, values: Array, percentiles: tuple[float, ...] = PERCENTILES) -> None:
-    """One row."""
-    if not len(values):
-        print(f"{name:44}{'nobody':>9}")
-        return
-    numbers = " ".join(f"{value:8.2f}" for value in np.percentile(values, percentiles))
-    print(f"{name:44}{len(values):9} {numbers}")
-
-
-def report(clips: tuple[Clip, ...], window: float) -> None:
-    """The rows of one smoothing."""
-    found = list(tracks(clips, window))
+def quantities(clips: tuple[Clip, ...], window: float) -> dict[str, Array]:
+    """What is measured of the people near a moving vehicle, by the heads of the table's rows."""
+    found = [track for track in tracks(clips, window) if track.near.any()]
     dt = Protocol.of(clips[0].dataset).time_step
-    size = [np.hypot(*track.acceleration[track.near].T) for track in found]
-    component = [
-        np.einsum("ij,ij->i", track.acceleration, track.towards)[track.near] for track in found
-    ]
-    people = sum(bool(track.near.any()) for track in found)
-    words = f"{window:g} s" if window else "none (the data's velocities)"
-    print(f"\nsmoothing {words}: {people} people within {NEAR:g} m of a moving vehicle")
-    heads = " ".join(f"{f'{p:g} %':>8}" for p in PERCENTILES)
-    print(f"{'':44}{'frames':>9} {heads}")
-    show("acceleration [m/s^2]", np.concatenate(size))
-    show("... towards the vehicle", np.concatenate(component))
-    for ahead in AHEAD:
-        show(f"... that departs as far within {ahead:g} s", departures(found, ahead, dt))
-    turns = []
-    for track in found:
-        v, a = track.velocity, track.acceleration
-        speed = np.hypot(v[:, 0], v[:, 1])
-        fast = track.near & (speed > TURNING)
-        cross = v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]
-        turns.append(np.degrees(np.abs(cross[fast]) / speed[fast] ** 2))
-    show("turning [deg/s]", np.concatenate(turns))
-    show("speed [m/s]", np.concatenate([np.hypot(*t.velocity[t.near].T) for t in found]))
-    show("onset of an acceleration of 1 m/s^2 [s]", onsets(found, dt), (1.0, 5.0, 50.0, 95.0, 99.0))
+    v, a, towards = (
+        np.concatenate([getattr(track, name)[track.near] for track in found])
+        for name in ("velocity", "acceleration", "towards")
+    )
+    speed = np.hypot(*v.T)
+    fast, cross = speed > TURNING, v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]
+    leaves = {
+        f"acceleration that leaves a straight line as far within {ahead:g} s [m/s²]": departures(
+            found, ahead, dt
+        )
+        for ahead in AHEAD
+    }
+    return {
+        "acceleration [m/s²]": np.hypot(*a.T),
+        "its part towards the vehicle [m/s²]": np.einsum("ij,ij->i", a, towards),
+        **leaves,
+        "speed [m/s]": speed,
+        f"turning above {TURNING:g} m/s [°/s]": np.degrees(np.abs(cross[fast]) / speed[fast] ** 2),
+    }
+
+
+def table(measured: dict[str, dict[str, Array]]) -> None:
+    """Print the percentiles as Markdown: a row for each quantity, columns for each data set."""
+    heads = [f"{name} {p:g} %" for name in measured for p in PERCENTILES]
+    print(f"| | {' | '.join(heads)} |\n|{'---|' * (1 + len(heads))}")
+    for row in next(iter(measured.values())):
+        numbers = np.concatenate([np.percentile(of[row], PERCENTILES) for of in measured.values()])
+        digits = 0 if row.startswith("turning") else 2
+        print(f"| {row} | {' | '.join(f'{number:.{digits}f}' for number in numbers)} |")
 
 
 class Needed(NamedTuple):
@@ -221,13 +204,13 @@ def quantile(values: Array, clip: NDArray[np.int64], share: float) -> tuple[floa
 
 
 def site_of(clip: Clip) -> str:
-    """Return the site of a clip: its name without the number, where clips are numbered."""
+    """Return the site of a clip: its data set, and at DUT its name without the number."""
     name = clip.name.rstrip("0123456789").rstrip("_")
-    return name if clip.dataset.name == "DUT" else ""
+    return f"DUT {name}" if clip.dataset.name == "DUT" else clip.dataset.name
 
 
-def sites(clips: tuple[Clip, ...]) -> None:
-    """Print the table of sites."""
+def sites(clips: Sequence[Clip]) -> None:
+    """Print the table of sites of all data sets."""
     bounds = [RECORDED[name] for name in ("recorded-99.9", "responsible")]
     keep = [f"people, instants [%] within {b.acceleration:g}, {b.speed:g}" for b in bounds]
     heads = [
@@ -251,7 +234,7 @@ def sites(clips: tuple[Clip, ...]) -> None:
         rows.append((WITHIN[-1], "positions over 0.25 s", needed(raw, dt, late=True)))
         rows.append((WITHIN[-1], "the file's", needed(raw, dt)))
         for within, velocity, found in rows:
-            row = [f"{its[0].dataset.name} {site}".strip(), f"{within:g}", velocity]
+            row = [site, f"{within:g}", velocity]
             print(f"| {' | '.join([*row, *cells(found, bounds)])} |")
 
 
@@ -282,16 +265,21 @@ def cells(found: Needed, bounds: Sequence[WorstMotion]) -> list[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--dataset", required=True, help="citr, dut, or a description (TOML)")
+    parser.add_argument(
+        "--dataset", required=True, nargs="+", help="citr, dut, or a description (TOML)"
+    )
+    parser.add_argument("--window", type=float, default=WINDOW, help="smoothing [s], or 0")
     parser.add_argument("--sites", action="store_true", help="print the table of sites")
     options = parser.parse_args()
-    clips = read_clips(options.folder, dataset_of(options.dataset))
+    found = {}
+    for name in options.dataset:
+        own = options.folder / name
+        dataset = dataset_of(name)
+        found[dataset.name] = read_clips(own if own.is_dir() else options.folder, dataset)
     if options.sites:
-        sites(clips)
+        sites([clip for clips in found.values() for clip in clips])
         return
-    for window in WINDOWS:
-        report(clips, window)
-    print("\nThe last row has the percentiles 1, 5, 50, 95 and 99.")
+    table({name: quantities(clips, options.window) for name, clips in found.items()})
 
 
 if __name__ == "__main__":

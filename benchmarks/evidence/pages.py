@@ -1,13 +1,10 @@
-"""The pages with measured blocks: what is run for each, and which block it fills.
-
-A page that is ``kept`` is not made anew with the others: its campaign has over 1,000 drives, or
-its data are not in the repository.
-"""
+"""The pages with measured blocks: what is run for each, and which block it fills."""
 
 from __future__ import annotations
 
 import comparisons
 import samples
+from kept_pages import KEPT
 from makers import (
     BELOW_TTC,
     BRIEF,
@@ -34,6 +31,8 @@ CLAIRVOYANT = tuple(
     for part in ("", "_encroachment", "_front", "_front_tables", "_lattice", "_search")
 )
 
+
+SIGHT = ("hidden_child", "school_run", "false_detections", "markdown_table")
 
 SPEED = (
     shell("bench_loop.py", "bench_loop.py", "--pairs 1"),
@@ -192,6 +191,36 @@ PAGES: dict[str, Page] = {
             (*DRIVING, "benchmarks/tuning"),
         ),
         Page(
+            "contrary-people",
+            "docs/controllers.md",
+            (told("contrary people", "bounds/contrary_people.py", "one drive each", ""),),
+            (*DRIVING, "benchmarks/bounds/contrary_people.py"),
+        ),
+        Page(
+            "creeping",
+            "docs/ablation.md",
+            (told("creeping", "bounds/endless_stream.py", "seeds 1 to 3", "--seeds 1"),),
+            (*DRIVING, "benchmarks/bounds/endless_stream.py"),
+        ),
+        Page(
+            "sight",
+            "docs/sight.md",
+            (
+                told(
+                    "hidden child",
+                    "bounds/hidden_child.py --instants 16",
+                    "16 instants",
+                    "--instants 1",
+                ),
+                told("school", "bounds/school_run.py", "nine instants", "--instants 1"),
+                told("false detections", "bounds/false_detections.py", "ten seeds", "--seeds 1"),
+            ),
+            (
+                *DRIVING,
+                *(f"benchmarks/bounds/{name}.py" for name in SIGHT),
+            ),
+        ),
+        Page(
             "gym",
             "docs/gym.md",
             (told("policy", "evidence/gym_policy.py --seeds 20", "seeds 1 to 20", "--seeds 1"),),
@@ -234,76 +263,6 @@ PAGES: dict[str, Page] = {
             (told("tutorials", "../docs/tutorials/run.py", "in an empty folder each"),),
             (*DRIVING, "giveway/cli", "giveway/scenario_builder", "docs/tutorials"),
         ),
-        Page(
-            "benchmark",
-            "docs/benchmark.md",
-            (
-                told(
-                    "rivals",
-                    "evidence/rivals.py --out {out} --jobs {jobs}",
-                    "seeds 701 to 800",
-                    "--out {out} --runs 2",
-                ),
-            ),
-            (*DRIVING, "giveway/studies/benchmark"),
-            kept=True,
-        ),
-        Page(
-            "front",
-            "docs/cookbook.md",
-            (
-                told(
-                    "front",
-                    "evidence/rivals.py --out {out} --front",
-                    "seeds 701 to 800",
-                    "--out {out} --front",
-                ),
-            ),
-            (*DRIVING, "giveway/studies/benchmark"),
-            kept=True,
-        ),
-        Page(
-            "paper",
-            "docs/reproduction.md",
-            (Block("table 2", samples.PAPER, comparisons.situations),),
-            kept=True,
-        ),
-        Page(
-            "readings",
-            "docs/reproduction.md",
-            (Block("readings", samples.READINGS, comparisons.situations),),
-            kept=True,
-        ),
-        Page(
-            "foreign-law",
-            "docs/law.md",
-            (
-                told(
-                    "foreign networks",
-                    "law/road_campaign.py {data} --drives 8 --brief --out {out} --jobs {jobs}",
-                    "8 drives in each",
-                    "{data} --drives 1 --window 60 --out {out}",
-                ),
-            ),
-            kept=True,
-            junctions=True,
-        ),
-        Page(
-            "recorded-people",
-            "docs/safety.md",
-            (
-                Block(
-                    "recorded people",
-                    Command(
-                        "bounds/worst_motion.py {data} --dataset citr",
-                        "CITR",
-                        "{data} --dataset citr",
-                    ),
-                    code("bounds/worst_motion.py FOLDER --dataset citr"),
-                ),
-            ),
-            ("benchmarks/bounds/worst_motion.py", "giveway/validation"),
-            kept=True,
-        ),
+        *KEPT,
     )
 }

@@ -103,7 +103,7 @@ class Command(NamedTuple):
         script, *words = self.words.split()
         if quick:
             words = self.quick.split()
-        if data is None and "{data}" in words:
+        if data is None and "{data}" in self.words:
             raise RuntimeError(f"benchmarks/{script}: expected --data with its input")
         words = [word.format(out=folder / "out", jobs=jobs, data=data) for word in words]
         done = subprocess.run(

@@ -11,6 +11,7 @@ compare``. With ``--set crowd.model=vci``, people are simulated from their entry
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 import pandas as pd
@@ -22,7 +23,20 @@ from giveway.recordings.measuring import measure
 from giveway.recordings.replacing import scenario_for
 from giveway.results.recorded_drive import RECORDED_DRIVER, compared
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "bounds"))
+
+from markdown_table import markdown
+
 SUMS = ("near", "close", "short_ttc", "short_pet", "person_first", "vehicle_first", "touched")
+TITLES = {
+    "time": "time [s]",
+    "near": "people within 4 m",
+    "close": "passed at less than 0.5 m and more than 2 m/s",
+    "short_ttc": "TTC below 1.5 s",
+    "short_pet": "PET below 1 s",
+    "person_first": "person first",
+    "vehicle_first": "vehicle first",
+}
 CONTROLLERS = "mpc,pid-tuned,careful-driver"
 
 
@@ -80,7 +94,9 @@ def main() -> None:
         recorded = table["driver"] == RECORDED_DRIVER
         rows.setdefault(RECORDED_DRIVER, sums(table[recorded]))
         rows[controller] = sums(table[~recorded])
-    print(pd.DataFrame(rows).T.round(1).to_string())
+    table = pd.DataFrame(rows).T.rename_axis("driver").reset_index()
+    counts = [name for name in table.columns if name not in {"driver", "time"}]
+    print(markdown(table.astype(dict.fromkeys(counts, int)).rename(columns=TITLES)))
 
 
 if __name__ == "__main__":

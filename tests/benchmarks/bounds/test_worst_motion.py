@@ -48,14 +48,14 @@ def test_a_constant_acceleration_is_found_as_it_is(clips, window) -> None:
     assert off == pytest.approx(0.5, abs=1e-6)
 
 
-def test_the_onset_is_the_time_from_calm_to_brisk() -> None:
-    ramp = np.clip(2.0 * (np.arange(100) * 0.1 - 4.0), 0.0, 3.0)
-    still = np.zeros((100, 2))
-    near = np.ones(100, dtype=bool)
-    track = worst.Track(still, still, np.column_stack([ramp, 0.0 * ramp]), near, still)
-    assert worst.onsets([track], 0.1) == pytest.approx([0.4])
-    nobody = track._replace(near=~near)
-    assert len(worst.onsets([nobody], 0.1)) == 0
+def test_the_table_has_a_row_for_each_quantity_of_those_who_are_near(clips, capsys) -> None:
+    measured = worst.quantities(clips, 0.5)
+    worst.table({"MADE": measured, "AGAIN": measured})
+    head, _, *rows = capsys.readouterr().out.splitlines()
+    assert head.startswith("| | MADE 95 % |")
+    assert head.count("AGAIN") == 4
+    assert rows[0] == f"| acceleration [m/s²] |{' 0.50 |' * 8}"
+    assert len(rows) == len(measured)
 
 
 def test_needed_is_the_acceleration_less_what_the_margin_allows(clips) -> None:
