@@ -33,12 +33,6 @@ DIFFERENCES = (
     "mean_people_delay",
 )
 RESAMPLES = 10_000
-SITUATIONS = {
-    "general": ("General: completion time", "completion_time"),
-    "stop-and-wait": ("Stop-and-Wait: longest wait", "longest_wait"),
-    "non-stop": ("Non-stop: completion time", "completion_time"),
-}
-"""Situations of the paper's table 2: title and metric."""
 
 
 def _by_scene(folder: Path) -> tuple[list[str], pd.DataFrame]:
@@ -125,20 +119,4 @@ def saved(folder: Path) -> list[str]:
                 ]
             )
         )
-    return lines
-
-
-def situations(folder: Path) -> list[str]:
-    """Paired differences in the paper's three situations, with the number of pairs."""
-    tables = Tables(folder)
-    by = tables.situations.set_index([*tables.context, "situation", "metric"])
-    lines = header([*tables.context, *(title for title, _ in SITUATIONS.values())])
-    for context in tables.cells[tables.context].drop_duplicates().itertuples(index=False):
-        texts = [str(name) for name in context]
-        for situation, (_, metric) in SITUATIONS.items():
-            key = (*context, situation, metric)
-            found = by.loc[key] if key in by.index else None
-            pairs = "" if found is None else f", n = {int(found.n)}"
-            texts.append((difference_text(found, Column("", "", 2)) or "-") + pairs)
-        lines.append(row(texts))
     return lines
