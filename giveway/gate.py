@@ -99,7 +99,7 @@ def opened(file: Path, *, within: Path | None = None, largest: int) -> Iterator[
 def read_bytes(file: Path, *, within: Path | None = None, largest: int = LARGEST_TEXT) -> bytes:
     """Return the content of a regular file; the arguments and errors are those of ``opened``."""
     with opened(file, within=within, largest=largest) as stream:
-        return stream.read(largest)
+        return stream.read(os.fstat(stream.fileno()).st_size)  # for more, memory would be reserved
 
 
 def read_text(file: Path) -> str:

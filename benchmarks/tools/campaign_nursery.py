@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-MEMORY: Final = 12 << 30  # [B] of address space that a child may take
+MEMORY: Final = 8 << 30  # [B] of address space that a child may take
 FILE: Final = 1 << 30  # [B] that it may write into one file
 RUNS: Final = 12  # of a study that a child makes; then it is interrupted
 TIME: Final = 0.3  # [s] that each of these runs simulates at most

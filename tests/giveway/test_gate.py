@@ -7,6 +7,7 @@ import json
 import os
 import socket
 import tomllib
+import tracemalloc
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -125,6 +126,17 @@ def test_a_file_of_too_many_bytes_is_not_read(tmp_path: Path) -> None:
         stream.truncate(gate.LARGEST_TEXT + 1)  # without blocks on the disk
     with pytest.raises(RefusedFileError, match="67,108,865 bytes"):
         gate.read_json(file)
+
+
+def test_a_small_file_takes_little_memory_however_large_it_may_be(tmp_path: Path) -> None:
+    file = tmp_path / "ego.csv"
+    file.write_bytes(b"time\n")
+    tracemalloc.start()
+    try:
+        assert gate.read_bytes(file, largest=gate.LARGEST_TABLE) == b"time\n"
+        assert tracemalloc.get_traced_memory()[1] < 2**20
+    finally:
+        tracemalloc.stop()
 
 
 def test_the_users_key_signs_and_knows_its_own(
