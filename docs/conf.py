@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from latex2mathml.converter import convert
 
@@ -25,6 +25,13 @@ MENU = tomllib.loads((DOCS / "menu.toml").read_text(encoding="utf-8"))
 PROJECT = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 sys.path.insert(0, str(DOCS))  # field_comments, glossary_links, notebook_pages
+
+
+def source_links(metadata: dict[str, Any]) -> dict[str, str]:
+    """Options with which each page links to its source; none as long as no repository is named."""
+    repository = metadata.get("urls", {}).get("Repository")
+    return {"source_repository": repository, "source_branch": "main"} if repository else {}
+
 
 project = "giveway"
 author = "the giveway engineers"
@@ -66,9 +73,7 @@ add_module_names = False
 
 html_theme = "furo"
 html_title = f"giveway {version}"
-html_theme_options = {}
-if repository := PROJECT.get("urls", {}).get("Repository"):
-    html_theme_options = {"source_repository": repository, "source_branch": "main"}
+html_theme_options = source_links(PROJECT)
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_js_files = [("site.js", {"defer": "defer"})]

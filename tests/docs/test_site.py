@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import re
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -43,6 +44,15 @@ def test_the_reference_has_every_public_name(package: str) -> None:
     named = re.findall(r"^\.\. auto\w+:: (\w+)$", page, re.MULTILINE)
     public = set(importlib.import_module(package).__all__) - {"__version__"}
     assert sorted(named) == sorted(public)
+
+
+def test_pages_link_to_the_repository_that_the_project_names_and_to_no_other() -> None:
+    pytest.importorskip("latex2mathml")
+    links = runpy.run_path(str(ROOT / "docs" / "conf.py"))["source_links"]
+    address = "https://example.org/giveway"
+    named = {"source_repository": address, "source_branch": "main"}
+    assert links({"urls": {"Repository": address}}) == named
+    assert links({"urls": {}}) == links({}) == {}
 
 
 def menu() -> dict[str, dict[str, list[str]]]:
