@@ -25,6 +25,7 @@ EXAMPLE: Final = """\
 # A straight street for `giveway new`. Every key may be left out: it then has the value shown here.
 
 length = 220.0      # m, from the western end (x = 0) to the eastern one
+traffic = "right"   # the side on which vehicles drive: "right" or "left"
 lanes = 1           # lanes in each direction
 lane_width = 3.5    # m
 speed = 30.0        # km/h, the speed limit
@@ -75,6 +76,7 @@ class Street(Section):
     """A straight street, from west to east."""
 
     length: float = option(220.0, "m", "length of the street", ge=100.0, le=10_000.0)
+    traffic: Literal["right", "left"] = option("right", None, "side of vehicles: right or left")
     lanes: int = option(1, None, "lanes in each direction", ge=1, le=4)
     lane_width: float = option(3.5, "m", "width of a lane", ge=2.5, le=6.0)
     speed: float = option(30.0, "km/h", "speed limit", ge=5.0, le=72.0)
@@ -125,6 +127,12 @@ class Street(Section):
     def crossings(self) -> tuple[Crossing, ...]:
         """The crossings from west to east."""
         return tuple(sorted(self.crossing, key=lambda each: each.position))
+
+    @property
+    def sides(self) -> dict[str, str]:
+        """The side of the street on which the lanes lie, by the way they lead: east or west."""
+        sides = ("south", "north") if self.traffic == "right" else ("north", "south")
+        return dict(zip(("east", "west"), sides, strict=True))
 
     @property
     def half_width(self) -> float:

@@ -30,6 +30,7 @@ _BUILD: Final = (
     </output>
     <processing>
         <offset.disable-normalization value="true"/>
+        <lefthand value="{lefthand}"/>
     </processing>
     <junctions>
         <no-turnarounds value="true"/>
@@ -57,7 +58,7 @@ def street_files(street: Street, name: str) -> dict[str, str]:
         f"{name}.edg.xml": _edges(street),
         f"{name}.con.xml": _connections(street),
         f"{name}.tll.xml": _programmes(street),
-        f"{name}.netccfg": _BUILD.format(name=name),
+        f"{name}.netccfg": _BUILD.format(name=name, lefthand=str(street.traffic == "left").lower()),
         f"{name}.rou.xml": _routes(street),
         f"{name}.sumocfg": configuration_of(
             name, street.demand.duration, step=0.1, routes=[f"{name}.rou.xml"]
@@ -97,7 +98,7 @@ def _edges(street: Street) -> str:
     """Return the edges; the line drawn is the middle of the road."""
     sidewalk = f' sidewalkWidth="{street.pavement:g}"' if street.pavement else ""
     lines = []
-    for way, side in (("east", "south"), ("west", "north")):
+    for way, side in street.sides.items():
         count = len(street.crossings)
         inner = [f"crossing_{number}" for number in range(1, count + 1)]
         ends = pairwise([f"west_end_{side}", *inner, f"east_end_{side}"])
@@ -196,13 +197,14 @@ def _place(
 
     Args:
         street: Street.
-        side: South, where the lanes lead east, or north.
+        side: South or north.
         arm: West or east of the crossing.
         number: Number of crossings west of this one.
         reach: Distance [m] of the place from the crossing on each arm.
     """
-    edge = _edge_names(street, "east" if side == "south" else "west")[number + (arm == "east")]
-    leads_there = (side == "south") == (arm == "west")
+    way = "east" if street.sides["east"] == side else "west"
+    edge = _edge_names(street, way)[number + (arm == "east")]
+    leads_there = way != arm
     return edge, -reach[arm] if leads_there else reach[arm]  # < 0: from the edge's end
 
 

@@ -44,13 +44,15 @@ def tracks(street: Street, folder: Path, end: float = 180.0) -> dict[str, Track]
     return found
 
 
-def test_everybody_crosses_at_the_zebra_meant(tmp_path: Path) -> None:
+@pytest.mark.parametrize("traffic", ["right", "left"])
+def test_everybody_crosses_at_the_zebra_meant(traffic: str, tmp_path: Path) -> None:
     """
     ======|======|======   zebras at 70 and 160 m, 4 m wide; a person of the flow ..._1 takes the
     ------|------|------   first, and one of ..._2 the second
     ======|======|======
     """
-    street = Street(crossing=(Crossing(position=70.0), Crossing(position=160.0)))
+    zebras = Crossing(position=70.0), Crossing(position=160.0)
+    street = Street(traffic=traffic, crossing=zebras)
     walked = tracks(street, tmp_path)
     over = 0
     for name, track in walked.items():
@@ -70,6 +72,20 @@ def test_on_red_nobody_sets_foot_on_the_road(tmp_path: Path) -> None:
     entered = [time % 60.0 for time in edges if time is not None]
     assert len(entered) >= 15
     assert all(44.0 <= time <= 56.0 for time in entered)
+
+
+@pytest.mark.parametrize(("traffic", "side"), [("right", -1.0), ("left", 1.0)])
+def test_vehicles_that_drive_east_are_on_their_side(
+    traffic: str, side: float, tmp_path: Path
+) -> None:
+    for name, text in street_files(Street(traffic=traffic), "drawn").items():
+        (tmp_path / name).write_text(text)
+    network = ElementTree.parse(build(str(tmp_path)))
+    lane = network.find(".//lane[@id='east_1_1']")
+    assert lane is not None
+    points = [point.split(",") for point in lane.get("shape", "").split()]
+    assert float(points[0][0]) < float(points[-1][0])
+    assert [float(y) for _, y in points] == [side * 1.75] * len(points)
 
 
 def test_each_direction_ends_at_a_node_of_its_own() -> None:
