@@ -90,11 +90,13 @@ def _csv(lines: Iterable[str]) -> str:
 def write_block(
     file: Path, name: str, lines: list[str], version: str, measured: Path = MEASURED
 ) -> None:
-    """Write the lines of one block into its page, and the files that store it."""
-    before = file.read_text(encoding="utf-8")
-    file.write_text(filled(before, name, lines, version), encoding="utf-8")
+    """Write the lines of one block into its page, with links to the tables that store them."""
+    before, new = file.read_text(encoding="utf-8"), stored_files(file.stem, name, lines)
+    links = [f"[CSV](measured/{stored})" for stored in new if stored.endswith(".csv")]
+    told = "; ".join([version.removesuffix("."), *links]) + "."
+    file.write_text(filled(before, name, lines, told), encoding="utf-8")
     former = next(match["text"] for match in BLOCK.finditer(before) if match["name"] == name)
     for gone in stored_files(file.stem, name, former.splitlines()[1:]):
         (measured / gone).unlink(missing_ok=True)
-    for stored, text in stored_files(file.stem, name, lines).items():
+    for stored, text in new.items():
         (measured / stored).write_text(text, encoding="utf-8")

@@ -125,6 +125,7 @@ def test_a_block_that_is_written_replaces_its_files(tmp_path: Path) -> None:
     stored = {file.name: file.read_text("utf-8") for file in tmp_path.iterdir() if file != page}
     rows = 'car,"time, s"\nmpc,2.5 +\na | b,\n'
     assert stored == {"page_a.csv": rows, "page_a.txt": "and more\n"}
+    assert "*Commit abc; [CSV](measured/page_a.csv).*" in page.read_text(encoding="utf-8")
 
 
 def test_only_the_named_block_of_a_page_is_written() -> None:
