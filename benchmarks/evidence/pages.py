@@ -51,7 +51,7 @@ SPEED = (
     shell("bench_start.py", "bench_start.py --cold", "--rounds 1"),
     shell("bench_metrics.py", "bench_metrics.py", "--repetitions 1"),
     shell("bench_sight.py", "bench_sight.py"),
-    told("machine", "speed/performance.py --machine", "", "--machine"),
+    told("machine", "speed/performance.py --machine", "one machine", "--machine"),
 )
 
 PAGES: dict[str, Page] = {
