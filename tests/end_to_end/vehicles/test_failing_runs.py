@@ -27,7 +27,7 @@ WORDS = (
 FAILURES = {
     "segfault": ("1.0", r"SIGSEGV"),
     "exit_0": ("3.0", r"exit\(0\)"),
-    "hang": ("2.0", r"no answer within 1 s"),
+    "sleep_forever": ("2.0", r"no answer within 1 s"),
     "error": ("3.0", r"the axle broke"),
     "discard_always": ("2.0", r"discard"),
     "terminate": ("3.0", r"end"),
