@@ -51,10 +51,11 @@ def profiled() -> Callable[..., Path]:
 
 
 @pytest.fixture
-def isolated(zoo: Any) -> Iterator[Callable[..., IsolatedVehicle]]:
+def isolated(zoo: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., IsolatedVehicle]]:
     """Open a car of the zoo in a process of its own; all are closed at the end.
 
-    The patience is long, for a busy machine's sake, unless it is what a test is about.
+    The patience is long, for a busy machine's sake, unless it is what a test is about. The name of
+    the present test is kept from the watchdog, which may serve those of the next tests, too.
     """
     vehicles = []
 
@@ -68,7 +69,9 @@ def isolated(zoo: Any) -> Iterator[Callable[..., IsolatedVehicle]]:
         values = zoo.profile(path) if profile is None else profile
         values["fmu"] |= {"start_timeout": start_timeout, "step_timeout": step_timeout}
         made = make_profile(values, "the test's profile")
-        vehicles.append(IsolatedVehicle(path, step_size=0.05, profile=made))
+        with monkeypatch.context() as there:
+            there.delenv("PYTEST_CURRENT_TEST")
+            vehicles.append(IsolatedVehicle(path, step_size=0.05, profile=made))
         return vehicles[-1]
 
     yield open_

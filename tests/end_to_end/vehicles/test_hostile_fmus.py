@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
 from pathlib import Path
 
 import psutil
 import pytest
 
-from fmus import FmuOutputError, FmuStepError
+from fmus import FmuOutputError, FmuStepError, processes_reused
 from fmus.errors import FmuCrashError, FmuError, FmuStartError
 
 H = 0.05  # [s]
@@ -75,6 +76,20 @@ HARMLESS = {
     "close_files": ["close_files"],
     "write_into_files": ["write_into_files"],
 }  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def own_temp(tmp_path_factory):
+    """A folder for temporary files of one watchdog, which serves all sound FMUs in turn."""
+    before = set(psutil.Process().children(recursive=True))
+    folder = tmp_path_factory.mktemp("temp")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TMPDIR", str(folder))
+        patch.setattr(tempfile, "tempdir", str(folder))
+        with processes_reused():
+            yield folder
+    assert set(psutil.Process().children(recursive=True)) <= before
+    assert not list(folder.iterdir())
 
 
 @pytest.fixture(autouse=True)
