@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+import scipy  # scipy.stats is loaded where it is first used
 from scipy.special import ndtr, ndtri
 
 from giveway.risk.estimators.estimate import Array, EventSample
@@ -71,7 +71,7 @@ def event_index(
     fewer = numerator - 2.0 * (mass @ every - square)
     without = scale * departure(fewer, denominator - 2.0 * total * (whole - total))
     error = math.sqrt((count - 1) * float(np.var(without)))
-    half = float(stats.t.ppf(0.5 + confidence / 2.0, count - 1)) * error
+    half = float(scipy.stats.t.ppf(0.5 + confidence / 2.0, count - 1)) * error
     return EventIndex(index, max(0.0, index - half), min(1.0, index + half))
 
 

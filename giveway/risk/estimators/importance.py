@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy import stats
+import scipy  # scipy.stats is loaded where it is first used
 from scipy.special import logsumexp
 
 from giveway.risk.estimators.estimate import Array, Estimate, EventSample, Sampler, Stage
@@ -152,7 +152,7 @@ def _weighted(weights: Array, confidence: float) -> tuple[float, float, float, l
     mean = total / n
     scatter = float(weights.std(ddof=1)) / np.sqrt(n) / mean
     effective = total**2 / float(np.sum(weights**2))
-    half = float(stats.t.ppf(0.5 + confidence / 2.0, max(1.0, effective - 1.0))) * scatter
+    half = float(scipy.stats.t.ppf(0.5 + confidence / 2.0, max(1.0, effective - 1.0))) * scatter
     doubts = []
     if effective < _LEAST_SIZE:
         doubts.append(
@@ -180,7 +180,7 @@ def tail_shape(weights: Array) -> float:
     beyond = ordered[-count:] - ordered[-count - 1]
     if beyond[-1] <= 0.0:
         return -1.0
-    shape, _, _ = stats.genpareto.fit(beyond / beyond.mean(), floc=0.0)
+    shape, _, _ = scipy.stats.genpareto.fit(beyond / beyond.mean(), floc=0.0)
     return float(shape)
 
 

@@ -1,7 +1,7 @@
 """Plain Monte Carlo, with the interval of Clopper and Pearson."""
 
 import numpy as np
-from scipy import stats
+import scipy  # scipy.stats is loaded where it is first used
 
 from giveway.risk.estimators.estimate import Array, Estimate, EventSample, Sampler
 
@@ -51,6 +51,6 @@ def clopper_pearson(events: int, runs: int, confidence: float = 0.95) -> tuple[f
     if not events:
         return 0.0, float(1.0 - (1.0 - confidence) ** (1.0 / runs))
     tail = (1.0 - confidence) / 2.0
-    low = stats.beta.ppf(tail, events, runs - events + 1)
-    high = stats.beta.ppf(1.0 - tail, events + 1, runs - events) if events < runs else 1.0
+    low = scipy.stats.beta.ppf(tail, events, runs - events + 1)
+    high = scipy.stats.beta.ppf(1.0 - tail, events + 1, runs - events) if events < runs else 1.0
     return float(low), float(high)

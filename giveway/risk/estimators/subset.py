@@ -14,8 +14,8 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy  # scipy.stats is loaded where it is first used
 from numpy.typing import NDArray
-from scipy import stats
 
 from giveway.risk.estimators.estimate import Array, Estimate, EventSample, Sampler, Stage
 from giveway.risk.estimators.monte_carlo import clopper_pearson
@@ -287,6 +287,6 @@ def interval_of_repeats(
     logs, n = np.log(each), len(each)
     square = max(least, float(logs.var(ddof=1)))
     centre = float(logs.mean()) + square / 2.0
-    quantile = float(stats.t.ppf(0.5 + confidence / 2.0, n - 1))
+    quantile = float(scipy.stats.t.ppf(0.5 + confidence / 2.0, n - 1))
     half = quantile * np.sqrt(square / n + square**2 / (2.0 * (n - 1)))
     return float(each.mean()), float(np.exp(centre - half)), float(np.exp(centre + half))
