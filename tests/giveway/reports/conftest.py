@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from giveway.gate import MAKER, fingerprint, signed
+from giveway.reports import report_page
 from giveway.reports.examples import drives_of
 from giveway.reports.report_page import write_report
 from giveway.studies.definition import parse_definition
@@ -118,6 +119,12 @@ def report(study: StudyFolder, again: Callable[[str], Any]) -> Path:
         return page
 
     return write_report(study, drives=again, replay=replay)
+
+
+@pytest.fixture
+def unpictured(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reports without the study's figures, for tests of what stands beside them."""
+    monkeypatch.setattr(report_page, "study_pictures", lambda _: ())
 
 
 class Page(HTMLParser):

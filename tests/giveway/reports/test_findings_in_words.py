@@ -37,6 +37,7 @@ def with_outcome(changed):
     return name
 
 
+@pytest.mark.usefixtures("unpictured")
 def test_a_primary_outcome_makes_its_differences_confirmatory(study, with_outcome, parsed):
     assert any("names no primary outcome" in said for said in cautions(study))
     named = with_outcome(1e-6)

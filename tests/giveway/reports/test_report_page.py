@@ -173,6 +173,7 @@ def test_a_lost_run_is_told_with_its_cause_and_command(lost, parsed):
     assert [row[head.index("no result")] for row in cells] == ["1", "0", "0", "0"]
 
 
+@pytest.mark.usefixtures("unpictured")
 def test_an_example_that_cannot_be_made_again_is_left_out(study, tmp_path, parsed):
     def rerun(run):
         raise GivewayError(f"run {run}: other numbers")

@@ -12,7 +12,7 @@ import pytest
 
 from giveway.errors import ConfigError
 from giveway.gate import signed
-from giveway.reports import report_page, with_replays
+from giveway.reports import with_replays
 from giveway.reports.report_page import shown_runs
 from giveway.reports.with_replays import write_report_of
 from giveway.studies.folder.study_folder import StudyFolder
@@ -57,11 +57,10 @@ def made(monkeypatch):
     return found
 
 
+@pytest.mark.usefixtures("unpictured")
 def test_a_report_makes_each_run_once_and_the_next_one_none(
     small_study, tmp_path, made, monkeypatch
 ):
-    # figures of the study are drawn alike each time: test_report_page.py
-    monkeypatch.setattr(report_page, "study_pictures", lambda _: ())
     folder = shutil.copytree(small_study.path, tmp_path / "copy")
     shutil.rmtree(folder / "replays", ignore_errors=True)
     study, told = StudyFolder.open(folder), []
