@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import giveway  # noqa: F401 - before any kernel: the code of those imported earlier is not shared
-
-# isort: split
 from collections import Counter
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, NamedTuple
