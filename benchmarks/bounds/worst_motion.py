@@ -110,7 +110,7 @@ def departures(found: list[Track], ahead: float, dt: float) -> Array:
 
 
 def quantities(clips: tuple[Clip, ...], window: float) -> dict[str, Array]:
-    """What is measured of the people near a moving vehicle, by the heads of the table's rows."""
+    """Values of all people near a moving vehicle, by the heads of the table's rows."""
     found = [track for track in tracks(clips, window) if track.near.any()]
     dt = Protocol.of(clips[0].dataset).time_step
     v, a, towards = (
