@@ -112,6 +112,8 @@ def departures(found: list[Track], ahead: float, dt: float) -> Array:
 def quantities(clips: tuple[Clip, ...], window: float) -> dict[str, Array]:
     """Values of all people near a moving vehicle, by the heads of the table's rows."""
     found = [track for track in tracks(clips, window) if track.near.any()]
+    if not found:
+        raise SystemExit(f"{clips[0].dataset.name}: nobody within {NEAR:g} m of a moving vehicle")
     dt = Protocol.of(clips[0].dataset).time_step
     v, a, towards = (
         np.concatenate([getattr(track, name)[track.near] for track in found])

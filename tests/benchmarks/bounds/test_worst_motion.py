@@ -2,6 +2,7 @@
 
 import importlib.util
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -56,6 +57,13 @@ def test_the_table_has_a_row_for_each_quantity_of_those_who_are_near(clips, caps
     assert head.count("AGAIN") == 4
     assert rows[0] == f"| acceleration [m/s²] |{' 0.50 |' * 8}"
     assert len(rows) == len(measured)
+
+
+def test_a_data_set_in_which_nobody_is_near_is_one_line(clips) -> None:
+    (clip,) = clips
+    alone = replace(clip, poses=clip.poses[:, :0])
+    with pytest.raises(SystemExit, match="CITR: nobody within 5 m of a moving vehicle"):
+        worst.quantities((alone,), 0.5)
 
 
 def test_needed_is_the_acceleration_less_what_the_margin_allows(clips) -> None:
